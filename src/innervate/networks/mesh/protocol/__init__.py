@@ -43,7 +43,9 @@ then of all messages, never of alarms: a full channel heals (decision 0016).
 
 *Standby.* A standby that has no sign of the gateway's life for a `guard_us` asks it. Each answer
 brings a part of the graph, until it has all. Questions in vain, more where answers used to be late:
-it leads, hands out tables of the graph that it has, and need not wait for a round.
+it leads, hands out tables of the graph that it has, and need not wait for a round. Meanwhile the
+channel is theirs: who hears it begins no messages for a `collect_us`, and until the next round
+nobody looks for the gateway that is `gone`, unless it is heard (decision 0049).
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor has acknowledged them. Who hears a robot outside is its witness
@@ -65,7 +67,8 @@ States
 |                                       | leads (`leading` = 1); `rank` 0 is the gateway's, 1 and  |
 |                                       | up the standbys', -1 all others'                         |
 | round at a node, `due`                | `NOTHING = 0`; `LOOK_AGAIN = 1` heard weak requests      |
-|                                       | only; `RESPOND = 2`                                      |
+|                                       | only; `RESPOND = 2`; `HUSHED = 3` own messages wait for  |
+|                                       | a new gateway's tables                                   |
 | round at the gateway, `step`          | `IDLE = 0`; `COLLECTING = 1`                             |
 | a node's table, at the gateway, `job` | `CURRENT = 0`; `TO_SEND = 1`; `UNDER_WAY = 2`;           |
 |                                       | `GIVEN_UP = 3`                                           |
@@ -92,7 +95,8 @@ lost may be made good by what is heard later: `drop_overheard`, which also ends 
 | `RESPONSE`                             | a hop            | `on_upward`: up; at the gateway      |
 |                                        |                  | `on_response`                        |
 | `TABLE`                                | a hop            | `on_table`, unless `record_packet`   |
-|                                        |                  | had it: along its route; ours:       |
+|                                        |                  | had it: along its route, or once     |
+|                                        |                  | around a hop that failed; ours:      |
 |                                        |                  | `take_part`                          |
 | `TABLE_ACK`                            | a hop            | `on_upward`: up; at the gateway      |
 |                                        |                  | `on_ack`                             |
@@ -127,8 +131,12 @@ A hop for which there is no room gets no ack, so that another is tried.
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
 | a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns patience   |                |
+| a `rank`   | the gateway's frames, or for it | `hear_of_gateway`: it lives; it  |                |
+|            |                                 | is looked for everywhere         |                |
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
-| any        | `REQUEST` of another gateway    | `redirect`: alarms go to it      |                |
+| any        | `REQUEST` of another gateway    | `redirect`: alarms go to it; who |                |
+|            |                                 | led before is `gone`             |                |
+| any        | a frame of who is `gone`        | `hear_of_gateway`: it is not     |                |
 | any        | `TICK`                          | `on_tick`: `sweep`, `age`,       |                |
 |            |                                 | `watch`, `beacon`,               |                |
 |            |                                 | `repeat_alarm`                   |                |
@@ -136,6 +144,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | new round  | `REQUEST`, weak                 | `await_better`                   | LOOK_AGAIN     |
 | LOOK_AGAIN | `ROUND`                         | `step`, `look_again`, `join`     | RESPOND        |
 | RESPOND    | `ROUND`                         | `step`, `respond`                | NOTHING        |
+| new round  | `REQUEST`, `PRIORITY`           | `join`: `is_hushed`              | HUSHED         |
+| HUSHED     | `ROUND`                         | `step`                           | NOTHING        |
 | IDLE       | `TICK`, the period is over      | `start_round`                    | COLLECTING     |
 | COLLECTING | `RESPONSE`                      | `on_response`: `note_path`,      |                |
 |            |                                 | `note_list`                      |                |
@@ -194,7 +204,8 @@ Timers
 |                | `jitter_us`                                                                     |
 | `ACK_WAIT = 1` | `ack_us` from SENT on; with `ack_adapt` a round trip to that neighbour longer   |
 | `ROUND = 2`    | a node: 2 `jitter_us` to look again; `listen_us` and up to `spread_us` to       |
-|                | respond; the gateway: `collect_us`                                              |
+|                | respond; up to `spread_us` after `collect_us` to begin messages again; the      |
+|                | gateway: `collect_us`                                                           |
 | `TICK = 3`     | `tick_us`, by itself: `period`, `period_max`, `dead`, `dead_step`, `forget`,    |
 |                | `lost` are counted in it                                                        |
 | `RETRY = 4`    | first end-to-end timeout: `e2e_us`, or with `e2e_adapt` 4 round trips; doubled, |
@@ -212,7 +223,7 @@ Frames
 | frame           | way                          | payload                                         |
 |-----------------|------------------------------|-------------------------------------------------|
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
-|                 |                              | flag `PRIORITY`: nobody responds                |
+|                 |                              | flag `PRIORITY`: nobody responds; more copies   |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud                                            |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
@@ -299,6 +310,8 @@ Constants and settings
 |                                                | each that is before it                          |
 | `IN_VAIN = 4`, `PATIENCE = 12`,                | questions in vain; quarters of one more, and of |
 | `PATIENCE_MAX = 24`                            | a longer wait: at first, after a late answer    |
+| `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
+|                                                | gateway: no patience                            |
 | `LISTED_MAX = 15`, `UPLINKS_TOLD = 3`          | neighbours in a response; without tables        |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
 |                                                | through it                                      |
@@ -327,6 +340,7 @@ Constants and settings
 | `CROWD = 32`                                   | nodes whose answers find their way in a         |
 |                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
+| `COPIES_MORE = 4`                              | decision 0049: of the request of who takes over |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
 | `TIME = 1073741823`, `TICKS_MAX = 32767`       | clocks wrap at 2^30; longest suspicion          |
@@ -351,7 +365,8 @@ or gone at any moment, and nodes die and come back without memory.
 
 - A packet visits at most 24 nodes and 48 transmissions of its own: nothing circles for good,
   whatever tables say (A9). With `failover` SEARCH and no loss it finds a way within 24 nodes, if
-  there is one.
+  there is one; not to a gateway that another one took over from, before the next round or before
+  it is heard.
 - A packet is delivered at most once in a boot of its origin: its recipient clears the window when
   the origin was silent for `forget` ticks, and by then nothing is retransmitted (`lifetime`).
 - REPORT_ARRIVED is said only when the recipient acknowledged; a message without it, REPORT_EXPIRED,

@@ -168,7 +168,6 @@ def on_flood(node, params, now, frame, k, out):
         return
     if frame.dest == node.number:
         take_alarm(node, params, now, frame, out)
-        kick(node, params, now, out)
         return
     crowded = yield_routed(node, params, now)
     i = take_over(node, now, ALARMS, frame, out)
@@ -181,7 +180,6 @@ def on_flood(node, params, now, frame, k, out):
         node.q_due[i] = (now + wait) & MASK30
         if not add_hop(node, i):
             node.q_state[i] = FREE
-    kick(node, params, now, out)
 
 
 def yield_routed(node, params, now):

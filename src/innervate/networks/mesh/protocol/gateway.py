@@ -4,6 +4,7 @@ from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import report, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
+    ALARMS,
     ALL,
     CONTROL,
     PRIORITY,
@@ -30,11 +31,13 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
+from innervate.networks.mesh.protocol.round import NOTHING
 from innervate.networks.mesh.protocol.search import is_edge
 
 IDLE = 0
 COLLECTING = 1
 JITTER_UNIT_US = 10_000
+COPIES_MORE = 4  # of the request of who takes over: the channel is full of what looks for the dead
 
 
 def reset(gate, params):
@@ -69,6 +72,7 @@ def lead(node, gate, params, now, out):
     node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     node.known = 1
     node.leading = 1
+    node.due = NOTHING
     node.gateway = node.number
     node.depth = 1
     node.parent = ALL
@@ -91,8 +95,12 @@ def start_round(node, gate, params, now, out):
     """Broadcast a discovery request, and collect what comes back; who has a graph asks nobody."""
     flags = 0
     wait = params.collect_us
+    copies = params.copies
+    rank = CONTROL
     if gate.whole:
         flags = PRIORITY
+        rank = ALARMS  # there is a place for it, whatever waits
+        copies = copies + COPIES_MORE
         wait = 2 * params.jitter_us
         gate.whole = 0
     node.round = (node.round + 1) & MASK16
@@ -104,7 +112,7 @@ def start_round(node, gate, params, now, out):
     gate.wait = gate.period
     gate.step = COLLECTING
     report(out, REPORT_ROUND, node.round, node.epoch)
-    i = compose(node, now, CONTROL, REQUEST, ALL, flags, out)
+    i = compose(node, now, rank, REQUEST, ALL, flags, out)
     if i >= 0:
         add_hop(node, i)
         add8(node, i, node.number)
@@ -112,7 +120,7 @@ def start_round(node, gate, params, now, out):
         add16(node, i, node.round)
         add16(node, i, node.active)
         add8(node, i, params.jitter_us // JITTER_UNIT_US)
-        node.q_copies[i] = params.copies
+        node.q_copies[i] = copies
     set_timer(out, ROUND, (now + wait) & MASK30)
     kick(node, params, now, out)
 

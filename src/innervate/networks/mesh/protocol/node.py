@@ -89,7 +89,7 @@ from innervate.networks.mesh.protocol.retransmission import (
 )
 from innervate.networks.mesh.protocol.round import on_request, step
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
-from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_gateway, on_guard
+from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_of_gateway, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -111,6 +111,7 @@ def on_start(node, gate, params, now, cause, out):
     node.round = 0
     node.known = 0
     node.gateway = ALL
+    node.gone = ALL
     node.active = 0
     node.depth = NONE
     node.parent = ALL
@@ -168,8 +169,7 @@ def on_frame(node, gate, params, now, port, frame, out):
         hear_again(node, params, frame.link_src)
         return
     k = hear(node, params, frame.link_src, frame.rssi)
-    if frame.origin == node.gateway and frame.table_ver:  # without a table it leads no more
-        hear_gateway(node)
+    hear_of_gateway(node, params, now, frame, out)
     if frame.kind == ACK:
         on_hop_ack(node, params, now, frame, k, out)
     elif frame.link_dst == ALL:
@@ -230,14 +230,13 @@ def on_broadcast(node, params, now, frame, k, out):
             flood_data(node, params, now, frame, out)
     else:
         report(out, REPORT_UNKEYED, kind, 0)
+    kick(node, params, now, out)
 
 
 def on_unicast(node, gate, params, now, frame, out):
     """A frame for us: acknowledge it if we can take it over, then handle it."""
     here = frame.dest == node.number
     rank = rank_of(frame)
-    if is_upward(frame.kind) or frame.kind == TABLE:
-        rank = CONTROL
     if not here and not has_room(node, rank):
         if frame.flags & DETOURED or not make_room(node, rank, out):
             return

@@ -23,14 +23,19 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.fields import GATHERED
 from innervate.networks.mesh.protocol.frames import load, put16, store
-from innervate.networks.mesh.protocol.hop import begin_wait, end_wait, hop_wait, is_full
+from innervate.networks.mesh.protocol.hop import (
+    NOBODY_GAVE,
+    begin_wait,
+    end_wait,
+    hop_wait,
+    is_full,
+)
 
 FREE = 0
 WAITS = 1
 DOWN = 2
 UNACKED = 3
 
-NOBODY_GAVE = 255
 NO_OWNER = -1
 
 

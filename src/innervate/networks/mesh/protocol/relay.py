@@ -8,9 +8,8 @@ from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
     DATA,
-    E2E_ACK,
-    GRAPH,
     MESSAGES,
+    POSITION,
 )
 from innervate.networks.mesh.protocol.duplicates import (
     accept,
@@ -21,7 +20,7 @@ from innervate.networks.mesh.protocol.duplicates import (
 )
 from innervate.networks.mesh.protocol.frames import in_path
 from innervate.networks.mesh.protocol.messages import hand_up
-from innervate.networks.mesh.protocol.queue import kick, take_over
+from innervate.networks.mesh.protocol.queue import take_over
 from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import send_on
 
@@ -30,9 +29,9 @@ def rank_of(frame):
     """How urgent a packet is."""
     if frame.kind == ALARM:
         return ALARMS
-    if frame.kind == E2E_ACK or frame.kind == GRAPH:
-        return CONTROL
-    return MESSAGES
+    if frame.kind == DATA or frame.kind == POSITION:
+        return MESSAGES
+    return CONTROL
 
 
 def relay(node, params, now, frame, out):
@@ -50,7 +49,6 @@ def relay(node, params, now, frame, out):
     if i < 0:
         return
     send_on(node, params, now, i, out)
-    kick(node, params, now, out)
 
 
 def flood_data(node, params, now, frame, out):
@@ -65,4 +63,3 @@ def flood_data(node, params, now, frame, out):
         node.q_link_dst[i] = ALL
         node.q_copies[i] = params.copies
         node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
-    kick(node, params, now, out)

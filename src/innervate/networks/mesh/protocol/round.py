@@ -23,8 +23,9 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import forgive
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
+from innervate.networks.mesh.protocol.hop import HUSHED, NOBODY_GAVE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
-from innervate.networks.mesh.protocol.queue import NOBODY_GAVE, WAITS, compose, drop, enqueue, kick
+from innervate.networks.mesh.protocol.queue import WAITS, compose, drop, enqueue, kick
 from innervate.networks.mesh.protocol.send import send_up
 from innervate.networks.mesh.protocol.table import activate
 from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
@@ -65,6 +66,7 @@ def begin(node, params, gateway, epoch, round, out):
     if not node.known or node.gateway != gateway or node.epoch != epoch:
         report(out, REPORT_GATEWAY, gateway, epoch)
     node.known = 1
+    node.gone = ALL if node.gateway == gateway else node.gateway
     node.gateway = gateway
     node.epoch = epoch
     node.round = round
@@ -112,7 +114,6 @@ def on_request(node, params, now, frame, k, out):
             join(node, params, now, frame.path_len + 1, frame.flags & PRIORITY, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
-    kick(node, params, now, out)
 
 
 def arm_guard(node, params, now, out):
@@ -166,10 +167,13 @@ def await_better(node, params, now, frame, out):
 def join(node, params, now, depth, taken, out):
     """We know our depth in this round: respond later, unless a standby has just taken over."""
     node.depth = depth
-    if params.discovery != EACH and not taken:
+    if params.discovery != EACH:
         node.due = RESPOND
-        wait = params.listen_us + draw(node, params.spread_us + 1)
-        set_timer(out, ROUND, (now + wait) & MASK30)
+        wait = params.listen_us
+        if taken:
+            node.due = HUSHED
+            wait = params.collect_us
+        set_timer(out, ROUND, (now + wait + draw(node, params.spread_us + 1)) & MASK30)
 
 
 def look_again(node, params, now, out):
@@ -187,6 +191,7 @@ def step(node, params, now, out):
         look_again(node, params, now, out)
     elif due == RESPOND:
         respond(node, params, now, out)
+    kick(node, params, now, out)
 
 
 def is_listed(node, params, k):
@@ -224,7 +229,6 @@ def respond(node, params, now, out):
         i = open_response(node, params, now, 0, out)
         if i >= 0:
             send_up(node, params, now, i, out)
-        kick(node, params, now, out)
         return
     left = count_listed(node, params)
     most = min(LISTED_MAX, (params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX - 4) >> 1)
@@ -244,7 +248,6 @@ def respond(node, params, now, out):
                     add8(node, i, node.round_rssi[k])
         if i >= 0:
             send_up(node, params, now, i, out)
-    kick(node, params, now, out)
 
 
 def respond_faintly(node, params, now, out):
@@ -268,4 +271,3 @@ def respond_to(node, params, now, who, out):
             node.q_link_dst[i] = who
             node.q_flags[i] = node.q_flags[i] | 1
             node.q_ttl[i] = node.q_ttl[i] - 1
-    kick(node, params, now, out)

@@ -9,6 +9,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALARMS,
     ALTERNATE,
     DATA,
+    DETOURED,
     END_TO_END,
     NOBODY,
     REPORT_DROPPED,
@@ -69,6 +70,8 @@ def enter(node, params, i, out):
 
 def aim(node, params, i, out):
     """Choose the next hop of the routed packet in place i; 0 if there is none."""
+    if node.q_dest[i] == node.gone:
+        return 0
     who = choose_hop(node, params, i)
     if who == NOBODY:
         return 0
@@ -137,10 +140,7 @@ def hop_failed(node, params, now, i, out):
     node.q_state[i] = WAITS
     node.q_due[i] = now
     node.q_fails[i] = node.q_fails[i] + 1
-    if kind == TABLE:
-        suspect(node, params, now, failed, 0, out)
-        give_up(node, params, i, out)
-    elif is_upward(kind):
+    if is_upward(kind):
         suspect(node, params, now, failed, 0, out)
         skip(node, node.q_origin[i], node.q_seq[i], failed)
         if node.q_fails[i] > FAILURES_MAX:
@@ -151,6 +151,8 @@ def hop_failed(node, params, now, i, out):
         suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
         learn_failure(node, params, i, failed)
         if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
+            give_up(node, params, i, out)
+        elif kind == TABLE and (params.failover != SEARCH or node.q_flags[i] & DETOURED):
             give_up(node, params, i, out)
         elif not aim(node, params, i, out):
             give_up(node, params, i, out)
@@ -179,7 +181,7 @@ def turn_away(node, params, failed, out):
         return
     for i in range(node.places):
         waits = node.q_state[i] == WAITS and node.q_flags[i] & ACK_WANTED
-        if waits and node.q_link_dst[i] == failed and node.q_kind[i] != TABLE:
+        if waits and node.q_link_dst[i] == failed:
             if is_upward(node.q_kind[i]):
                 who = uplink(node, params, i)
                 if who != NOBODY:

@@ -4,7 +4,14 @@ An answer costs two ways through the mesh, however many nodes it has. Whatever e
 sent and a standby hears is an answer, too.
 """
 
-from innervate.networks.mesh.protocol.constants import CONTROL, GRAPH, PARTS_MAX, TABLES
+from innervate.networks.mesh.protocol.constants import (
+    ALL,
+    CONTROL,
+    DETOURED,
+    GRAPH,
+    PARTS_MAX,
+    TABLES,
+)
 from innervate.networks.mesh.protocol.frames import get16
 from innervate.networks.mesh.protocol.gateway import lead
 from innervate.networks.mesh.protocol.graph_jobs import fill_graph
@@ -16,13 +23,26 @@ from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_e
 IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
 PATIENCE = 12  # quarters, at first
 PATIENCE_MAX = 24  # after an answer that came late
+EVERYWHERE = 14  # nodes that had a packet for the gateway: then it does not answer anybody
 
 
-def hear_gateway(node):
-    """The gateway lives. Where more than one question was needed, a few in vain prove nothing."""
-    if node.silent > 2:
-        node.patience = PATIENCE_MAX
-    node.silent = 0
+def hear_of_gateway(node, params, now, frame, out):
+    """What a frame says of the gateway, or of the one before it: whoever made it lives.
+
+    Without a table it leads no more. Where more than one question was needed, a few in vain prove
+    nothing; but whoever has something for a gateway that is looked for everywhere does: links that
+    lose much, or a full channel, make for detours that are not as long.
+    """
+    if frame.origin == node.gone:
+        node.gone = ALL
+    if frame.origin == node.gateway and frame.table_ver:
+        if node.silent > 2:
+            node.patience = PATIENCE_MAX
+        node.silent = 0
+    if node.patience and frame.dest == node.gateway and frame.path_len >= EVERYWHERE:
+        if frame.flags & DETOURED:
+            node.patience = 0
+            arm_guard(node, params, now, out)
 
 
 def guard(node, gate, params, now, out):

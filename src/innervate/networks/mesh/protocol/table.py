@@ -17,9 +17,9 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
 from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_route
-from innervate.networks.mesh.protocol.queue import compose, kick, take_over
+from innervate.networks.mesh.protocol.queue import compose, take_over
 from innervate.networks.mesh.protocol.search import set_edge
-from innervate.networks.mesh.protocol.send import enter, pass_on, send_up
+from innervate.networks.mesh.protocol.send import enter, pass_on, send_on, send_up
 
 NONE = 255
 GROUP_BYTES = 3
@@ -80,15 +80,14 @@ def on_table(node, params, now, frame, out):
     for k in range(count):
         if frame.body[1 + k] == node.number:
             at = k
-    if at < 0:
-        return
-    if at < count - 1:
-        i = take_over(node, now, CONTROL, frame, out)
-        if i >= 0 and enter(node, params, i, out):
-            pass_on(node, params, i, frame.body[2 + at])
-    else:
+    if at == count - 1:
         take_part(node, params, now, frame, count + 1, out)
-    kick(node, params, now, out)
+        return
+    i = take_over(node, now, CONTROL, frame, out)
+    if i >= 0 and at < 0:
+        send_on(node, params, now, i, out)
+    elif i >= 0 and enter(node, params, i, out):
+        pass_on(node, params, i, frame.body[2 + at])
 
 
 def take_part(node, params, now, frame, at, out):
@@ -160,7 +159,6 @@ def spread(node, params, now, frame, out):
         node.q_link_dst[i] = ALL
         node.q_copies[i] = params.copies
         node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
-    kick(node, params, now, out)
 
 
 def part_bytes(params):
