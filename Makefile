@@ -66,7 +66,7 @@ demo: $(STAMP)
 
 test: $(STAMP)
 	$(COMPILE)
-	$(PYTEST) -m "not slow"
+	$(PYTEST) -m "not slow" --junitxml=.mutants/suite.xml
 
 full: $(STAMP)
 	$(COMPILE)
