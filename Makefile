@@ -70,7 +70,7 @@ test: $(STAMP)
 
 full: $(STAMP)
 	$(COMPILE)
-	$(PYTEST)
+	$(PYTEST) --junitxml=.mutants/suite.xml
 	$(BIN)/python -m tests.mutants --workers $(WORKERS) --seed $$(date +%Y%m%d) --count 40 --least 0.7
 
 # FAULTS="--room wire --seed 2": what tests/mutants/__main__.py takes.
