@@ -11,6 +11,7 @@ from innervate.sim.channel.world import Heap
 
 TIMER_80 = heap.key_of(80, heap.TIMER, 1, 0)
 END_50 = heap.key_of(50, heap.ENDS, 1, 0)
+READY_50 = heap.key_of(50, heap.READY, 0, 0)
 
 
 def world_of(*keys, told=0, now=50):
@@ -24,6 +25,8 @@ CASES = [
     ((TIMER_80,), 0, 80, False), ((), 0, heap.LAST >> heap.TIME_SHIFT, False),
     ((TIMER_80,), 1, 50, True), ((), 1, 50, True),
     ((END_50, TIMER_80), 1, 50, False),  # all edges of a moment come before
+    ((READY_50 - 1, TIMER_80), 1, 50, False), ((READY_50, TIMER_80), 1, 50, True),
+    ((READY_50, TIMER_80), 0, 50, False),
 ]  # fmt: skip
 
 
