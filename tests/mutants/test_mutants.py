@@ -1,6 +1,7 @@
 """The tool that plants faults finds what a test notices, and only that."""
 
 import ast
+import json
 import random
 import shutil
 import subprocess
@@ -12,6 +13,7 @@ import pytest
 from tests.mutants.choose import Choice, shared, words_of
 from tests.mutants.draw import SOURCES, drawn, faults
 from tests.mutants.planting import sitecustomize
+from tests.mutants.trial import LATE, Seen, seen_in
 from tests.mutants.turns import Turns, rounds, turn
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -178,6 +180,17 @@ def test_of_how_long_tests_took_the_longest_is_kept(tmp_path):
         turns.keep({long: took_s, "tests/test_other.py::test_other": 1.0})
     assert turns.took_s() == {long: 0.3, short: 0.002, "tests/test_other.py::test_other": 1.0}
     assert (tmp_path / "took.jsonl").read_text().count("\n") == 3
+
+
+def test_a_test_that_failed_has_not_passed_though_it_was_taken_down(tmp_path):
+    lines = [("begins", "a", ""), ("ended", "a", 0.5), ("begins", "b", ""), ("failed", "b", "so"),
+             ("ended", "b", 0.7), ("begins", "c", "")]  # fmt: skip
+    log = tmp_path / "log"
+    for count, failed in ((2, ("", "")), (5, ("b", "so")), (6, ("b", "so"))):
+        log.write_text("".join(json.dumps(line) + "\n" for line in lines[:count]))
+        assert seen_in(log) == Seen(*failed, {"a": 0.5})
+    log.write_text(json.dumps(lines[0]) + "\n")
+    assert seen_in(log) == Seen("a", LATE, {})
 
 
 def made(tmp_path):

@@ -163,7 +163,7 @@ class Watch:
         if report.failed:
             self.tell("failed", report.nodeid, str(report.longrepr)[-300:])
         elif report.when == "teardown":
-            self.tell("passed", report.nodeid, sum(os.times()[:4]) - self.began_s[1])
+            self.tell("ended", report.nodeid, sum(os.times()[:4]) - self.began_s[1])
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
@@ -344,6 +344,8 @@ def seen_in(log: Path) -> Seen:
     failed = [(name, why) for what, name, why in lines if what == "failed"]
     if not failed and lines and lines[-1][0] == "begins":
         failed = [(lines[-1][1], LATE)]
-    passed = {name: took_s for what, name, took_s in lines if what == "passed"}
+    bad = {name for name, _ in failed}
+    ended = {name: took_s for what, name, took_s in lines if what == "ended"}
+    passed = {name: took_s for name, took_s in ended.items() if name not in bad}
     compiled = any(what == "compiled" for what, *_ in lines)
     return Seen(*(failed[0] if failed else ("", "")), passed, compiled)
