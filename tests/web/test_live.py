@@ -181,29 +181,6 @@ def test_who_is_slow_once_has_not_ended(monkeypatch):
     assert levels == ["ok", "ok", "ok", "down"]
 
 
-def test_who_answers_for_the_first_time_does_so_again_only_later(monkeypatch, tmp_path):
-    """Node 1 comes late, goes and comes back; each of it takes two questions to be noted."""
-    (tmp_path / "b.toml").write_text(
-        f'kind = "mesh"\nname = "b"\nnumber = 1\nnodes = 2\nsocket = "{tmp_path}/b.sock"\n'
-    )
-    both = {
-        i: {"kind": "mesh", "role": "node" if i else "gateway", "number": i, "gateway": 0,
-            "onward": [], "paths": [], "counters": {}, "neighbours": []}
-        for i in range(2)
-    }  # fmt: skip
-    alone = {0: both[0]}
-    answers = [alone, both, alone, alone, both, both]
-    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
-    source = Live([tmp_path / "a.sock", tmp_path / "b.sock"])
-    while answers:
-        source._poll()
-    said = [one.what["text"] for one in source.history.after("log", 0, source.history.newest, 99)]
-    assert said == [
-        "b: nobody answers at its socket", "b answers", "b does not answer any more",
-        "b answers again",
-    ]  # fmt: skip
-
-
 CELLS = {
     i: {"kind": "skin", "role": "cell", "number": i, "parent": 0, "load": 1, "counters": {},
         "ports": [{"port": 0, "path": 0}, {"port": 1, "path": 1}],

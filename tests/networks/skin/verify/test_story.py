@@ -1,6 +1,7 @@
 """The file of a story has its network, its settings and its steps; what a ring is, and is not."""
 
 import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -8,9 +9,11 @@ from innervate import scenario
 from innervate.networks.skin.verify import graphs, story
 from innervate.networks.skin.verify import row as r
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
-from innervate.verify.explore import Result, Tally
+from innervate.verify.explore import Result, Tally, explore
 from tests.networks.skin.verify.tiny import PC, Tiny
 
+WHOLE = Path(__file__).with_name("stories.txt")
+SHORTEST = [("pair", {}), ("triangle", {"prompt": True}), ("triangle", {"updates": "triggered"})]
 FORGETS = "# Found with feasible distances that are forgotten after"
 
 
@@ -79,3 +82,19 @@ def test_stories_share_nothing():
     for name in ("sentences", "steps", "scenes", "ring"):
         getattr(one, name).append(1)
         assert getattr(two, name) == []
+
+
+def in_full(name, keys):
+    """The shortest way to a ring: sentences, each with its steps and the network after it."""
+    found = explore(SkinModel(graphs.parse(name), **{"rule": "paper"} | keys))
+    made = story.tell(found)
+    yield f"{name} {keys}: {made.title}; ring {made.ring}"
+    for said, steps, scene in zip(made.sentences, made.steps, made.scenes, strict=True):
+        yield said
+        yield f"    {', '.join(steps)}"
+        yield f"    parents {scene.parents}, cut {sorted(scene.cut)}, by {scene.actor}"
+
+
+def test_stories_are_told_word_for_word():
+    lines = [line for name, keys in SHORTEST for line in in_full(name, keys)]
+    assert lines == WHOLE.read_text(encoding="utf-8").splitlines()
