@@ -158,7 +158,8 @@ def test_what_a_test_notices_is_found_and_nothing_else(tmp_path):
 def test_a_cheap_test_has_its_turn_before_a_dear_one_and_a_near_one_before_others(
     place, took_s, number
 ):
-    assert turn(place, took_s) == number
+    assert turn("tests/wire/test_edge.py::test_it", place, took_s) == number
+    assert turn("tests/recorded/test_kept.py::test_it", place, 4 * took_s) == number
 
 
 def test_in_every_turn_files_are_collected_in_their_order():

@@ -124,7 +124,7 @@ class Watch:
     def _order(self, test: str) -> tuple[int, int, int]:
         """The turn of a test, the place of its file, and how few of the words it says."""
         place = self.files.index(test.partition("::")[0])
-        return turn(place, self.took_s.get(test, 0.0)), place, -shared(test, self.words)
+        return turn(test, place, self.took_s.get(test, 0.0)), place, -shared(test, self.words)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
