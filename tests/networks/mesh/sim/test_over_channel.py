@@ -35,7 +35,9 @@ def test_the_channel_is_due_when_its_first_event_is_or_at_once_to_tell(keys, tol
     assert over_channel.due(world_of(*keys, told=told)) == when
 
 
-@pytest.mark.parametrize(("keys", "told", "when", "first"), [case for case in CASES if case[0] or case[3]])
+@pytest.mark.parametrize(
+    ("keys", "told", "when", "first"), [case for case in CASES if case[0] or case[3]]
+)
 def test_its_next_event_is_handled_and_counted(monkeypatch, keys, told, when, first):
     done = []
 
