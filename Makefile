@@ -66,11 +66,11 @@ demo: $(STAMP)
 
 test: $(STAMP)
 	$(COMPILE)
-	$(PYTEST) -m "not slow"
+	$(PYTEST) -m "not slow" --junitxml=.mutants/suite.xml
 
 full: $(STAMP)
 	$(COMPILE)
-	$(PYTEST)
+	$(PYTEST) --junitxml=.mutants/suite.xml
 	$(BIN)/python -m tests.mutants --workers $(WORKERS) --seed $$(date +%Y%m%d) --count 40 --least 0.7
 
 # FAULTS="--room wire --seed 2": what tests/mutants/__main__.py takes.

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.live import metrics, status
-from innervate.live.admission import REST_S, BoundedListener, Bounds
+from innervate.live.admission import CLOSE_S, REST_S, BoundedListener, Bounds
 from tests.live import time_by_hand
 
 SMALL = Bounds(most=3, burst=2, full=b"full\n", limit=64)
@@ -96,6 +96,16 @@ async def test_one_too_many_is_told_and_hung_up_on_until_somebody_leaves(place):
     assert len(place.inside) == 3
     assert place.counts["here: turned away"] == 1
     await place.close(callers)
+
+
+@with_place(SMALL)
+async def test_who_was_served_is_hung_up_on_at_once(place):
+    caller = place.call()
+    await asyncio.sleep(REST_S)
+    caller.send(b"bye\n")
+    await asyncio.sleep(CLOSE_S / 50)
+    assert (read(caller), read(caller)) == (b"bye\n", b"")
+    await place.close([caller])
 
 
 @with_place(SMALL)

@@ -1,6 +1,7 @@
 """The tool that plants faults finds what a test notices, and only that."""
 
 import ast
+import json
 import random
 import shutil
 import subprocess
@@ -12,8 +13,16 @@ import pytest
 from tests.mutants.choose import Choice, shared, words_of
 from tests.mutants.draw import SOURCES, drawn, faults
 from tests.mutants.planting import sitecustomize
+from tests.mutants.trial import LATE, Seen, seen_in
+from tests.mutants.turns import Turns, rounds, turn
 
 ROOT = Path(__file__).resolve().parents[2]
+SUITE = """\
+<testsuites><testsuite name="pytest">
+<testcase classname="tests.test_edge" name="test_that_takes_long" time="1.000"/>
+<testcase classname="tests.test_edge" name="test_full_at_its_edge[9-True]" time="0.002"/>
+</testsuite></testsuites>
+"""
 CODE = """\
 def is_full(queued, room=4):
     return queued >= room
@@ -37,6 +46,10 @@ from innervate.wire.edge import is_full, unseen
 
 def test_that_fails_anyhow():
     assert unseen(2) == 5
+
+
+def test_that_takes_long():
+    assert [is_full(queued) for queued in (3, 4, 9)] == [False, True, True]
 
 
 @pytest.mark.parametrize(("queued", "full"), [(3, False), (4, True), (9, True)])
@@ -129,9 +142,56 @@ def test_what_a_test_notices_is_found_and_nothing_else(tmp_path):
         ("edge.py:10: '*' -> '+'", "test_what_another_process_says"),
     ):
         assert f"src/innervate/wire/{edit} tests/test_edge.py::{by}\n" in said
-    assert "\nsurvived: src/innervate/wire/edge.py:6: '+' -> '-' (4 tests)" in said
+    assert "\nsurvived: src/innervate/wire/edge.py:6: '+' -> '-' (5 tests)" in said
     assert "| wire | 7 | 6 | 86% |" in said
     assert (project / "src/innervate/wire/edge.py").read_text() == CODE
+    took_s = Turns(project, project / ".mutants/took.jsonl").took_s()
+    assert took_s["tests/test_edge.py::test_that_takes_long"] < 1  # told 1.0 by the whole suite
+    assert 0 < took_s["tests/test_edge.py::test_full_at_its_edge[3-False]"] < 1
+    assert "tests/test_edge.py::test_that_fails_anyhow" not in took_s
+
+
+@pytest.mark.parametrize(("place", "took_s", "number"), [
+    (0, 0.0, 0), (14, 0.099, 0), (14, 0.1, 1), (0, 0.99, 1), (14, 1.0, 2), (0, 90.0, 2),
+    (15, 0.0, 1), (29, 0.1, 2), (15, 1.0, 3), (29, 90.0, 3),
+])  # fmt: skip
+def test_a_cheap_test_has_its_turn_before_a_dear_one_and_a_near_one_before_others(
+    place, took_s, number
+):
+    assert turn("tests/wire/test_edge.py::test_it", place, took_s) == number
+    assert turn("tests/recorded/test_kept.py::test_it", place, 4 * took_s) == number
+
+
+def test_in_every_turn_files_are_collected_in_their_order():
+    files = [str(place) for place in range(17)]
+    assert list(rounds(files)) == [
+        (0, files[:3]), (0, files[3:15]), (1, files), (2, files), (3, files),
+    ]  # fmt: skip
+
+
+def test_of_how_long_tests_took_the_longest_is_kept(tmp_path):
+    (tmp_path / ".mutants").mkdir()
+    (tmp_path / ".mutants/suite.xml").write_text(SUITE)
+    long, short = (f"tests/test_edge.py::test_{name}" for name in (
+        "that_takes_long", "full_at_its_edge[9-True]",
+    ))  # fmt: skip
+    turns = Turns(tmp_path, tmp_path / "took.jsonl")
+    assert turns.took_s() == {long: 1.0, short: 0.002}
+    for took_s in (0.2, 0.3, 0.1):
+        turns.keep({long: took_s, "tests/test_other.py::test_other": 1.0})
+    assert turns.took_s() == {long: 0.3, short: 0.002, "tests/test_other.py::test_other": 1.0}
+    assert (tmp_path / "took.jsonl").read_text().count("\n") == 3
+
+
+def test_a_test_that_failed_has_not_passed_though_it_was_taken_down(tmp_path):
+    lines = [("begins", "a", ""), ("ended", "a", 0.5), ("begins", "b", ""), ("failed", "b", "so"),
+             ("ended", "b", 0.7), ("begins", "c", "")]  # fmt: skip
+    log = tmp_path / "log"
+    for count, failed in ((2, ("", "")), (5, ("b", "so")), (6, ("b", "so"))):
+        log.write_text("".join(json.dumps(line) + "\n" for line in lines[:count]))
+        assert seen_in(log) == Seen(*failed, {"a": 0.5})
+    log.write_text(json.dumps(lines[0]) + "\n")
+    assert seen_in(log) == Seen("a", LATE, {})
 
 
 def made(tmp_path):
@@ -142,6 +202,7 @@ def made(tmp_path):
         ("tests/test_edge.py", TESTS),
         ("src/innervate/__init__.py", ""),
         ("src/innervate/wire/__init__.py", ""),
+        (".mutants/suite.xml", SUITE),
         ("pyproject.toml", "[tool.pytest.ini_options]\npythonpath = ['.']\n"),
     ):
         (project / name).parent.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,8 @@
 """One planted fault after the other: whether one of the tests that are near it fails.
 
 A process that has imported what is large and foreign forks for each fault: what it forks imports
-the toolkit with the fault in it (`planting/`) and runs tests, nearest first, until one fails. What
-fails without the fault, too, finds nothing: it is tried alone, and its answer is kept.
+the toolkit with the fault in it (`planting/`) and runs tests, near and cheap ones first, until one
+fails. What fails without the fault, too, finds nothing: it is tried alone, its answer is kept.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ import pytest
 from tests.mutants.choose import Choice, shared, words_of
 from tests.mutants.draw import Fault
 from tests.mutants.planting import sitecustomize
+from tests.mutants.turns import Turns, rounds, turn
 
 FOUND, SURVIVED = "found", "survived"
 LARGE = (
@@ -38,7 +39,6 @@ LARGE = (
 CROWDED = 5  # so much longer it may take by the clock
 LATE = "did not end in time"
 FORGIVEN_MAX = 12  # tests that fail without the fault, too, before one gives up
-PORTIONS = (3, 12, 1000)  # files are collected so many at a time
 
 
 class Way(NamedTuple):
@@ -85,13 +85,13 @@ class Seen(NamedTuple):
     Attributes:
         failed: the test that failed; "" if none did.
         why: what it said.
-        passed: those that passed before.
+        passed: those that passed before, and how long each took on the processor.
         compiled: the faulty file is one that compiled code came from.
     """
 
     failed: str
     why: str
-    passed: list[str]
+    passed: dict[str, float]
     compiled: bool = False
 
 
@@ -101,16 +101,30 @@ class Watch:
     def __init__(self, log: Path, way: Way, words: set[str], without: frozenset[str]) -> None:
         self.log, self.way, self.words, self.without = log, way, words, without
         self.began_s = 0.0, 0.0  # a test, by the clock and by the processor
+        self.turn = 0
+        self.files: list[str] = []
+        self.took_s: dict[str, float] = {}
+        self.turns: dict[str, set[int]] = {}  # of the tests of each file that was collected
 
-    def tell(self, what: str, name: str, why: str = "") -> None:
+    def tell(self, what: str, name: str, why: str | float = "") -> None:
         with self.log.open("a", encoding="utf-8") as file:
             file.write(json.dumps([what, name, why]) + "\n")
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        files = list(dict.fromkeys(item.path for item in items))
-        items[:] = [item for item in items if item.nodeid not in self.without]
-        said = {item: shared(item.nodeid, self.words) for item in items}
-        items.sort(key=lambda item: (files.index(item.path), -said[item]))
+        orders = [(*self._order(item.nodeid), item) for item in items]
+        for number, place, *_ in orders:
+            self.turns.setdefault(self.files[place], set()).add(number)
+        now = [one for one in orders if one[0] == self.turn and one[-1].nodeid not in self.without]
+        items[:] = [item for *_, item in sorted(now, key=lambda one: one[:3])]
+
+    def may_have(self, test: str) -> bool:
+        """True if a file was not collected yet, or has tests that wait for this turn."""
+        return self.turn in self.turns.get(test.partition("::")[0], {self.turn})
+
+    def _order(self, test: str) -> tuple[int, int, int]:
+        """The turn of a test, the place of its file, and how few of the words it says."""
+        place = self.files.index(test.partition("::")[0])
+        return turn(test, place, self.took_s.get(test, 0.0)), place, -shared(test, self.words)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
@@ -149,7 +163,7 @@ class Watch:
         if report.failed:
             self.tell("failed", report.nodeid, str(report.longrepr)[-300:])
         elif report.when == "teardown":
-            self.tell("passed", report.nodeid)
+            self.tell("ended", report.nodeid, sum(os.times()[:4]) - self.began_s[1])
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         if report.failed:
@@ -170,7 +184,7 @@ class Bench:
         self, root: Path, work: Path, budget_s: float, compiled: Path | None = None
     ) -> None:
         self.root, self.work, self.budget_s, self.compiled = root, work, budget_s, compiled
-        self.choice = Choice(root)
+        self.choice, self.turns = Choice(root), Turns(root, work / "took.jsonl")
         self._passed: set[tuple[str, str]] = set()  # by the way; also with faults elsewhere
         for name in LARGE:
             with contextlib.suppress(ImportError):
@@ -193,19 +207,17 @@ class Bench:
         return Outcome(FOUND if seen.failed else SURVIVED, seen.failed, count, took_s)
 
     def _found(self, fault: Fault, way: Way, files: list[str]) -> Seen:
-        passed: list[str] = []
+        passed: dict[str, float] = {}
         is_compiled = False
-        without = self._unsound(way)
+        unsound = self._unsound(way)
         for _ in range(FORGIVEN_MAX):
-            seen = self.run(files, way, fault, frozenset(without))
-            passed += seen.passed
+            seen = self.run(files, way, fault, frozenset(unsound | passed.keys()))
+            passed |= seen.passed
             is_compiled |= seen.compiled
             if not seen.failed or self._counts(seen, way, fault):
                 break
-            without.add(seen.failed)
-            file = seen.failed.partition("::")[0]
-            left = files[files.index(file) :] if file in files else files
-            files = left if "::" in seen.failed else left[1:]
+            unsound.add(seen.failed)
+            files = [file for file in files if file != seen.failed]  # one that cannot be collected
             seen = seen._replace(failed="")
         self._passed.update((way.name, test) for test in passed)
         return seen._replace(passed=passed, compiled=is_compiled)
@@ -257,6 +269,7 @@ class Bench:
             env = self._env(way, fault, folder)
             words = words_of(self.root, fault) if fault else set()
             watch = Watch(folder / "log", way, words, without)
+            watch.took_s = self.turns.took_s()
             child = os.fork()
             if not child:
                 run_here(self.root, env, tests, watch)
@@ -266,7 +279,10 @@ class Bench:
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
             end_those_left(place)
-            return seen_in(folder / "log")
+            seen = seen_in(folder / "log")
+        if way.name == AS_IS.name:
+            self.turns.keep(seen.passed)
+        return seen
 
     def _env(self, way: Way, fault: Fault | None, folder: Path) -> dict[str, str]:
         """With a fault, what is compiled is not kept: it may not be what its sources say."""
@@ -302,11 +318,11 @@ def run_here(root: Path, env: dict[str, str], tests: list[str], watch: Watch) ->
     sys.path.insert(0, str(root / "src"))
     asked = ["-x", "-q", "-m", "not slow", "-p", "no:cacheprovider", "-p", "no:xdist",
              f"--basetemp={watch.log.parent / 'tests'}"]  # fmt: skip
-    left = list(tests)
+    watch.files = [test.partition("::")[0] for test in tests]
     try:
-        for portion in PORTIONS:
-            some, left = left[:portion], left[portion:]
-            if some and pytest.main([*asked, *some], [watch]) not in (0, 5):
+        for watch.turn, some in rounds(tests):
+            left = [one for one in some if watch.may_have(one)]
+            if left and pytest.main([*asked, *left], [watch]) not in (0, 5):
                 break
         if sitecustomize.FAULT in env:
             watch.tell_compiled(sitecustomize.planted[0])
@@ -328,6 +344,8 @@ def seen_in(log: Path) -> Seen:
     failed = [(name, why) for what, name, why in lines if what == "failed"]
     if not failed and lines and lines[-1][0] == "begins":
         failed = [(lines[-1][1], LATE)]
-    passed = [name for what, name, _ in lines if what == "passed"]
+    bad = {name for name, _ in failed}
+    ended = {name: took_s for what, name, took_s in lines if what == "ended"}
+    passed = {name: took_s for name, took_s in ended.items() if name not in bad}
     compiled = any(what == "compiled" for what, *_ in lines)
     return Seen(*(failed[0] if failed else ("", "")), passed, compiled)

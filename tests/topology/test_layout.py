@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from innervate.topology import body_graph, from_patches
+from innervate.topology import body_graph, from_patches, layout
 from innervate.topology.free import free_graph
 from innervate.topology.layout import CABLED_PATCHES_MAX, GAP_MM, PITCH_MM, ROW_MM, cell_places
 
@@ -60,6 +60,17 @@ def test_where_the_side_is_taken_the_next_one_is():
     assert places == near((0, 0), (14, 0), (28, 0))
     ring = joined((0, E, 1, W), (1, E, 2, W), (2, E, 3, W), cells=4)
     assert [x for x, _ in ring] == pytest.approx([0, 14, 28, 42])
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_where_no_room_is_near_a_patch_stands_to_the_right_of_all(order):
+    """A cable in the middle of a patch of 27 x 27, another patch beside it."""
+    graph = from_patches([(27, 27, "Z"), (1, 1, "Z"), (1, 1, "Z")])
+    corners = {0: (0.0, 0.0), 1: (2 * 27 * PITCH_MM, 50.0)}
+    middle, alone = graph.end(13 * 27 + 13, E), graph.end(27 * 27 + 1, W)
+    known = {patch: corners[patch] for patch in order}
+    place = layout._beside(graph, known, 0, middle, alone)
+    assert place == (2 * 27 * PITCH_MM + GAP_MM, 0.0)
 
 
 def test_layers_of_a_free_graph_are_centred():

@@ -2,7 +2,9 @@
 
 from innervate.networks.radio.view.live import RadioState
 from innervate.networks.skin.view.live import SkinMap, SkinState
+from innervate.web.live import Live
 from innervate.web.live_map import Map
+from innervate.web.live_poll import Poller
 
 
 def cell(number, parent, paths):
@@ -91,3 +93,26 @@ def test_a_radio_team_is_a_ring_of_stations():
     gone = RadioState(where, {}).headline()
     assert (gone.level, gone.text) == ("no data", "None of the 3 stations answers.")
     assert len({tuple(place) for place in where.spread().round(3).tolist()}) == 3
+
+
+def test_who_answers_for_the_first_time_does_so_again_only_later(monkeypatch, tmp_path):
+    """Node 1 comes late, goes and comes back; each of it takes two questions to be noted."""
+    (tmp_path / "b.toml").write_text(
+        f'kind = "mesh"\nname = "b"\nnumber = 1\nnodes = 2\nsocket = "{tmp_path}/b.sock"\n'
+    )
+    both = {
+        i: {"kind": "mesh", "role": "node" if i else "gateway", "number": i, "gateway": 0,
+            "onward": [], "paths": [], "counters": {}, "neighbours": []}
+        for i in range(2)
+    }  # fmt: skip
+    alone = {0: both[0]}
+    answers = [alone, both, alone, alone, both, both]
+    monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(answers.pop(0)))
+    source = Live([tmp_path / "a.sock", tmp_path / "b.sock"])
+    while answers:
+        source._poll()
+    said = [one.what["text"] for one in source.history.after("log", 0, source.history.newest, 99)]
+    assert said == [
+        "b: nobody answers at its socket", "b answers", "b does not answer any more",
+        "b answers again",
+    ]  # fmt: skip

@@ -11,6 +11,7 @@ from innervate.sim.channel.world import Heap
 
 TIMER_80 = heap.key_of(80, heap.TIMER, 1, 0)
 END_50 = heap.key_of(50, heap.ENDS, 1, 0)
+READY_50 = heap.key_of(50, heap.READY, 0, 0)
 
 
 def world_of(*keys, told=0, now=50):
@@ -24,6 +25,8 @@ CASES = [
     ((TIMER_80,), 0, 80, False), ((), 0, heap.LAST >> heap.TIME_SHIFT, False),
     ((TIMER_80,), 1, 50, True), ((), 1, 50, True),
     ((END_50, TIMER_80), 1, 50, False),  # all edges of a moment come before
+    ((READY_50 - 1, TIMER_80), 1, 50, False), ((READY_50, TIMER_80), 1, 50, True),
+    ((READY_50, TIMER_80), 0, 50, False),
 ]  # fmt: skip
 
 
@@ -32,7 +35,9 @@ def test_the_channel_is_due_when_its_first_event_is_or_at_once_to_tell(keys, tol
     assert over_channel.due(world_of(*keys, told=told)) == when
 
 
-@pytest.mark.parametrize(("keys", "told", "when", "first"), [case for case in CASES if case[0]])
+@pytest.mark.parametrize(
+    ("keys", "told", "when", "first"), [case for case in CASES if case[0] or case[3]]
+)
 def test_its_next_event_is_handled_and_counted(monkeypatch, keys, told, when, first):
     done = []
 

@@ -21,8 +21,8 @@ CELL = (("dist", 2, 1, 65535, "hops", ""), ("count", 0, 3, 9, "x", ""),
 FRAME = (("dist", 0, 1, 300, "hops", ""), ("kind", 0, 0, 7, "kind", ""))
 
 
-def refuted():
-    """The values of a step that keeps all as it is, and breaks what cannot hold."""
+def kept():
+    """A step that keeps all as it is, and is to be refuted."""
     node = ast.parse("def idle(cell):\n    cell.count = cell.count\n").body[0]
     function = SimpleNamespace(name="idle", node=node, module="m", path="m.py", constants={},
                                calls={})  # fmt: skip
@@ -32,6 +32,12 @@ def refuted():
     stage.store[cell, "sq", None] = number(stage.terms, "cell.sq")
     step = stage.play("idle", "idle", [cell], [])
     step.goals = [Goal("nothing holds", stage.terms.false)]
+    return step
+
+
+def refuted():
+    """The values that break what cannot hold."""
+    step = kept()
     (found,) = check(step, simple=theories.simple(step), reach=False).refuted
     return found.values
 
@@ -44,5 +50,9 @@ def test_a_value_that_does_not_matter_is_the_plainest_that_it_can_be(name, value
     assert refuted()[name] == value
 
 
-def test_numbers_that_wrap_are_few_ahead_of_the_oldest():
+def test_numbers_that_wrap_are_less_than_eight_ahead_of_the_oldest():
+    step = kept()
+    (ahead,) = [value.args[1] for value in step.before.values() if value.op == "wrap"]
+    assert any(wish is step.terms.less(ahead, step.terms.number(8))
+               for wish in theories.simple(step))  # fmt: skip
     assert refuted()["cell.sq.ahead"] < 8

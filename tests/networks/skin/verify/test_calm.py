@@ -1,5 +1,6 @@
 """What a fair schedule starts from: a state, and those that the search may have left out."""
 
+from functools import partial
 from itertools import chain, combinations
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from innervate.networks.skin.verify import calm, fair
 from innervate.networks.skin.verify.row import IS_PARENT
+from innervate.networks.skin.verify.system import system_of
 from innervate.verify import search as s
 from tests.networks.skin.verify.tiny import PC, Tiny
 
@@ -86,6 +88,24 @@ def test_the_last_beacon_of_each_direction_may_have_been_lost(loss, queues, more
         lost = max(queues, key=lambda way: tiny.way(*way))
         assert tiny.queue(*lost) == [BEACON, OTHER][: queues[lost] - 1]
         assert tiny.budget()[0] == loss - 1
+
+
+def test_what_comes_before_a_round_is_told_by_a_number():
+    """A state from which one may forget, and one whose beacon may have been lost."""
+    play = fair.build(system_of())[-1]
+
+    def played(tiny, which):
+        kept_of = partial(play, nodes=which, begin=0, end=1)
+        return kept(tiny, lambda world, source, target, _: kept_of(world, source, target))
+
+    old, late = waiting(5, 4), Tiny(updates="periodic", lean=False, faults={"loss": 1})
+    late.queue(0, 1, BEACON)
+    for tiny, which, insert in (
+        (old, fair.EXPIRY, calm.insert_expiring), (late, fair.LOST, calm.insert_lost),
+    ):  # fmt: skip
+        found = played(tiny, which)
+        assert len(found[0]) == 2
+        assert found == kept(tiny, insert)
 
 
 def test_a_table_that_grows_still_knows_its_states():
