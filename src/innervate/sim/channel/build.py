@@ -157,7 +157,6 @@ def _set_run(world: r.World, plan: Any, of: Records, kept: Recorded) -> None:
         packet_limit=limit,
         trail_limit=len(world.trail) if kept.trail else 0,
         broken_at=-1,
-        hurt=plan.stations,
     )
     beyond = OUTBOX * plan.stations * BATCH  # what a batch of events can add
     put(world.run, 0, tap_limit=max(0, len(world.taps) - beyond))
