@@ -11,7 +11,12 @@ from pathlib import Path
 
 import pytest
 
-pytest_plugins = ["tests.fixtures.papers", "tests.fixtures.plots", "tests.fixtures.scenarios"]
+pytest_plugins = [
+    "tests.fixtures.disk",
+    "tests.fixtures.papers",
+    "tests.fixtures.plots",
+    "tests.fixtures.scenarios",
+]
 HERE = Path(__file__).parent
 REAL_TIME = {"browser", "live", "sweeping"}  # folders of tests with processes and sockets
 NEEDS = {

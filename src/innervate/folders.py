@@ -51,8 +51,11 @@ def refused(found: list[checks.Finding]) -> list[checks.Finding]:
 
 
 def is_one(folder: Path) -> bool:
-    """True if a folder is a network by its looks."""
-    return folder.name.isidentifier() and (folder / NETWORK_FILE).is_file()
+    """True if a folder is a network by its looks; none has a name too long for a folder."""
+    try:
+        return folder.name.isidentifier() and (folder / NETWORK_FILE).is_file()
+    except OSError:
+        return False
 
 
 def load(folder: Path) -> Any:

@@ -103,6 +103,15 @@ def test_new_keeps_what_is_there(sh):
     assert 'name = "four"' in Path("four.toml").read_text()
 
 
+@pytest.mark.parametrize("words", [("new", "mesh", "far.toml"), ("schema", "--out", "far.toml")])
+def test_what_cannot_be_written_whole_is_not_there(sh, full_disk, words):
+    with full_disk():
+        assert sh(*words) == 2
+    assert sh.err.startswith("innervate: far.toml cannot be written: ")
+    assert not Path("far.toml").exists()
+    assert sh(*words) == 0
+
+
 def test_new_takes_a_measured_network(sh):
     Path("sub").mkdir()
     Path("links.txt").write_text("A B 0.9 0.8\nB C 0.7 0.9\nC D 0.2\n")

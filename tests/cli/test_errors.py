@@ -122,6 +122,22 @@ def test_interrupted_runs_end_with_130(sh, monkeypatch):
     assert Path("runs/four-1/summary.json").exists()
 
 
+@pytest.mark.parametrize("words", [
+    ("sweep", "four.toml", "--repeat", "2.5"), ("live", "command", "pc", "3.7"),
+    ("live", "command", "pc", "3", "0x1.8"), ("new", "mesh", "--nodes", "20.5"),
+])  # fmt: skip
+def test_half_a_number_is_not_rounded(sh, words):
+    assert sh(*words) == 2
+    assert f'unable to convert "{words[-1]}" into int' in sh.err
+
+
+def test_numbers_may_begin_with_0_and_be_written_in_hex(sh, monkeypatch):
+    monkeypatch.setenv("INNERVATE_RUN", str(Path("nobody").absolute()))
+    for code in ("007", "0x1F"):
+        assert sh("live", "command", "pc", code) == 2
+        assert 'no node "pc" runs here' in sh.err
+
+
 def test_live_means_nodes_whatever_a_folder_is_called(sh, monkeypatch):
     monkeypatch.setenv("INNERVATE_RUN", str(Path("nobody").absolute()))
     assert sh("watch", "live") == 2

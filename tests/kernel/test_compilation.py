@@ -146,6 +146,20 @@ def test_what_has_references_has_them_counted(own_cache, way):
     assert sys.getrefcount(array) == before
 
 
+def twice(number):
+    return 2 * number
+
+
+def test_what_cannot_be_kept_runs_all_the_same(tmp_path, monkeypatch, full_disk):
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    monkeypatch.setattr(compilation, "_not_kept", [])
+    made = compilation.compiled_as_one(twice)
+    with full_disk():
+        assert made(21) == 42
+    compilation.mark_compiled("mine")
+    assert not compilation.is_compiled("mine")  # the next process says that it compiles
+
+
 MAKES_ARRAYS = """
 import numpy as np
 from numba.core.runtime import rtsys

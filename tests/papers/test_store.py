@@ -1,6 +1,9 @@
 import json
 from concurrent.futures import ThreadPoolExecutor
 
+import pytest
+
+from innervate.papers.errors import PapersError
 from innervate.papers.store import Store, stamp
 
 
@@ -11,6 +14,17 @@ def test_results_come_back(tmp_path):
     assert store.values["a"] == [1, None, {"x": 2.5}]
     assert Store(path, "now").values == {"a": [1, None, {"x": 2.5}]}
     assert store.missing(["a", "b"]) == ["b"]
+
+
+def test_a_full_disk_costs_no_result_that_was_kept(tmp_path, full_disk):
+    path = tmp_path / "results.jsonl"
+    store = Store(path, "now")
+    store.put("a", 1)
+    with full_disk(), pytest.raises(PapersError, match=r"results\.jsonl: .*what is done is kept"):
+        store.put("b", 2)
+    assert store.missing(["a", "b"]) == ["b"]
+    store.put("b", 3)
+    assert Store(path, "now").values == {"a": 1, "b": 3}
 
 
 def test_results_of_other_sources_are_not_used(tmp_path):

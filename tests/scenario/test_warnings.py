@@ -90,6 +90,8 @@ CASES = [
         for rounds in (f"{grid(20)}[protocol]\nfailover = '{rule}'\ncollect_s = 2.0\n",)
     ),
     ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),
+    ("mesh", "outside the fence from the beginning: n1",
+     *(f"{FENCE}[[robot]]\nnode = 1\nwaypoints = [[{at}]]" for at in ("1, 8", "4, 4"))),
     ("mesh", "flow.0 sends nothing", "duration_s = 6\n" + FLOW, "duration_s = 60\n" + FLOW),
 ]  # fmt: skip
 
@@ -122,7 +124,7 @@ def texts_of(*functions):
 def test_every_warning_has_a_case():
     left = texts_of(
         skin._touch, skin._start_up, skin._load, radio.warnings, mesh.warnings, mesh._thin,
-        mesh._distribution,
+        mesh._distribution, mesh._outside,
     )  # fmt: skip
     for kind, words, weak, _ in CASES:
         (found,) = (text for text in said(kind, weak) if words in text)

@@ -6,6 +6,7 @@ import re
 import statistics
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -126,6 +127,13 @@ def test_elsewhere_a_line_comes_now_and_then(monkeypatch, capsys):
             table(Conducted())
     lines = capsys.readouterr().err.splitlines()
     assert lines == ["mine: 30 of 100 runs done, 2 failed, about 4 min left"] * 2
+
+
+def test_what_is_kept_is_said_only_of_what_is_done():
+    table = LiveTable("mine", ())
+    assert table.kept(Path("there")) == "nothing is done yet"
+    table(Conducted())
+    assert table.kept(Path("there")).startswith("30 of 100 runs done, 2 failed; they are kept in ")
 
 
 @pytest.mark.parametrize(("left", "words"), [

@@ -35,7 +35,7 @@ from innervate.cli.options import (
     SweepOptions,
     VerifyOptions,
 )
-from innervate.cli.seeds import Seed, Sets
+from innervate.cli.seeds import Seed, Sets, Whole
 from innervate.network import first
 
 HELP = """Describe and simulate the networks inside and between robots.
@@ -265,7 +265,7 @@ def firmware(
     /,
     *settings: str,
     out: Path = Path("lib"),
-    nodes: int | None = None,
+    nodes: Whole | None = None,
     prefix: str = "",
     sealed: Annotated[bool, Parameter(negative="")] = False,
     json: Annotated[bool, Parameter(negative="")] = False,

@@ -12,21 +12,22 @@ from typing import Any
 from innervate import scenario
 from innervate.cli.errors import UserError
 from innervate.cli.new_options import MEASURED_DEFAULTS, MeasuredOptions
+from innervate.export import files
 from innervate.network import networks
 
 
 def scenarios(as_json: bool) -> int:
     """List the bundled scenarios, a line each: the first sentence of the file's first comment."""
-    files = scenario.bundled()
+    known = scenario.bundled()
     if as_json:
         listed = [
             {"name": name, "shows": _first_sentence(path), "path": str(path)}
-            for name, path in files.items()
+            for name, path in known.items()
         ]
         print(json.dumps(listed, indent=2, ensure_ascii=False))
         return 0
-    width = max(len(name) for name in files)
-    for name, path in files.items():
+    width = max(len(name) for name in known)
+    for name, path in known.items():
         print(f"{name:<{width}}  {_first_sentence(path)}")
     return 0
 
@@ -54,13 +55,9 @@ def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAU
     if file is None:
         print(text, end="")
         return 0
-    try:
-        with file.open("x", encoding="utf-8") as target:
-            target.write(text)
-    except FileExistsError:
-        raise UserError(f"{file} is there already; choose another name or move it away") from None
-    except OSError as error:
-        raise UserError(f"{file} cannot be written: {error.strerror}") from None
+    if file.exists() or file.is_symlink():
+        raise UserError(f"{file} is there already; choose another name or move it away")
+    files.write_text(file, text)
     if found:
         print(found)
     print(f"Written: {file}. Check it with `innervate check {file}`, run it with "
@@ -112,10 +109,7 @@ def schema(out: Path | None) -> int:
     if out is None:
         print(text, end="")
         return 0
-    try:
-        out.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UserError(f"{out} cannot be written: {error.strerror}") from None
+    files.write_text(out, text)
     print(f"Written: {out}. Editors take it with the line `#:schema {out.name}` on top of a "
           "scenario beside it.")  # fmt: skip
     return 0

@@ -9,6 +9,7 @@ from cyclopts import App, Parameter
 
 from innervate.cli import errors
 from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, Engine, SendOptions, UpOptions
+from innervate.cli.seeds import Whole
 
 Json = Annotated[bool, Parameter(negative="")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
@@ -92,7 +93,7 @@ def live_status(*nodes: str, json: Json = False) -> int:
 @live_app.command(name="send")
 def live_send(
     node: str,
-    to: int,
+    to: Whole,
     text: Text,
     /,
     *,
@@ -120,11 +121,11 @@ def live_send(
 @live_app.command(name="command")
 def live_command(
     node: str,
-    code: int,
-    value: int = 0,
+    code: Whole,
+    value: Whole = 0,
     /,
     *,
-    cell: int | None = None,
+    cell: Whole | None = None,
     json: Json = False,
 ) -> int:
     """Have the PC of a skin send a command down to its cells, over the children of every cell.
@@ -211,8 +212,8 @@ def live_medium(
     address: str = "127.0.0.1:4600",
     /,
     *,
-    slot_us: int = 10_000,
-    turnaround_us: int = 5_000,
+    slot_us: Whole = 10_000,
+    turnaround_us: Whole = 5_000,
 ) -> int:
     """Run a radio channel: stations whose files name its address hear each other on it.
 
@@ -236,8 +237,8 @@ def live_modem(
     address: str = "127.0.0.1:4600",
     /,
     *,
-    number: int = 0,
-    baud: int = 1_000_000,
+    number: Whole = 0,
+    baud: Whole = 1_000_000,
 ) -> int:
     """Put a board at a serial line on a radio channel of `live medium`, as one of its stations.
 

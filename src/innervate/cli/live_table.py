@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Self
 from innervate.analysis.intervals import mean_interval
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from innervate.sweeping.scheduler import Scheduler, State
 
 LINE_EVERY_S = 10.0
@@ -27,12 +29,18 @@ class LiveTable:
     """
 
     def __init__(self, name: str, measures: tuple[str, ...]) -> None:
-        self.words = "nothing is done yet"
+        self.words = ""
         self._name = name
         self._measures = measures
         self._terminal = sys.stderr.isatty()
         self._live: Any = None
         self._last = time.monotonic()
+
+    def kept(self, folder: Path) -> str:
+        """What is done when it is stopped, and where that is."""
+        if not self.words:
+            return "nothing is done yet"
+        return f"{self.words}; they are kept in {folder}, and the same command goes on from there"
 
     def __enter__(self) -> Self:
         if self._terminal:

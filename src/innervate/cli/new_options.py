@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from innervate.cli.seeds import Whole
+
 
 @dataclass(frozen=True)
 class OwnOptions:
@@ -50,7 +52,7 @@ class MeasuredOptions:
     types: Annotated[list[str] | None, Parameter(consume_multiple=True)] = None
     min_tq: float | None = None
     around: str | None = None
-    nodes: int | None = None
+    nodes: Whole | None = None
 
     @property
     def wanted(self) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from innervate.cli.seeds import Seed, Sets
+from innervate.cli.seeds import Seed, Sets, Whole
 
 Flag = Annotated[bool, Parameter(negative="")]
 Texts = Annotated[list[str] | None, Parameter(negative="")]
@@ -72,13 +72,13 @@ class SweepOptions:
 
     vary: Texts = None
     set_: Sets = None
-    repeat: int | None = None
+    repeat: Whole | None = None
     seed: Seed = None
     until: Texts = None
-    batch: int | None = None
+    batch: Whole | None = None
     paired: Texts = None
     out: Path | None = None
-    workers: int | None = None
+    workers: Whole | None = None
     engine: str = "processes"
     dask: str = ""
     show: Texts = None
@@ -143,10 +143,10 @@ class SizeOptions:
     reach: float | None = None
     loss: float = 1.0
     recovery: float = 50.0
-    repeat: int = 20
+    repeat: Whole = 20
     seed: Seed = None
     out: Path | None = None
-    workers: int | None = None
+    workers: Whole | None = None
     dask: str = ""
 
 
@@ -165,7 +165,7 @@ class PageOptions:
     """
 
     host: str = "127.0.0.1"
-    port: int = 0
+    port: Whole = 0
     open_: Flag = False
 
 
@@ -363,18 +363,18 @@ class VerifyOptions:
     rule: str = ""
     updates: str = "all"
     graph: str = "all"
-    cells: int = 0
+    cells: Whole = 0
     budget: str = ""
     prompt: Flag = False
     liveness: bool = True
-    starts: int = 0
-    states: int = 0
-    walks: int = 0
+    starts: Whole = 0
+    states: Whole = 0
+    walks: Whole = 0
     memory: str = "2G"
     random: Flag = False
     mutants: Flag = False
     seed: Seed = None
-    count: int = 0
+    count: Whole = 0
     reduce: bool = True
     plain: Flag = False
 

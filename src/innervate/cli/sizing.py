@@ -33,8 +33,7 @@ def size(robot: str, options: SizeOptions) -> int:
             )  # fmt: skip
         except KeyboardInterrupt:
             table.close()
-            errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "
-                       "command goes on from there")  # fmt: skip
+            errors.say(f"interrupted; {table.kept(folder)}")
             return errors.INTERRUPTED
     for line in answer.lines():
         print(line)

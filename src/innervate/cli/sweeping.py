@@ -32,8 +32,7 @@ def sweep(file: str, options: SweepOptions) -> int:
             )
         except KeyboardInterrupt:
             table.close()
-            errors.say(f"interrupted; {table.words}; they are kept in {folder}, and the same "
-                       "command goes on from there")  # fmt: skip
+            errors.say(f"interrupted; {table.kept(folder)}")
             return errors.INTERRUPTED
     for line in result_lines(done, wanted):
         print(line)

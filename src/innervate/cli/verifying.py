@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate.cli import errors
 from innervate.cli.progress import Display
+from innervate.export import files
 from innervate.network import Network, find, networks, use
 
 if TYPE_CHECKING:
@@ -78,14 +79,14 @@ def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path 
 
 def _write(network: Network, case: Case, stem: Path, quiet: bool) -> None:
     """Scenario, story and picture of a counterexample."""
-    stem.parent.mkdir(parents=True, exist_ok=True)
+    files.make_folder(stem.parent)
     story, made = case.story, []
     if case.play is not None:
         story.scenario = case.play()
     if story.scenario:
-        stem.with_suffix(".toml").write_text(story.scenario, encoding="utf-8")
+        files.write_text(stem.with_suffix(".toml"), story.scenario)
         made.append(".toml (innervate run plays it)")
-    stem.with_suffix(".txt").write_text("\n".join([*story.lines(), ""]), encoding="utf-8")
+    files.write_text(stem.with_suffix(".txt"), "\n".join([*story.lines(), ""]))
     made.append(".txt")
     if network.has("counterexample"):
         network.counterexample(story, stem.with_suffix(".svg"))

@@ -59,6 +59,19 @@ def write_text(path: Path, text: str) -> None:
         file.write(text.encode())
 
 
+def make_folder(path: Path) -> None:
+    """Make a folder to write into, and those above it, if they are not there.
+
+    Raises:
+        ExportError: it cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        why = error.strerror or type(error).__name__
+        raise ExportError(f"{path} cannot be written: {why}; choose another place") from None
+
+
 def _umask() -> int:
     mask = os.umask(0o077)
     os.umask(mask)

@@ -236,16 +236,28 @@ def write(files: Files, folder: Path) -> dict[str, int]:
     """Write a library into a folder; lines of each file, by path.
 
     Raises:
-        FirmwareError: the folder has something else in it.
+        FirmwareError: the folder has something else in it, or a file cannot be written.
     """
     named = f"{files.library.prefix}.h"
     if folder.exists() and not (folder / named).exists() and any(folder.iterdir()):
         raise FirmwareError(f"{folder}: not empty, and holds no {named}; name another folder")
     for name, text in files.texts.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+        try:
+            _put(folder / name, text)
+        except OSError as error:
+            raise FirmwareError(f"{folder / name} cannot be written: {error.strerror}") from None
     return {name: len(text.splitlines()) for name, text in files.texts.items()}
+
+
+def _put(path: Path, text: str) -> None:
+    """Whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_name(path.name + ".part")
+    try:
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(path)
+    finally:
+        fresh.unlink(missing_ok=True)
 
 
 def _part(place: str) -> Any:

@@ -28,6 +28,7 @@ CACHE_FOLDERS_MAX = 8
 
 _registered: set[Callable[..., Any]] = set()
 _foreign: set[Path] = set()  # files of other packages that the next loop is compiled from
+_not_kept: list[str] = []  # what was compiled and could not be written
 
 
 def register(*modules: ModuleType, hot: bool = True) -> None:
@@ -138,7 +139,7 @@ def _forget_old(keep: Path) -> None:
 
 def mark_compiled(name: str) -> None:
     """Remember in the cache folder that a loop is compiled, unless it came with the toolkit."""
-    if ready.is_ready(name):
+    if ready.is_ready(name) or _not_kept:
         return
     import numba
 
@@ -205,7 +206,11 @@ def _compiled(function: Callable[..., Any], way: Callable[[str], Any]) -> Callab
     def compile_once(signature: Any) -> Any:
         known = hashlib.blake2b(f"{name} {signature}".encode(), digest_size=10).hexdigest()
         with alone(folder / f"{known}.lock"), way(function.__qualname__):
-            return compile_or_load(signature)
+            try:
+                return compile_or_load(signature)
+            except OSError:  # compiled it is; on a full disk it cannot be kept
+                _not_kept.append(function.__qualname__)
+                return compile_or_load(signature)
 
     jitted.compile = compile_once
     return jitted

@@ -7,6 +7,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from innervate.papers.errors import PapersError
 from innervate.trace.sources import stamp
 
 __all__ = ["Store", "stamp"]
@@ -46,11 +47,22 @@ class Store:
                 self.stamps[key] = mark
 
     def put(self, key: str, value: Any) -> None:
-        """Keep a result; safe to call from several threads."""
+        """Keep a result; safe to call from several threads.
+
+        Raises:
+            PapersError: it cannot be written.
+        """
         line = json.dumps({"key": key, "stamp": self.stamp, "value": value})
         with self._lock:
-            with self.path.open("a", encoding="utf-8") as file:
-                file.write(("" if self._whole else "\n") + line + "\n")
+            try:
+                with self.path.open("a", encoding="utf-8") as file:
+                    file.write(("" if self._whole else "\n") + line + "\n")
+            except OSError as error:
+                self._whole = False  # perhaps a part of the line is there
+                raise PapersError(
+                    f"{self.path}: {error.strerror or error}; give the same command again when "
+                    "there is room, what is done is kept"
+                ) from None
             self._whole = True
             # As it will be read back: lists for tuples, texts for keys.
             self.values[key] = json.loads(line)["value"]

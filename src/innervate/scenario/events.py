@@ -41,9 +41,9 @@ def in_time(
     yield from in_order(key, (first, last), names)
     if not first >= 0:
         yield key, f"{name} must be a number of seconds from 0, not {first:g}"
-    if round(1e6 * last) > round(1e6 * duration_s):
+    if micros(last) > micros(duration_s):
         yield key, f"{name} = {last:g} is outside the run; duration_s is {duration_s:g}"
-    if round(1e6 * last) == round(1e6 * duration_s):
+    if micros(last) == micros(duration_s):
         message = f"{name} = {last:g} is the end of the run, so it would never happen"
         yield key, f"{message}; make it earlier, or duration_s longer"
 

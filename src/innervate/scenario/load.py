@@ -176,8 +176,7 @@ def _check_kind(source: Source, kind: object) -> str:
     except NetworkError as error:
         raise ScenarioError(str(error)) from None
     one = alternatives([f'"{name}"' for name in networks()])
-    shown = f'"{kind}"' if isinstance(kind, str) else str(kind)[:40]
-    raise source.error(("kind",), f"kind must be {one}, not {shown}")
+    raise source.error(("kind",), f"kind must be {one}, not {shown(kind)}")
 
 
 def _copy(value: Any) -> Any:

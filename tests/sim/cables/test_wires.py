@@ -242,6 +242,8 @@ OFF, ON, OTHER, BACK = ((KILL, 0), (REVIVE, 0), (KILL, 1), (REVIVE, 1))
         # A cable that is not cut cannot be put back, whoever is off at its ends.
         ([OFF, RESTORE], True), ([OFF, OTHER, RESTORE, RESTORE], True),
         ([OFF, RESTORE, ON], False), ([OFF, RESTORE, ON, OFF], True),
+        # One that is cut twice is put back once.
+        ([CUT, CUT, RESTORE], False), ([CUT, OFF, CUT, RESTORE, ON], False),
         ([CUT, OFF, RESTORE, RESTORE], True), ([CUT, OFF, RESTORE, RESTORE, ON], False),
     ],
 )  # fmt: skip

@@ -91,6 +91,8 @@ def test_what_is_done_to_a_node_depends_on_whether_it_is_on(do, action, state):
     assert world.due == [40, 50, 60, *([NEVER] * 3 if has_begun else [70, 80, 90])]
     if has_begun:
         assert world.radios[1].state == ALIVE
+    elif (action, state) == (KILL, OFF):
+        assert world.radios[1].state == DEAD  # it is not switched on when its time comes
 
 
 @pytest.mark.parametrize(

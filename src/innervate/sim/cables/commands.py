@@ -25,7 +25,8 @@ def obey(world, do, command):
         for node in range(world.run[0].nodes):
             queue.insert(world.wheel, node, world.starts[node].phase)
     elif action == CUT:
-        change_link(world, command.end, 1)
+        if not is_cut(world, command.end):
+            change_link(world, command.end, 1)
     elif action == RESTORE:
         if is_cut(world, command.end):
             change_link(world, command.end, -1)

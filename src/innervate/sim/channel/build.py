@@ -157,7 +157,6 @@ def _set_run(world: r.World, plan: Any, of: Records, kept: Recorded) -> None:
         packet_limit=limit,
         trail_limit=len(world.trail) if kept.trail else 0,
         broken_at=-1,
-        hurt=plan.stations,
     )
     beyond = OUTBOX * plan.stations * BATCH  # what a batch of events can add
     put(world.run, 0, tap_limit=max(0, len(world.taps) - beyond))
@@ -181,9 +180,9 @@ def _set_events(world: r.World, plan: Any) -> None:
     for i in range(plan.stations):
         if len(plan.arrivals[i]):
             push(world.heap, key_of(int(plan.arrivals[i][0]), OFFER, i, 0))
-    put(world.commands, len(plan.faults), action=BEGIN)
-    push(world.heap, key_of(0, COMMAND, 0, len(plan.faults)))
-    for index, fault in enumerate(plan.faults):
-        put(world.commands, index, action=fault.action, node=fault.node, value=fault.value)
-        put(world.commands, index, index=fault.index)
-        push(world.heap, key_of(fault.at_us, COMMAND, 0, index))
+    put(world.commands, 0, action=BEGIN)  # before whatever else is done at time 0
+    push(world.heap, key_of(0, COMMAND, 0, 0))
+    for place, fault in enumerate(plan.faults, 1):
+        put(world.commands, place, action=fault.action, node=fault.node, value=fault.value)
+        put(world.commands, place, index=fault.index)
+        push(world.heap, key_of(fault.at_us, COMMAND, 0, place))

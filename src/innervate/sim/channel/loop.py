@@ -132,7 +132,6 @@ def finish(world, do, node, time, now, handler, port):
             queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
     if radio.leaving == 2 and radio.alive and not radio.deaf:
         radio.alive = 0
-        run.hurt += 1
 
 
 def offer(world, do, node, time):
@@ -183,7 +182,6 @@ def switch_on(world, do, node, time, cause):
     radio = world.radios[node]
     radio.alive = 1
     radio.leaving = 0
-    world.run[0].hurt -= 1
     radio.candidate = NEVER
     radio.cd, radio.voc, radio.noted = 0, 0, 0
     radio.deaf = 0  # it died in mid-frame, and its radio starts anew, too
@@ -246,7 +244,6 @@ def obey(world, do, index, time):
         switch_on(world, do, node, time, LATE)
     elif command.action == KILL and radio.alive:
         radio.alive = 0
-        run.hurt += 1
         medium.silence(world, node, time)
     elif command.action == RETIRE and radio.alive:
         radio.leaving = max(radio.leaving, 1)

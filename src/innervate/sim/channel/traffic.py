@@ -61,12 +61,28 @@ def note_received(world, node, frame, _time):
             run.again += 1
 
 
+def lacking(world, node, handle):
+    """How many who are on and hear a station did not receive a packet of it."""
+    run = world.run[0]
+    count = 0
+    for k in range(world.degree[node]):
+        other = world.order[node * run.stations + k]
+        newest = world.last[other * run.stations + node]
+        has_it = newest != NEVER and (newest - handle) & MASK16 < HALF16
+        if world.radios[other].alive and not has_it:
+            count += 1
+    return count
+
+
 def note_delivered(world, node, handle, time):
-    """A station takes a packet for delivered; was it?"""
+    """A station takes a packet for delivered; was it?
+
+    Listeners are all who received it, and who else is on by now within reach.
+    """
     run, radio = world.run[0], world.radios[node]
     place = node * RING + (handle & (RING - 1))
-    listeners = world.degree[node] - run.hurt
     receivers = world.got[place]
+    listeners = receivers + lacking(world, node, handle)
     if receivers == 0:
         run.silent += 1
     elif receivers < listeners:

@@ -10,7 +10,7 @@ RUN = (
     "stations", "slot_us", "ta_us", "loss", "rng", "saturated", "forced", "per_turn", "wanted",
     "completed", "checks", "keep", "watchful", "status", "fingerprint", "handled", "decoded",
     "garbled", "now", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
-    "trail_limit", "taps", "tap_limit", "hurt",
+    "trail_limit", "taps", "tap_limit",
     "offers", "dropped", "silent", "partial", "again",
     "exclusive", "data_until", "oracle", "full_duplex", "period",
     "broken", "broken_at", "broken_node",

@@ -10,7 +10,7 @@ from innervate.dialect.arith import MASK30
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.field import calls, medium, powers, queue
 from innervate.sim.field.queue import RANK_SHIFT, STATION_SHIFT, STATIONS_MAX, TIME_SHIFT, WHAT_MASK
-from innervate.sim.field.states import ALIVE, OFF
+from innervate.sim.field.states import ALIVE, DEAD, OFF
 from innervate.sim.status import (
     BUDGET,
     DONE,
@@ -46,6 +46,8 @@ def obey(world, do, index, time):
     if (action == KILL or action == RESTART) and state == ALIVE:
         do.power_off(world, do, node, time)
         medium.die(world, node)
+    elif action == KILL and state == OFF:
+        world.radios[node].state = DEAD  # and it is not switched on at its time, either
     if action == BOOT and state == OFF:
         switch_on(world, do, node, time, COLD)
     elif (action == REVIVE and state != ALIVE) or action == RESTART:

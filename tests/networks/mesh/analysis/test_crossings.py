@@ -47,6 +47,13 @@ def test_what_nobody_noticed():
     assert crossed(points=0) == []
 
 
+def test_who_begins_outside_has_crossed_at_the_beginning():
+    walk = Walk(ROBOT, ((2 * S, 1200, 500), (4 * S, 1000, 500), (6 * S, 800, 500)))
+    (found,) = crossed([(0, ROBOT, CROSS, ROBOT)], walks=[walk])
+    assert (found.crossed_us, found.back_us, found.raised_us) == (0, 4 * S, 0)
+    assert found.overrun_m == pytest.approx(2.0)
+
+
 RAISED = [
     ([(SEEN - 1, ROBOT, CROSS, ROBOT)], None, None),
     ([(SEEN, WITNESS, CROSS, ROBOT), (5 * S, ROBOT, CROSS, ROBOT)], (SEEN, WITNESS), None),

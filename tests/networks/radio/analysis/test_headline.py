@@ -34,6 +34,15 @@ def test_all_is_well():
     assert of(offered=1, delivered=1)[1] == "The packet was delivered."
 
 
+@pytest.mark.parametrize(("action", "text"), [
+    (KILL, "Robot 1 is off with 1 packet not sent; all 3 packets were delivered."),
+    (LEAVE, "All 3 packets were delivered."),
+])  # fmt: skip
+def test_what_is_done_at_the_very_beginning_is_done(action, text):
+    done = run(4, faults=[RadioFault(0, action, 1, 0, 0)], plain=True, duration_s=1.0)
+    assert summarize(done)["headline"]["text"] == text
+
+
 @pytest.mark.parametrize(
     ("there", "absent", "level", "text", "nodes"),
     [

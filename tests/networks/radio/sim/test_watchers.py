@@ -19,7 +19,8 @@ COUNTS = ("silent", "partial", "again", "completed")
 def world():
     """Four stations that all hear each other; station 0 has made a packet."""
     made = build.build(radio_plan(4), True)
-    made.run[0].hurt = 0
+    for radio in made.radios:
+        radio.alive = 1
     assert traffic.make(made, 0, 1_000) == 0
     return made
 
@@ -33,28 +34,45 @@ def counted(world):
     return {name: getattr(world.run[0], name) for name in COUNTS if getattr(world.run[0], name)}
 
 
-# Which stations received it, how many are off, and what is counted when its sender has it proved.
+# Which stations received it, who is off, and what is counted when its sender has it proved.
 PROVED = [
-    ([], 0, {"silent": 1, "completed": 1}),
-    ([1], 0, {"partial": 1, "completed": 1}),
-    ([1, 2], 0, {"partial": 1, "completed": 1}),
-    ([1, 2, 3], 0, {"completed": 1}),
-    ([1, 2], 1, {"completed": 1}),
-    ([], 3, {"silent": 1, "completed": 1}),
-    ([1, 2, 3, 3], 0, {"again": 1, "completed": 1}),
-    ([1, 1], 0, {"again": 1, "partial": 1, "completed": 1}),
+    ([], (), {"silent": 1, "completed": 1}),
+    ([1], (), {"partial": 1, "completed": 1}),
+    ([1, 2], (), {"partial": 1, "completed": 1}),
+    ([1, 2, 3], (), {"completed": 1}),
+    ([1, 2], (3,), {"completed": 1}),
+    ([], (1, 2, 3), {"silent": 1, "completed": 1}),
+    ([1, 2, 3, 3], (), {"again": 1, "completed": 1}),
+    ([1, 1], (), {"again": 1, "partial": 1, "completed": 1}),
+    # Who has it and is off since makes up for nobody who lacks it.
+    ([1, 2], (2,), {"partial": 1, "completed": 1}),
+    ([1, 2, 3], (2,), {"completed": 1}),
 ]
 
 
 @pytest.mark.parametrize(("who", "off", "expected"), PROVED)
 def test_who_received_what_is_taken_for_delivered_is_counted(world, who, off, expected):
-    world.run[0].hurt = off
     for node in who:
         hears(world, node)
+    for node in off:
+        world.radios[node].alive = 0
     traffic.note_delivered(world, 0, 0, 3_000)
     assert counted(world) == expected
     row = world.packets[0]
-    assert (row.node, row.receivers, row.listeners) == (0, len(set(who)), 3 - off)
+    listeners = 3 - len(set(off) - set(who))
+    assert (row.node, row.receivers, row.listeners) == (0, len(set(who)), listeners)
+
+
+def test_who_is_off_and_hidden_is_missed_by_nobody():
+    plan = radio_plan(4)
+    plan.delays_us[0][3] = plan.delays_us[3][0] = -1
+    made = build.build(plan, True)
+    for node in range(3):
+        made.radios[node].alive = 1
+    assert traffic.make(made, 0, 1_000) == 0
+    hears(made, 1)
+    traffic.note_delivered(made, 0, 0, 3_000)
+    assert counted(made) == {"partial": 1, "completed": 1}
 
 
 @pytest.mark.parametrize(

@@ -75,6 +75,25 @@ def test_events_of_one_moment_share_what_came_of_it():
     assert found["headline"]["level"] == DOWN
 
 
+def test_nobody_is_cut_off_for_no_time_between_two_events_of_one_moment():
+    back = {"at_s": 0.5, "action": "restore", "interface": 0}
+    found = summary(CUT_0, back, columns=4, rows=4)
+    assert [one["cut_off"] for one in found["recoveries"]] == [0, 0]
+    assert found["cut_off"]["most"] == 0
+    assert found["headline"]["level"] == OK
+    again = [{**event, "at_s": 0.7} for event in (back, CUT_0)]
+    found = summary(CUT_0, *again, columns=4, rows=4)
+    assert [one["cut_off"] for one in found["recoveries"]] == [16, 0, 0]
+    assert found["cut_off"]["since_s"] == 0.5
+
+
+def test_a_cable_that_is_cut_twice_is_put_back_once():
+    twice = [CUT_0, {**CUT_0, "at_s": 0.6}, {"at_s": 0.7, "action": "restore", "interface": 0}]
+    found = summary(*twice, columns=4, rows=4)
+    assert found["recoveries"][-1]["joined_again"] == 16
+    assert found["cut_off"]["cells"] == 0
+
+
 def test_a_later_event_does_not_hide_who_is_cut_off_already():
     later = {"at_s": 0.7, "action": "cut", "cell": {"row": 0, "column": 5, "port": "E"}}
     found = summary({"at_s": 0.5, "action": "cut", "cell": FOURTH | {"port": "E"}}, later)

@@ -136,6 +136,16 @@ def test_captions_count_the_cells_that_are_crossed_out(tables, parse):
     assert sum(node.get("class") == "none" for node in parse(worst.drawing).iter()) == 30
 
 
+def test_events_of_one_moment_are_followed_until_a_later_one_comes(tables):
+    both = [{"at_s": 0.3, "action": "cut", "interface": i} for i in (0, 1)]
+    done = run(tables(event=[*both, {"at_s": 0.4, "action": "restore", "interface": 1}]))
+    digest = Digest(done.result, done.summary)
+    last = digest.maps()[-1]
+    assert last.head == "Still so when the next event came"
+    assert last.text.startswith("100.0 ms after the event: 30 cells without a way")
+    assert len(digest.zooms()) == 2  # one of the cuts, one of the cable that is put back
+
+
 def test_a_cell_that_is_off_is_told_in_captions(tables):
     event = [{"at_s": 0.3, "action": "kill", "cell": {"row": 5, "column": 3}}]
     done = run(tables(event=event))

@@ -30,7 +30,7 @@ class Crossing(NamedTuple):
 
     Attributes:
         robot: its node.
-        crossed_us: when it truly did.
+        crossed_us: when it truly did; 0 if it begins outside.
         back_us: when it came back inside; the run's end if it did not.
         raised_us: the sample at which somebody raised the alarm, NEVER if nobody did; with its
             place rounded a robot can be outside just before it truly is.
@@ -85,8 +85,10 @@ def _episodes(plan: Any, edges: list[Edge], walk: Any, until_us: int) -> list[tu
     """(out, back) of every stay outside; what is out again before it was well inside is one stay.
 
     The protocol calls a robot inside again from `clear_margin` on, so only then it can cross anew.
+    Who begins outside is so from time 0 on, for which it raises the alarm, too.
     """
-    found: list[tuple[int, int]] = []
+    outside = margin_cm(edges, position_cm(walk, 0)) < 0
+    found: list[tuple[int, int]] = [(0, until_us)] if outside else []
     clear_cm = plan.params["clear_margin"] * plan.params["unit_cm"]
     for crossing in crossings(edges, walk, until_us):
         at = round(crossing.time_us)

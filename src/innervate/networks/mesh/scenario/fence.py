@@ -136,6 +136,15 @@ def _inside(point: Point, ring: Ring) -> bool:
     return found
 
 
+def is_outside(fence: FenceTable, point: Point) -> bool:
+    """True if a point, cm, is beyond the polygon or in a hole; an edge is inside."""
+    rings = rings_cm(fence)
+    edges = [_edge(ring, i) for ring in rings for i in range(len(ring))]
+    if any(_side(*edge, point) == 0 and _within(edge, point) for edge in edges):
+        return False
+    return sum(_inside(point, ring) for ring in rings) % 2 == 0
+
+
 def origin_of(rings: Sequence[Ring]) -> Point:
     """The fence's corner: least x and least y, cm."""
     return min(x for x, _ in rings[0]), min(y for _, y in rings[0])

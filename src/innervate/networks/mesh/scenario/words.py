@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
 from innervate.networks.mesh.scenario.events import target_of
+from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
@@ -78,6 +79,7 @@ def warnings(made: MeshPlan) -> list[str]:
     found += _distribution(made)
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
+    found += _outside(made)
     offered = {offer.flow for offer in made.offers}
     found += [
         f"flow.{index} sends nothing: it begins after the end; set start_s or a later duration_s"
@@ -85,6 +87,17 @@ def warnings(made: MeshPlan) -> list[str]:
         if index not in offered
     ]
     return found
+
+
+def _outside(made: MeshPlan) -> list[str]:
+    """Robots that are outside the fence before they have moved."""
+    fence = made.scenario.model.fence
+    if fence is None:
+        return []
+    who = [made.names[walk.node] for walk in made.walks if is_outside(fence, walk.points[0][1:])]
+    if not who:
+        return []
+    return [f"outside the fence from the beginning: {listed(who)}; that counts as a crossing"]
 
 
 def _distribution(made: MeshPlan) -> list[str]:

@@ -148,7 +148,6 @@ def power_off(world, do, node, time):
     if radio.backlog > 0 and radio.data_end > time:
         cut_short(world, do, node, place_of(node, radio.fresh - radio.backlog), time)
     radio.alive, radio.backlog = 0, 0
-    below.run[0].hurt += 1
     channel.silence(below, node, time)
     for i in range(KEPT):
         world.air[node * KEPT + i].state = VOID

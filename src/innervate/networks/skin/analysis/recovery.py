@@ -40,7 +40,7 @@ def recoveries(result: Any) -> list[Recovery]:
     `others_ms`: the same without the cells that are cut off; None if these are all there are.
     `without_way`: cells that had none at the end of it although cables join them with the PC.
     `cut_cells`: cells whose chain of parents used the link.
-    `cut_off`: cells that were joined with the PC before and that no cable joins with it since.
+    `cut_off`: cells that no cable joins with the PC since, those it switched on there included.
     `cut_off_total`: those, and whoever was so before.
     `joined_again`: cells that cables join with the PC again.
     """

@@ -31,7 +31,7 @@ class Recovery(TypedDict):
             any cell is cut off: no cable joins it with the PC.
         others_ms: the same without the cells that are cut off; None if these are all there are.
         without_way: cells that had none at the end although cables join them with the PC.
-        cut_off: cells that were joined with the PC before and that no cable joins with it since.
+        cut_off: cells that no cable joins with the PC since, those it switched on there included.
         cut_off_total: those, and whoever was so before.
         joined_again: cells that cables join with the PC again.
         cut_cells: cells whose way used the cable or the node.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,7 +32,7 @@ class Incident:
     Attributes:
         fault: what happened.
         recovery: its entry in the summary.
-        until_us: when the next event came, or the run ended.
+        until_us: when the next later event came, or the run ended.
     """
 
     fault: Fault
@@ -66,7 +67,8 @@ class Digest:
     def _incidents(self) -> list[Incident]:
         recoveries = self.summary["recoveries"]
         starts = [round(1e6 * recovery["at_s"]) for recovery in recoveries]
-        ends = [*starts, self.result.ended_us][1:]
+        later = [*starts, self.result.ended_us]
+        ends = [later[bisect_right(starts, start)] for start in starts]
         faults = self.plan.faults[: len(recoveries)]
         return [Incident(*three) for three in zip(faults, recoveries, ends, strict=True)]
 
@@ -149,8 +151,9 @@ class Digest:
         return charts.Panel(drawing, head, text)
 
     def zooms(self) -> list[charts.Steps]:
-        """Cells without a route round each event that cost some of them theirs."""
-        hurt = [i for i in self.incidents if self._is_outage(i)]
+        """Cells without a route round each moment whose events cost some of them theirs."""
+        moments = {incident.at_us: incident for incident in self.incidents}
+        hurt = [i for i in moments.values() if self._is_outage(i)]
         return [self._zoom(incident) for incident in hurt[:ZOOMS_MAX]]
 
     def _is_outage(self, incident: Incident) -> bool:

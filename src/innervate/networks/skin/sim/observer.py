@@ -17,6 +17,7 @@ from innervate.networks.skin.protocol.constants import (
     RULE_STRICT,
 )
 from innervate.networks.skin.sim.counters import EARLY, NO_ROUTE
+from innervate.scenario.actions.cables import GIVE
 from innervate.sim.cables.world import DEAD
 
 DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
@@ -217,8 +218,20 @@ def on_links_changed(world, time, node, index):
         run.unrouted += watch.joined[cell] & (1 - watch.routed[cell])
         lost += watch.before[cell] & (1 - watch.routed[cell])
     note(world, time, node, CUT_OFF, index, lost)
-    note_apart(world, time, node)
-    note_unrouted(world, time, node)
+    if index < 0 or not goes_on(world, time):
+        note_apart(world, time, node)
+        note_unrouted(world, time, node)
+
+
+def goes_on(world, time):
+    """True if something else is done to the network in the same moment.
+
+    What lies in between lasts no time, and nobody was cut off in it.
+    """
+    after = world.run[0].next_command + 1
+    if after >= world.run[0].commands:
+        return False
+    return world.commands[after].at == time and world.commands[after].action != GIVE
 
 
 def note_apart(world, time, node):
