@@ -140,7 +140,8 @@ def test_events_of_one_moment_are_followed_until_a_later_one_comes(tables):
     both = [{"at_s": 0.3, "action": "cut", "interface": i} for i in (0, 1)]
     done = run(tables(event=[*both, {"at_s": 0.4, "action": "restore", "interface": 1}]))
     digest = Digest(done.result, done.summary)
-    last = digest.maps()[-1]
+    *_, worst, last = digest.maps()
+    assert worst.head == "The worst moment"  # and nobody is on the way back
     assert last.head == "Still so when the next event came"
     assert last.text.startswith("100.0 ms after the event: 30 cells without a way")
     assert len(digest.zooms()) == 2  # one of the cuts, one of the cable that is put back

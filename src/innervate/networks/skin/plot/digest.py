@@ -119,12 +119,12 @@ class Digest:
         if hero is None:
             return []
         worst_us, most = self.history.lacking_max(hero.at_us, hero.routed_us)
-        half_us = self.history.first_below(worst_us, hero.routed_us, most / 2)[0]
+        half_us, few = self.history.first_below(worst_us, hero.routed_us, most / 2)
         left = self.history.lacking_at(hero.routed_us)
         return [
             ("Before", hero.at_us - 1),
             ("The worst moment", worst_us),
-            ("On the way back", half_us),
+            *([("On the way back", half_us)] if few < most else []),
             ("Afterwards" if left == 0 else f"Still so {self._then(hero)}", hero.routed_us),
         ]
 
