@@ -40,7 +40,7 @@ class Turns:
         known = self._longest()
         with self.kept.open("a", encoding="utf-8") as file:
             for test, took_s in passed.items():
-                if took_s > known.get(test, 0.0):
+                if test not in known or took_s > known[test]:
                     file.write(json.dumps([test, round(took_s, 3)]) + "\n")
 
     def _longest(self) -> dict[str, float]:

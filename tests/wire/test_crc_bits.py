@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.wire.bits import get, put, signed
-from innervate.wire.crc import START, crc16
+from innervate.wire.crc import START, by_table, crc16, is_sealed, seal
 
 
 def test_crc_check_value():
@@ -15,6 +15,23 @@ def test_crc_check_value():
 @given(st.binary(max_size=40))
 def test_crc_agrees_with_the_standard_library(data):
     assert crc16(data, len(data)) == binascii.crc_hqx(data, START)
+    assert by_table(data, len(data)) == binascii.crc_hqx(data, START)
+
+
+def test_boards_have_the_same_of_every_byte():
+    for byte in range(256):
+        data = bytes([byte, 255 - byte, 7])
+        assert by_table(data, 2) == binascii.crc_hqx(data[:2], START)
+
+
+def test_a_frame_is_sealed_by_its_last_two_bytes():
+    frame = seal(bytearray(b"123456789??"))
+    assert frame == b"123456789\x29\xb1"
+    assert is_sealed(frame)
+    for at in range(len(frame)):
+        changed = bytearray(frame)
+        changed[at] ^= 1
+        assert not is_sealed(changed)
 
 
 def test_crc_leaves_the_rest_alone():
