@@ -7,12 +7,15 @@ from innervate.networks.mesh.protocol.constants import (
     ALL,
     DATA,
     DETOURED,
+    LOUDEST,
     PRIORITY,
+    RANDOM,
     REPORT_GATEWAY,
     REPORT_TABLE,
     TABLE,
 )
 from innervate.networks.mesh.protocol.hop import HUSHED
+from innervate.networks.mesh.protocol.route import planned
 from innervate.networks.mesh.protocol.standby import EVERYWHERE, PATIENCE_MAX
 from tests.networks.mesh.bench import Frame
 from tests.networks.mesh.net import Net, line
@@ -47,6 +50,17 @@ def test_with_thirty_messages_a_second_all_have_new_tables_within_three_seconds(
 def led(net):
     """When nodes began to follow the new gateway."""
     return {i: at for at, i, *_ in net.of(REPORT_GATEWAY)}
+
+
+@pytest.mark.parametrize("failover", [RANDOM, LOUDEST])
+def test_a_table_that_is_lost_rewrites_no_next_hop(failover):
+    """By the document's rule the failure of a packet does."""
+    net = Net(4, DIAMOND, failover=failover)
+    net.lost = lambda frame, to: frame.kind == TABLE and frame.link_src in (1, 2) and to == 3
+    net.run(6_000_000)
+    assert any(f.kind == TABLE and f.link_dst == 3 for _, _, f in net.sent)
+    found = [planned(net.nodes[i], net.params, 3) for i in (1, 2)]
+    assert found == [3, 3]
 
 
 def test_a_table_goes_round_a_hop_that_fails():

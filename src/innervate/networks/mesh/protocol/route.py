@@ -13,6 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
     RANDOM,
     SEARCH,
     SOURCE_ROUTE,
+    TABLE,
     TABLE_FREE,
     TABLES,
     WHOLE_GRAPH,
@@ -308,11 +309,11 @@ def advance_route(node, i):
 
 
 def learn_failure(node, params, i, failed):
-    """Neighbour `failed` failed for the packet in place i."""
+    """Neighbour `failed` failed for the packet in place i; lost tables rewrite none."""
     skip(node, node.q_origin[i], node.q_seq[i], failed)
     if params.mode == TABLE_FREE:
         strip_route(node, i)
     if params.mode != 0:
         add_failed(node, i, failed, room_of(node, params, i))
-    elif params.failover < ALTERNATE:
+    elif params.failover < ALTERNATE and node.q_kind[i] != TABLE:
         rewrite(node, params, i, failed)
