@@ -38,13 +38,13 @@ GROUPS = (
         partial(simulated, "mesh-team"),
         partial(simulated, "mesh-field"),
         partial(simulated, "radio-figure-1"),
-        partial(simulated, "radio-disaster", "protocol.mac='dcf'"),
     ),
     (
         partial(simulated, "demo"),
         explored,
         partial(simulated, "demo", "protocol.rule='static'"),
         partial(simulated, "radio-disaster"),
+        partial(simulated, "radio-disaster", "protocol.mac='dcf'"),
     ),
 )
 

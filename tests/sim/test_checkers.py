@@ -154,7 +154,8 @@ class Routes:
     """A world as the observer sees it, and what it notes."""
 
     def __init__(self, rule=RULE_FEASIBLE, checked=1):
-        numbers = dict.fromkeys((*observer.NUMBERS, "broken", "rows", "next_command", "commands"), 0)
+        also = "broken", "rows", "next_command", "commands"
+        numbers = dict.fromkeys((*observer.NUMBERS, *also), 0)
         self.run = SimpleNamespace(cells=3, checks=checked, observe=1, broken_node=-1,
                                    broken_other=-1, **numbers)  # fmt: skip
         self.watch = SimpleNamespace(port=[NONE] * 3, routed=[0] * 3, had=[0] * 3, joined=[1] * 3,
