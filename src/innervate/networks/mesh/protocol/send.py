@@ -7,6 +7,7 @@ from innervate.networks.mesh.protocol.backoff import note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
+    ALL,
     ALTERNATE,
     DATA,
     DETOURED,
@@ -152,7 +153,7 @@ def hop_failed(node, params, now, i, out):
         learn_failure(node, params, i, failed)
         if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
             give_up(node, params, i, out)
-        elif kind == TABLE and (params.failover != SEARCH or node.q_flags[i] & DETOURED):
+        elif kind == TABLE and (node.gone == ALL or node.q_flags[i] & DETOURED):
             give_up(node, params, i, out)
         elif not aim(node, params, i, out):
             give_up(node, params, i, out)
