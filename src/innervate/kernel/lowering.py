@@ -77,10 +77,13 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
     key = RecordType
 
     def generic_resolve(self, record: Any, name: str) -> Any:
-        field = record.kept.typeof(name)
-        if isinstance(field, types.NestedArray):
-            return _array_of(field)
-        return types.int64 if isinstance(field, types.Integer) else field
+        return _read_as(record.kept.typeof(name))
+
+
+def _read_as(field: Any) -> Any:
+    if isinstance(field, types.NestedArray):
+        return _array_of(field)
+    return types.int64 if isinstance(field, types.Integer) else field
 
 
 def _array_of(field: types.NestedArray) -> TableType:
@@ -100,7 +103,7 @@ def _read_field(context: Any, builder: Any, record: Any, value: Any, name: str) 
     field, place = _place(context, builder, record, value, name)
     if not isinstance(field, types.NestedArray):
         kept = context.unpack_value(builder, field, place)
-        return context.cast(builder, kept, field, _Fields(context).generic_resolve(record, name))
+        return context.cast(builder, kept, field, _read_as(field))
     proxy = cgutils.create_struct_proxy(_array_of(field))(context, builder)
     proxy.address = builder.bitcast(place, ir.IntType(8).as_pointer())
     proxy.length = ir.Constant(ir.IntType(64), field.nitems)
