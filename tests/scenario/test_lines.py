@@ -15,22 +15,23 @@ STRINGS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", STRINGS)
 @pytest.mark.parametrize("form", [
     "a = {}\nb = 1\n", "a = [{}, 2]\nb = 1\n", "a = {{ c = {}, d = 4 }}\nb = 1\n",
     "a = [{}]\nb = 1\n", "a = {{ c = {}}}\nb = 1\n", "[t]\na = {}#x = 1\n[u]\nb = 1\n",
     "a = [\n  {},\n  {},\n]\nb = 1\n",
 ])  # fmt: skip
-def test_a_key_behind_a_text_is_found_on_its_line(form, text):
-    whole = form.format(text, text)
-    read = tomllib.loads(whole)
-    found = key_lines(whole)
-    behind = ("u", "b") if "u" in read else ("b",)
-    assert found[behind] == whole[: whole.index("b = 1\n", whole.rindex("\nb"))].count("\n") + 1
-    (a,) = [key for key in found if key[-1:] == ("a",)]
-    assert found[a] == (2 if "t" in read and "u" in read else 1)
-    if "c = " in form and "d" in read["a"]:
-        assert found["a", "d"] == whole[: whole.index("d = 4")].count("\n") + 1
+def test_a_key_behind_a_text_is_found_on_its_line(form):
+    for text in STRINGS:
+        whole = form.format(text, text)
+        read = tomllib.loads(whole)
+        found = key_lines(whole)
+        behind = ("u", "b") if "u" in read else ("b",)
+        before = whole[: whole.index("b = 1\n", whole.rindex("\nb"))]
+        assert found[behind] == before.count("\n") + 1, text
+        (a,) = [key for key in found if key[-1:] == ("a",)]
+        assert found[a] == (2 if "t" in read and "u" in read else 1), text
+        if "c = " in form and "d" in read["a"]:
+            assert found["a", "d"] == whole[: whole.index("d = 4")].count("\n") + 1, text
 
 
 KEYS = ["a", '"a"', "'a'", '"a b"', "'#'", '""', "a-b_9", r'"\u0041"', 'x."y.z".w', "x . y"]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+from functools import lru_cache
 from types import ModuleType
 
 # (old, new): a text that stands once in the sources, and what is read in its place.
@@ -42,13 +43,16 @@ class Function:
         self.calls: dict[str, str] = {}
 
 
-def functions(*entries: str, change: Change | None = None) -> dict[str, Function]:
+def functions(
+    *entries: str, change: Change | None = None, shared: bool = False
+) -> dict[str, Function]:
     """Every function that the entries' functions can reach, by joined name, callees first.
 
     Args:
         entries: modules with the five functions, like "innervate.networks.skin.protocol.cell". Of
             one, what its handlers call is taken; of several, all their functions are.
         change: a mistake to plant, within one function, for what must be found out.
+        shared: of a source that was read before, the same nodes again, for who changes none.
 
     Raises:
         ValueError: the text to change does not stand exactly once in these functions.
@@ -65,7 +69,7 @@ def functions(*entries: str, change: Change | None = None) -> dict[str, Function
         if change is not None:
             changed += text.count(change[0])
             text = text.replace(*change)
-        for node in ast.parse(text).body:
+        for node in (_parsed if shared else ast.parse)(text).body:
             if isinstance(node, ast.FunctionDef) and (module.__name__, node.name) in wanted:
                 made = Function(names[module.__name__, node.name], node, module)
                 made.calls = _calls(module, names)
@@ -73,6 +77,11 @@ def functions(*entries: str, change: Change | None = None) -> dict[str, Function
     if change is not None and changed != 1:
         raise ValueError(f"{change[0]!r} stands {changed} times in {', '.join(entries)}")
     return found
+
+
+@lru_cache(100)
+def _parsed(text: str) -> ast.Module:
+    return ast.parse(text)
 
 
 def reached(entry: str) -> list[ModuleType]:

@@ -12,7 +12,8 @@ CACHE_LINE = 64
 
 Field = tuple[str, int | str, int, int, str, str]
 Declaration = tuple[Field, ...]
-Limits = tuple[str, int, int]
+Limits = tuple[int, int]
+Test = Callable[[Any], bool]
 
 
 def dtype(declaration: Declaration, itemsize: int = 0, word: Any = np.int32) -> np.dtype[Any]:
@@ -69,24 +70,29 @@ def _places(declaration: Declaration) -> list[tuple[str, int]]:
 
 
 @cache
-def _limits(declaration: Declaration) -> tuple[Callable[[Any], bool], list[Limits]]:
-    """If an object's single numbers are in range, written out; arrays with their limits."""
+def _limits(declaration: Declaration) -> tuple[Test, Callable[[Any], list[Any]], list[Limits]]:
+    """If an object's single numbers are in range, written out; its arrays, and their limits."""
     numbers = (one for one in declaration if not int(one[1]))
     text = " and ".join(f"{low} <= it.{name} <= {high}" for name, _, low, high, *_ in numbers)
     arrays = [(name, low, high) for name, length, low, high, *_ in declaration if int(length)]
-    return eval(compile(f"lambda it: {text or True}", "declared ranges", "eval")), arrays
+    values = ", ".join(f"it.{name}" for name, *_ in arrays)
+    return (
+        eval(compile(f"lambda it: {text or True}", "declared ranges", "eval")),
+        eval(compile(f"lambda it: [{values}]", "arrays", "eval")),
+        [(low, high) for _, low, high in arrays],
+    )
 
 
 class Words:
     """A plain object's fields as one row of numbers, in order of declaration."""
 
-    __slots__ = ("_arrays", "_known", "_numbers_are_declared", "_target", "_where")
+    __slots__ = ("_arrays_of", "_known", "_limits", "_numbers_are_declared", "_target", "_where")
 
     def __init__(self, target: Any, declaration: Declaration) -> None:
         self._target = target
         self._where = _places(declaration)
-        self._numbers_are_declared, self._arrays = _limits(declaration)
-        self._known: list[Any] = [None] * len(self._arrays)  # as they were seen to be in range
+        self._numbers_are_declared, self._arrays_of, self._limits = _limits(declaration)
+        self._known: list[Any] = [None] * len(self._limits)  # as they were seen to be in range
 
     def __getitem__(self, index: int) -> int:
         name, i = self._where[index]
@@ -102,12 +108,14 @@ class Words:
 
     def are_declared(self) -> bool:
         """True if each lies in its declared range; of arrays those are looked at that changed."""
-        target, known = self._target, self._known
-        if not self._numbers_are_declared(target):
+        if not self._numbers_are_declared(self._target):
             return False
-        for place, (name, low, high) in enumerate(self._arrays):
-            value = getattr(target, name)
+        known, arrays = self._known, self._arrays_of(self._target)
+        if arrays == known:
+            return True
+        for place, value in enumerate(arrays):
             if value != known[place]:
+                low, high = self._limits[place]
                 if min(value) < low or max(value) > high:
                     return False
                 known[place] = list(value)

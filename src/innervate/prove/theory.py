@@ -51,7 +51,7 @@ class Source(dict[str, Function]):
 def source(entry: str, change: Change | None) -> Source:
     """The functions of a protocol, with a mistake if its text is one of theirs."""
     planted = change if change is not None and is_in(entry, change) else None
-    found: dict[str, Function] = functions(entry, change=planted)
+    found: dict[str, Function] = functions(entry, change=planted, shared=True)
     if planted is None:
         return Source(found, frozenset())
     shipped = _texts(entry)
@@ -62,7 +62,7 @@ def source(entry: str, change: Change | None) -> Source:
 @cache
 def _texts(entry: str) -> dict[str, str]:
     """What every function of a protocol says as it is shipped."""
-    return {name: ast.dump(one.node) for name, one in functions(entry).items()}
+    return {name: ast.dump(one.node) for name, one in functions(entry, shared=True).items()}
 
 
 def is_touched(step: Step) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -73,9 +74,8 @@ class Tables:
         Fields in `wide` have 64 bits, all others 32.
         """
         if self.plain:
-            declaration = tuple((*_named(name), 0, 0, "", "") for name in names)
-            make = plain.make("Record", declaration)
-            return [make() for _ in range(count)]
+            made = _record(names)
+            return [made() for _ in range(count)]
         dtype = row_dtype(names, wide)
         return np.empty(count, dtype) if fresh else np.zeros(count, dtype)
 
@@ -106,6 +106,17 @@ class Tables:
         if self.plain:
             return [records.Words(state, declaration) for state in states]
         return states.view(self.word).reshape(len(states), -1)
+
+
+@cache
+def _record(names: Names) -> Any:
+    """A class of records like dialect/plain.py's, all fields 0, of which thousands are made."""
+    named = [_named(name) for name in names]
+    lines = [f"  self.{name} = {f'[0] * {length}' if length else 0}" for name, length in named]
+    made: dict[str, Any] = {}
+    exec("\n".join(("def init(self):", *lines)), made)
+    slots = tuple(name for name, _ in named)
+    return type("Record", (), {"__init__": made["init"], "__slots__": slots})
 
 
 def row_dtype(names: Names, wide: Collection[str] = WIDE) -> np.dtype[Any]:
