@@ -9,6 +9,7 @@ and without (`tidy`).
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any
 
 from innervate.dialect import plain
@@ -69,58 +70,66 @@ class Shape:
 
     def __init__(self, declared: Any, times: tuple[str, ...], grain: int) -> None:
         self.grain = grain
-        self.names = [field[0] for field in declared]
-        self.place = {name: i for i, name in enumerate(self.names)}
-        self.lengths = [field[1] for field in declared]
-        self.bounds = [(field[2], field[3]) for field in declared]
-        self.times = frozenset(times)
+        names = [field[0] for field in declared]
+        self.names = names
+        self.place = {name: i for i, name in enumerate(names)}
         self.pool: dict[Any, Any] = {}
-        self.known: list[dict[Any, Any]] = [{} for _ in self.names]  # arrays seen, by field
+        self.put = _putter(declared, times)
+        self._values = attrgetter(*names)
+        self._timed = [
+            (self.place[name], age if name in AGES else ahead, length)
+            for name, length, *_ in declared if name in times
+        ]  # fmt: skip
+        self._numbers = [(self.place[name], low, high)
+                         for name, length, low, high, *_ in declared if not length]  # fmt: skip
+        self._arrays: list[tuple[int, type, int, int, dict[Any, Any]]] = [
+            (self.place[name], bytes if low >= 0 and high <= 255 else tuple, low, high, {})
+            for name, length, low, high, *_ in declared if length
+        ]  # fmt: skip
 
     def take(self, record: Any, now: int) -> tuple[Any, ...]:
         """The record's value; arrays that many states share are kept once."""
-        found = []
-        for name, length, (low, high), known in zip(
-            self.names, self.lengths, self.bounds, self.known, strict=True
-        ):
-            value = getattr(record, name)
-            if name in self.times:
-                since, grain = age if name in AGES else ahead, self.grain
-                value = (
-                    [since(t, now, grain) for t in value] if length else since(value, now, grain)
-                )
-            if length:
-                value = self._array(name, value, low, high, known)
-            elif not low <= value <= high:
-                raise OutOfRange(f"{name} = {value}")
-            found.append(value)
+        found = list(self._values(record))
+        for place, since, length in self._timed:
+            value, grain = found[place], self.grain
+            found[place] = (
+                [since(t, now, grain) for t in value] if length else since(value, now, grain)
+            )
+        for place, low, high in self._numbers:
+            if not low <= found[place] <= high:
+                raise OutOfRange(f"{self.names[place]} = {found[place]}")
+        for place, kind, low, high, known in self._arrays:
+            value = found[place]
+            try:
+                kept = kind(value)
+            except ValueError:
+                raise OutOfRange(f"{self.names[place]} = {list(value)}") from None
+            seen = known.get(kept)  # one that was seen is known to lie in its range
+            if seen is None:
+                if min(value) < low or max(value) > high:
+                    raise OutOfRange(f"{self.names[place]} = {list(value)}")
+                seen = known[kept] = self.pool.setdefault(kept, kept)
+            found[place] = seen
         return tuple(found)
 
-    def _array(
-        self, name: str, value: list[int], low: int, high: int, known: dict[Any, Any]
-    ) -> Any:
-        """An array as it is kept; one that was seen is known to lie in its range."""
-        try:
-            kept = bytes(value) if low >= 0 and high <= 255 else tuple(value)
-        except ValueError:
-            raise OutOfRange(f"{name} = {list(value)}") from None
-        found = known.get(kept)
-        if found is None:
-            if min(value) < low or max(value) > high:
-                raise OutOfRange(f"{name} = {list(value)}")
-            found = known[kept] = self.pool.setdefault(kept, kept)
-        return found
 
-    def put(self, record: Any, value: tuple[Any, ...]) -> None:
-        """Make a record what it was; its present is NOW."""
-        for name, length, part in zip(self.names, self.lengths, value, strict=True):
-            if name in AGES:
-                part = [NOW - t for t in part]
-            elif name in self.times:
-                part = [NOW + t for t in part] if length else NOW + part
-            elif length:
-                part = list(part)
-            setattr(record, name, part)
+def _putter(declared: Any, times: tuple[str, ...]) -> Callable[[Any, tuple[Any, ...]], None]:
+    """Makes a record what it was, its present being NOW: an assignment a field, written out."""
+    taken, lines = [], []
+    for i, (name, length, *_) in enumerate(declared):
+        part = f"part{i}" if length or name in times else f"it.{name}"
+        taken.append(part)
+        if name in AGES:
+            lines.append(f"  it.{name} = [{NOW} - t for t in {part}]")
+        elif name in times:
+            lines.append(f"  it.{name} = " + (f"[{NOW} + t for t in {part}]" if length
+                                              else f"{NOW} + {part}"))  # fmt: skip
+        elif length:
+            lines.append(f"  it.{name} = list({part})")
+    made: dict[str, Any] = {}
+    exec("\n".join(["def put(it, value):", f"  ({', '.join(taken)}) = value", *lines]), made)
+    put: Callable[[Any, tuple[Any, ...]], None] = made["put"]
+    return put
 
 
 def ahead(time: int, now: int, grain: int = 1) -> int:
