@@ -124,3 +124,20 @@ def test_the_events_of_a_skin_name_their_cables_cells_and_shares():
         -1,
     ]
     assert [one.text for one in found][3] == f"kill {names[1]}"
+
+
+@pytest.mark.parametrize(
+    ("cells", "names"),
+    [
+        (("left", "hip.2"), ["left", "hip.2", "pc"]),
+        (("left", "../hip"), ["c0", "c1", "pc"]),
+        (("scenario", "hip"), ["c0", "c1", "pc"]),
+    ],
+)
+def test_cells_of_a_free_graph_have_their_names_where_these_can_name_files(cells, names):
+    a, b = cells
+    plan = scenarios.plan(scenarios.from_dict({
+        "kind": "skin", "duration_s": 5.0,
+        "link": [{"a": "pc.0", "b": f"{a}.0"}, {"a": f"{a}.1", "b": f"{b}.0"}],
+    }))  # fmt: skip
+    assert networks()["skin"].deployment(plan).names == names

@@ -132,8 +132,9 @@ def test_gateways_and_how_long_a_takeover_takes():
 def test_a_suspicion_is_wrong_of_who_was_on_at_that_time():
     raised = ((S, 2), (5 * S - 1, 2), (5 * S, 2), (8 * S - 1, 2), (8 * S, 2), (9 * S, 3))
     rows = [(at, 1, REPORT_SUSPECT, node) for at, node in raised]
-    faults = [fault(5 * S, KILL, 2), fault(8 * S, REVIVE, 2)]
-    assert network.suspects(made(rows, faults=faults)) == {"raised": 6, "wrong": 4}
+    for back in (REVIVE, RESTART):
+        faults = [fault(5 * S, KILL, 2), fault(8 * S, back, 2)]
+        assert network.suspects(made(rows, faults=faults)) == {"raised": 6, "wrong": 4}
     assert network.suspects(made()) == {"raised": 0, "wrong": 0}
 
 

@@ -26,3 +26,20 @@ def test_where_stations_take_turns_it_waits_for_two_rounds():
     text = "kind = 'mesh'\nnodes = 30\nstandby = [1]\nradio.mac = 'dcf'\nradio.reach_m = 500"
     made = plan(loads(text))
     assert PROFILES["250k"].guard * 1e6 < made.params["guard_us"] < 2_000_000
+
+
+@pytest.mark.parametrize(
+    ("line", "ticks"),
+    [
+        ("", 8),
+        ("standby = [1]", 25),
+        ("protocol.dead_s = 25", 25),
+        ("protocol.period_s = 2", 5),
+        ("radio.profile = 'ip'", 6),
+    ],
+)
+def test_a_gateway_that_comes_back_waits_no_longer_than_an_old_round_where_nobody_stands_by(
+    line, ticks
+):
+    made = plan(loads(f"kind = 'mesh'\nnodes = 3\n{line}"))
+    assert made.params["dead"] == ticks

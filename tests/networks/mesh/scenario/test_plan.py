@@ -15,7 +15,7 @@ from innervate.networks.mesh.scenario.network import quality_cdb, reception_q15
 from innervate.networks.mesh.scenario.plan import ONE, MeshPlan
 from innervate.networks.mesh.scenario.words import warnings
 from innervate.scenario import ScenarioError, bundled, check, dump, load, loads, plan, template
-from innervate.scenario.actions.field import CUT, JAM, KILL, REVIVE
+from innervate.scenario.actions.field import CUT, JAM
 from innervate.topology.placement import UNHEARD, components, good_links, neighbours
 
 MESHES = sorted(name for name in bundled() if name.startswith("mesh"))
@@ -259,21 +259,6 @@ def test_messages() -> None:
     assert len({source for source, _ in drawn}) == 4
     assert all(a != b for a, b in drawn)
     assert p.params["monitor"] == 7
-
-
-def test_random_events_spare_who_matters() -> None:
-    text = "nodes = 12\nmonitor = 1\n[[robot]]\nnode = 4\nrandom = true\n"
-    text += "[[flow]]\nfrom = 2\nto = 3\n"
-    event = "[[event]]\nat_s = [3, 4]\naction = 'kill'\nrandom = 3\n"
-    later = "[[event]]\nat_s = 5\naction = 'revive'\nrandom = 2\n"
-    for seed in range(20):
-        p = made(text + event + event + later, seed=seed)
-        killed = [f.node for f in p.faults if f.action == KILL]
-        assert len(killed) == len(set(killed)) == 6
-        assert not {0, 1, 2, 3, 4} & set(killed)
-        assert all(3_000_000 <= f.at_us <= 4_000_000 for f in p.faults[:6])
-        assert {f.node for f in p.faults if f.action == REVIVE} < set(killed)
-        assert p.absent == [0] * 12
 
 
 def test_cuts_jams_and_late_nodes() -> None:

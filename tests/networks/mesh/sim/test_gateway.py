@@ -103,6 +103,18 @@ def test_a_gateway_that_was_switched_off_is_followed_again():
     assert net.delivered[-1][2].path[:2] == [3, 1]
 
 
+def test_and_soon_where_it_need_not_wait_for_a_standby():
+    net = Net(4, line(4), dead=8)
+    net.run(60_000_000)
+    net.kill(0)
+    net.run(61_000_000)
+    net.revive(0)
+    net.run(72_000_000)
+    assert leaders(net) == [0]
+    assert {node.epoch for node in net.nodes} == {net.nodes[0].epoch}
+    assert not without(net)
+
+
 def test_activation_puts_new_tables_into_force_when_all_have_theirs():
     net = Net(5, line(5), activation=1)
     net.run(8_000_000)

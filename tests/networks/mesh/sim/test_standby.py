@@ -4,13 +4,17 @@ import pytest
 
 from innervate.networks.mesh.protocol.constants import (
     ALARM,
+    CONTROL,
     CROSS,
+    E2E_ACK,
     GRAPH,
     REPORT_GATEWAY,
     REPORT_ROUND,
+    REQUEST,
     RESPONSE,
 )
-from tests.networks.mesh.net import Net, geometric, ring
+from innervate.networks.mesh.protocol.queue import WAITS
+from tests.networks.mesh.net import Net, geometric, line, ring
 from tests.networks.mesh.sim.test_alarms import OUT, fenced
 
 GUARD = dict(standby=1, guard_us=200_000)
@@ -95,6 +99,31 @@ def test_nobody_takes_over_from_a_gateway_that_lives():
     assert {i for _, i, *_ in net.of(REPORT_ROUND)} == {0}
     questions = {f.seq for _, i, f in net.sent if f.kind == GRAPH and f.origin == i == 7}
     assert 20 < len(questions) <= 150
+
+
+def fill(net, who):
+    """End-to-end acks take all places of a node's queue, and do not go for twelve seconds."""
+    node = net.nodes[who]
+    for i in range(node.places):
+        node.q_state[i], node.q_rank[i], node.q_kind[i] = WAITS, CONTROL, E2E_ACK
+        node.q_due[i] = net.now + 12_000_000
+
+
+@pytest.mark.parametrize("full", [0, 1, 3])
+def test_a_gateway_that_has_much_to_send_is_not_taken_for_dead(full):
+    """Nor one whose standby has, or who is between them."""
+    net = guarded(count=4, links=line(4), standbys=(3,))
+    fill(net, full)
+    net.run(net.now + 5_000_000)
+    assert leaders(net) == [0]
+
+
+def test_a_gateway_that_has_much_to_send_begins_its_rounds():
+    net = guarded(count=4, links=line(4), standbys=(3,))
+    net.sent.clear()
+    fill(net, 0)
+    net.run(net.now + 11_000_000)
+    assert [f for _, i, f in net.sent if i == 0 and f.kind == REQUEST]
 
 
 def test_where_answers_were_late_a_few_questions_in_vain_prove_nothing():

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections import deque
 from typing import Any
 
-from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
 
 UNREACHABLE = -1
 
@@ -19,7 +19,7 @@ class Ground:
 
     def __init__(self, plan: Any) -> None:
         self.plan = plan
-        shaping = (KILL, REVIVE, CUT, RESTORE)
+        shaping = (KILL, REVIVE, RESTART, CUT, RESTORE)
         starts = {int(at) for node, at in enumerate(plan.starts_us) if not plan.absent[node]}
         faults = [fault for fault in plan.faults if fault.action in shaping]
         self.times = sorted({0, *starts, *(fault.at_us for fault in faults)})
@@ -36,8 +36,8 @@ class Ground:
         for fault in self._faults:
             if fault.at_us > time_us:
                 break
-            if fault.action in (KILL, REVIVE):
-                on[fault.node] = fault.action == REVIVE
+            if fault.action in (KILL, REVIVE, RESTART):
+                on[fault.node] = fault.action != KILL
         return on
 
     def near_at(self, time_us: int) -> list[list[int]]:

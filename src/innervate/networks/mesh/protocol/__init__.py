@@ -43,9 +43,10 @@ then of all messages, never of alarms: a full channel heals (decision 0016).
 
 *Standby.* A standby that has no sign of the gateway's life for a `guard_us` asks it. Each answer
 brings a part of the graph, until it has all. Questions in vain, more where answers used to be late:
-it leads, hands out tables of the graph that it has, and need not wait for a round. Meanwhile the
-channel is theirs: who hears it begins no messages for a `collect_us`, and until the next round
-nobody looks for the gateway that is `gone`, unless it is heard (decision 0049).
+it leads, hands out tables of the graph that it has, and need not wait for a round. Questions and
+answers go before all else: a gateway that has much to send is not dead. While tables go out the
+channel is theirs: who hears the new one begins no messages for a `collect_us`, and until the next
+round nobody looks for the gateway that is `gone`, unless it is heard (decision 0049).
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor has acknowledged them. Who hears a robot outside is its witness
@@ -134,8 +135,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | a `rank`   | the gateway's frames, or for it | `hear_of_gateway`: it lives; it  |                |
 |            |                                 | is looked for everywhere         |                |
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
-| any        | `REQUEST` of another gateway    | `redirect`: alarms go to it; who |                |
-|            |                                 | led before is `gone`             |                |
+| any        | `REQUEST` of another gateway,   | `redirect`: alarms go to it; who |                |
+|            | or `lead`                       | led before is `gone`             |                |
 | any        | a frame of who is `gone`        | `hear_of_gateway`: it is not     |                |
 | any        | `TICK`                          | `on_tick`: `sweep`, `age`,       |                |
 |            |                                 | `watch`, `beacon`,               |                |
@@ -273,7 +274,8 @@ before); of access `PACKET = 1`.
 | `REPORT_GAVE_UP = 1`                      | access: the channel was busy a times                 |
 
 Reasons: `NO_ROUTE = 1`, `NO_ACK = 2`, `PUT_OUT = 3`, `NO_ROOM = 4`. Ranks in the queue:
-`ALARMS = 0`, `CONTROL = 1`, `MESSAGES = 2`, `OWN = 3`.
+`ALARMS = 0`, which requests of a gateway and what standbys ask and are told have, too;
+`CONTROL = 1`, `MESSAGES = 2`, `OWN = 3`.
 
 Constants and settings
 ======================

@@ -6,7 +6,6 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALARMS,
     ALL,
-    CONTROL,
     PRIORITY,
     REPORT_GATEWAY,
     REPORT_GRAPH,
@@ -16,7 +15,6 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
     WHOLE_GRAPH,
 )
-from innervate.networks.mesh.protocol.duplicates import forgive
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
@@ -31,7 +29,7 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
-from innervate.networks.mesh.protocol.round import NOTHING
+from innervate.networks.mesh.protocol.round import NOTHING, begin_anew
 from innervate.networks.mesh.protocol.search import is_edge
 
 IDLE = 0
@@ -73,8 +71,8 @@ def lead(node, gate, params, now, out):
     node.known = 1
     node.leading = 1
     node.due = NOTHING
+    node.gone = node.gateway
     node.gateway = node.number
-    node.depth = 1
     node.parent = ALL
     gate.version = node.version if node.version else draw(node, 65_536)
     node.quiet = 0
@@ -96,23 +94,21 @@ def start_round(node, gate, params, now, out):
     flags = 0
     wait = params.collect_us
     copies = params.copies
-    rank = CONTROL
     if gate.whole:
         flags = PRIORITY
-        rank = ALARMS  # there is a place for it, whatever waits
         copies = copies + COPIES_MORE
         wait = 2 * params.jitter_us
         gate.whole = 0
+    else:
+        node.gone = ALL
     node.round = (node.round + 1) & MASK16
     node.depth = 1
-    for k in range(params.places):
-        node.round_depth[k] = UNHEARD
-    forgive(node)
+    begin_anew(node, params)
     begin_round(gate, params)
     gate.wait = gate.period
     gate.step = COLLECTING
     report(out, REPORT_ROUND, node.round, node.epoch)
-    i = compose(node, now, rank, REQUEST, ALL, flags, out)
+    i = compose(node, now, ALARMS, REQUEST, ALL, flags, out)  # a place, whatever waits
     if i >= 0:
         add_hop(node, i)
         add8(node, i, node.number)

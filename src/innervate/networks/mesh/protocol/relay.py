@@ -8,6 +8,7 @@ from innervate.networks.mesh.protocol.constants import (
     ALL,
     CONTROL,
     DATA,
+    GRAPH,
     MESSAGES,
     POSITION,
 )
@@ -27,7 +28,7 @@ from innervate.networks.mesh.protocol.send import send_on
 
 def rank_of(frame):
     """How urgent a packet is."""
-    if frame.kind == ALARM:
+    if frame.kind == ALARM or frame.kind == GRAPH:
         return ALARMS
     if frame.kind == DATA or frame.kind == POSITION:
         return MESSAGES

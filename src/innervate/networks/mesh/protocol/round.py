@@ -77,6 +77,11 @@ def begin(node, params, gateway, epoch, round, out):
     node.due = NOTHING
     if gateway != node.number:
         node.leading = 0
+    begin_anew(node, params)
+
+
+def begin_anew(node, params):
+    """Nobody was heard in a round yet; whoever gave packets back is asked again."""
     for k in range(params.places):
         node.round_depth[k] = UNHEARD
     forgive(node)

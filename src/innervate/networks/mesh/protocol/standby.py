@@ -5,8 +5,8 @@ sent and a standby hears is an answer, too.
 """
 
 from innervate.networks.mesh.protocol.constants import (
+    ALARMS,
     ALL,
-    CONTROL,
     DETOURED,
     GRAPH,
     PARTS_MAX,
@@ -54,7 +54,7 @@ def guard(node, gate, params, now, out):
         lead(node, gate, params, now, out)
         return
     else:
-        i = compose(node, now, CONTROL, GRAPH, node.gateway, 0, out)
+        i = compose(node, now, ALARMS, GRAPH, node.gateway, 0, out)
         if i >= 0:
             fill_graph(node, gate, params, i, gate.part, 0)  # of no parts: a question
             send_on(node, params, now, i, out)
@@ -72,7 +72,7 @@ def on_guard(node, gate, params, now, frame, out):
     if node.leading:
         if version != gate.version:
             index = 0
-        i = compose(node, now, CONTROL, GRAPH, frame.origin, 0, out)
+        i = compose(node, now, ALARMS, GRAPH, frame.origin, 0, out)
         if i >= 0:
             fill_graph(node, gate, params, i, index, parts_told(gate, params))
             send_on(node, params, now, i, out)

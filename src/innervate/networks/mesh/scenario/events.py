@@ -44,6 +44,8 @@ class _Tale:
         """Remember what an event did."""
         if action in self.harmed:
             self.harmed[action].add(hit)
+        elif action == "restart":
+            self.harmed["kill"].discard(hit)  # off and on: whoever was dead is there again
         elif ACTION[action].mends:
             self.harmed[ACTION[action].mends].discard(hit)
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from math import ceil
 from types import SimpleNamespace
 from typing import Any
 
 from innervate.networks.mesh.protocol import table
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR, MTU, PARTS_MAX, WHOLE_GRAPH
+from innervate.networks.mesh.protocol.round import SLACK
 from innervate.networks.mesh.scenario import events as mesh_events
 from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario import robots as mesh_robots
@@ -22,6 +24,8 @@ from innervate.topology.placement import neighbours
 from innervate.trace.streams import stream
 
 START_US = 100_000  # nodes are switched on within this time, the gateway right after it
+# Nothing of a round is on the air then: without a standby, a gateway that comes back leads.
+COLLECTS_OLD = 4
 GRAPH_NODES_MAX = {64: 85, MTU: 145}  # by the bytes of a radio's frame
 
 
@@ -148,6 +152,9 @@ def _parameters(
         key, _, message = str(error).partition(":")
         raise source.error(("protocol", key), message) from None
     params["standby"] = int(len(model.standby) > 0)
+    if not model.standby and model.protocol.dead_s is None:
+        old = SLACK + ceil(COLLECTS_OLD * params["collect_us"] / params["tick_us"])
+        params["dead"] = min(params["dead"], old)
     if params["mtu"] not in GRAPH_NODES_MAX and model.radio.profile != "ip":
         raise source.error(
             ("protocol", "mtu"),

@@ -19,7 +19,7 @@ MUTANTS = tuple(
     Mutant(*texts)
     for texts in (
         ("nobody acknowledges a hop",
-         "    if frame.flags & ACK_WANTED:\n        acknowledge(node, frame, out)\n", ""),
+         "    if frame.flags & ACK_WANTED:\n        acknowledge(node, params, frame, out)\n", ""),
         ("a hop's ack is ignored",
          "                drop(node, params, i)\n                return i\n",
          "                return -1\n"),

@@ -3,19 +3,32 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Coroutine
 from typing import Any
 
 from innervate.live.asking import ask, sleep_until
 from innervate.live.deployment import Deployment, Pairs, Stage, Table
+from innervate.topology import Graph
+
+_FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,39}", re.ASCII)
+_TAKEN = ("pc", "medium", "scenario")  # by processes and files of their own
+
+
+def cell_names(graph: Graph) -> list[str]:
+    """The cells' names of the graph where each can name a node's file, else c0, c1 .. for all."""
+    names = list(graph.names)
+    if names and all(_FILE.fullmatch(name) and name not in _TAKEN for name in names):
+        return names
+    return [f"c{i}" for i in range(graph.cells)]
 
 
 class SkinDeployment(Deployment):
     """The cells of a skin and the PC."""
 
     def layout(self) -> tuple[list[str], Pairs]:
-        """Names c0, c1 .. of the cells and "pc", and the cables as pairs."""
-        return [*(f"c{i}" for i in range(self.plan.graph.cells)), "pc"], self.cables()
+        """Names of the cells and "pc", and the cables as pairs."""
+        return [*cell_names(self.plan.graph), "pc"], self.cables()
 
     def is_board(self, number: int) -> bool:
         """The cells; the PC is a PC."""

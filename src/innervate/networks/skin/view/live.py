@@ -125,10 +125,11 @@ class SkinLiveView(LiveView):
 
     def drawn(self, plan: Any) -> Drawn:
         """Cells where the honeycomb has them, interface ports beside."""
+        from innervate.networks.skin.live.deployment import cell_names
         from innervate.networks.skin.view.scene import places
 
         graph = plan.graph
-        names = [f"c{i}" for i in range(graph.cells)]
+        names = cell_names(graph)
         ports = [f"pc.{i}" for i in range(graph.interfaces)]
         found = [(float(x), float(y)) for x, y in places(graph).round(3).tolist()]
         return Drawn(
