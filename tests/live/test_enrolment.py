@@ -50,6 +50,9 @@ def test_who_has_a_number_keeps_it_until_he_is_put_out(folder):
     with pytest.raises(LiveError, match="node 4 was never enrolled"):
         authority.revoke([4])
     assert not (folder / LIST).exists()
+    authority.issued = [(3, 7), (4, 2)]
+    authority.enrol(5)
+    assert authority.issued[-1] == (5, 8), "no serial stands for two"
 
 
 def test_a_list_is_as_long_as_all_can_hand_it_on(folder, monkeypatch):

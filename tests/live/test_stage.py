@@ -19,7 +19,7 @@ MESH = {
 }  # fmt: skip
 SKIN = {
     "kind": "skin", "patch": [{"columns": 2, "rows": 2}], "data": {"rate_hz": 20},
-    "interface": [{"row": 0, "column": 0, "port": "W"}, {"row": 1, "column": 1, "port": "E"}],
+    "interface": [{"row": 1, "column": 1, "port": "E"}, {"row": 0, "column": 0, "port": "W"}],
 }  # fmt: skip
 
 
@@ -109,6 +109,7 @@ def test_serial_cables_are_joined_at_both_ends_and_a_skins_files_name_its_ports(
         assert found["pc"]["role"] == "sink"
         (first, second) = network._ports[network.names.index("pc")]
         assert [network.deployment.port_of(4, k) for k in (first, second)] == [0, 1]
+        assert first > second, "its cables are in another order than its ports"
     finally:
         network.relay.stop()
 
