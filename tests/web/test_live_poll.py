@@ -125,8 +125,8 @@ def answering(**said):
     class Selector(real):
         def select(self, timeout=None):
             for node, what in said.values():
-                if node.take() and what:
-                    node.call.sendall(what)
+                if node.take():
+                    node.call.close() if what is None else node.call.sendall(what)
             return super().select(min(timeout, 0.05))
 
     live_poll.selectors.DefaultSelector = Selector
@@ -140,9 +140,7 @@ def test_who_answers_in_time_who_is_slow_and_who_is_gone(tmp_path):
     with closing(Node(tmp_path / "a")) as a, closing(Node(tmp_path / "b")) as b:
         poller = Poller([a.path, b.path, tmp_path / "c"])
         with answering(a=(a, b'{"a": 1}\n'), b=(b, b"")):
-            assert poller.ask_all(
-                {"do": "status"},
-            ) == {0: {"a": 1}}
+            assert poller.ask({0: {}, 1: {}, 2: {}}, 0.1) == {0: {"a": 1}}
         assert [poller.is_gone(i) for i in range(3)] == [False, False, True]
         b.call.close()
         late = poller._lines[1]
@@ -157,5 +155,8 @@ def test_who_answers_in_time_who_is_slow_and_who_is_gone(tmp_path):
         with answering(a=(a, b'{"a": 4}\n')):
             assert poller.ask({0: {}}, 1.0) == {0: {"a": 4}}
         assert not poller.is_gone(0)
+        with answering(a=(a, None)):  # it ends when it is asked
+            assert poller.ask({0: {}}, 1.0) == {}
+        assert poller.is_gone(0)
         poller.close()
         assert [one.sock for one in poller._lines] == [None] * 3
