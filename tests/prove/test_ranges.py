@@ -60,6 +60,14 @@ def test_the_range_of_an_operation_is_no_wider_than_what_it_comes_to(op):
         assert (made.low, made.high) == (min(found), max(found)), (op, a.low, a.high, b.low, b.high)
 
 
+def test_bits_of_numbers_that_fill_their_bits_make_no_wider_ones():
+    for bits in (1, 3, 8):
+        terms, half = Terms(), 1 << (bits - 1)
+        a, b = (terms.unknown(name, -half, half - 1) for name in "ab")
+        for made in (terms.bits_and(a, b), terms.bits_or(a, b), terms.bits_xor(a, b)):
+            assert (made.low, made.high) == (-half, half - 1)
+
+
 COMPARED = {
     "less": lambda x, y: x < y, "same": lambda x, y: x == y, "at_most": lambda x, y: x <= y,
 }  # fmt: skip
