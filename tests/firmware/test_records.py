@@ -107,17 +107,19 @@ def some(**fields):
     return SimpleNamespace(**values | fields)
 
 
-def test_a_record_as_bytes_and_back():
-    packed = Packed(ordered())
+@pytest.mark.parametrize("turn", [list, reversed])
+def test_a_record_as_bytes_and_back(turn):
+    fields = dict(turn(ordered().items()))
+    packed = Packed(fields)
     data = packed.of(some(wide=70_000))
-    assert len(data) == packed.size == layout(ordered())[1]
+    assert len(data) == packed.size == layout(fields)[1]
     other = some(wide=0, many=[0] * 3, flag=0, pairs=[0, 0], new=0)
     packed.put(data, other)
     assert vars(other) == vars(some(wide=70_000))
     few = SimpleNamespace(flag=0)
     packed.put(data, few)
     assert vars(few) == {"flag": 1}
-    made = struct_of(ordered()).from_buffer_copy(data)
+    made = struct_of(fields).from_buffer_copy(data)
     assert (made.wide, list(made.many), list(made.pairs)) == (70_000, [1, 2, 255], [-300, 300])
     for wrong in ({"many": [1, 2, 256]}, {"flag": 256}, {"pairs": [1, 40_000]}):
         with pytest.raises((ValueError, struct.error)):
