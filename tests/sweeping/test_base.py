@@ -11,6 +11,7 @@ import pytest
 from innervate.running import RunError
 from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, make_plan, planfile, scheduler, sweep, work
+from innervate.sweeping import plan as plans
 from innervate.sweeping.base import Base, base_of
 from innervate.sweeping.result import SHOWN, SHOWN_MAX, Sweep
 from innervate.sweeping.scheduler import DEATHS_MAX, Scheduler
@@ -317,3 +318,35 @@ def test_paths_of_a_scenario_are_made_full_but_for_those_that_are_varied(tmp_pat
         ("network.file", "links.json"), ("k", 1), ("nodes.0.file", "/full/x"),
     )  # fmt: skip
     assert Path(base.folder) == tmp_path
+
+
+def test_seeds_are_the_first_bits_of_a_streams_first_number_and_no_others():
+    plan = make_plan(SKIN, seed=3)
+    (point,) = plan.points
+    number = plans.stream(3, f"sweep/{point.stream}/4").next64()
+    assert plan.seed(point, 4) == number >> 16
+
+
+@pytest.mark.parametrize(("until", "blocks"), [
+    ((), [(0, 25)]), ("x.ci=5%", [(0, 10), (10, 20), (20, 25)]),
+])  # fmt: skip
+def test_repeats_are_decided_on_in_batches(until, blocks):
+    plan = make_plan(SKIN, repeat=25, until=until)
+    assert list(plans.blocks(plan)) == blocks
+    assert plan.first_block == blocks[0][1]
+    assert make_plan(SKIN, repeat=4, until="x.ci=5%").first_block == 4
+
+
+def test_how_many_runs_there_will_be_is_no_more_than_may_be():
+    plan = make_plan(SKIN, repeat=50, until="x.ci=1")
+    made = Scheduler(plan, SimpleNamespace(), SimpleNamespace())
+    (state,) = made.states
+    state.goal, state.values = 10, {"x": {k: 100.0 * (k % 2) for k in range(10)}}
+    assert made.total == 50
+    state.values = {"x": dict.fromkeys(range(10), 1.0)}
+    assert made.total == 10
+    state.values = {"x": {k: 4.0 * (k % 2) for k in range(10)}}
+    needed = made.plan.until[0].needed(state.series("x"))
+    assert 10 < needed == made.total < 50
+    state.finished = True
+    assert made.total == 10
