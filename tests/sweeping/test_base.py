@@ -350,3 +350,28 @@ def test_how_many_runs_there_will_be_is_no_more_than_may_be():
     assert 10 < needed == made.total < 50
     state.finished = True
     assert made.total == 10
+
+
+class Died(Exception):
+    """A worker died."""
+
+
+@pytest.mark.parametrize(("together", "lost"), [(True, [0, 1]), (False, [0])])
+def test_with_a_worker_all_batches_under_way_may_be_lost(monkeypatch, together, lost):
+    engine = SimpleNamespace(died=(Died,), falls_together=together, renew=lambda: None)
+    made = Scheduler(make_plan(SKIN, repeat=4), SimpleNamespace(), engine)
+    futures = []
+    for repeat in range(2):
+        future = scheduler.Future()
+        future.set_exception(Died())
+        made._running[future] = [Job("p", (), repeat, 1)]
+        futures.append(future)
+
+    def wait(running, return_when=None):
+        return (set(futures[:1]) if return_when else set(running)), set()
+
+    monkeypatch.setattr(scheduler, "wait", wait)
+    made._collect()
+    assert [job.repeat for job in made._suspects] == lost
+    assert len(made._running) == 2 - len(lost)
+    assert made.left_s is None, "nothing has run yet"
