@@ -97,6 +97,13 @@ def test_while_a_message_is_sent_again_its_recipient_has_half(stack):
     assert takes(stack, most={2: 10})
 
 
+def test_half_is_as_many_as_at_first_at_least(stack):
+    hold(stack, 2, FIRST + SPARE - 1, tries=2)
+    assert takes(stack, urgent=True, most={2: FIRST + 1})
+    hold(stack, 2, 1, tries=2)
+    assert not takes(stack, urgent=True, most={2: FIRST + 1})
+
+
 def test_who_does_not_answer_for_long_has_as_few_as_at_first(stack):
     hold(stack, 2, FIRST, tries=SURE_AFTER)
     most = {2: 10}
