@@ -59,6 +59,7 @@ def source(duration_us=2_000_000):
         (2.0, 3.0, "the run ends at 2 s"),
         (0.5, 0.500001, (500_000, 500_001)),
         (0.5, 0.5, "nothing lies in that window"),
+        (0.0, 0.0, "nothing lies in that window"),
         (-0.000001, 1.0, "nothing lies in that window"),
         (0.5, 9.0, (500_000, 9_000_000)),
     ],
