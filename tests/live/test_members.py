@@ -4,11 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.live import group
+from innervate.live import group, noise
 from innervate.live.contact import REKEY_US
 from innervate.live.engine import clock_us
 from innervate.live.group import CALL_US, CALLS, SEEK_US, GroupContact
-from innervate.live.keyring import ANYBODY, LIFE_BYTES, Proven
+from innervate.live.keyring import ANYBODY, LIFE_BYTES, About, Proven, read_about
 from innervate.live.session import COUNTERS
 from tests.live.pair import Wire, begin, join, network_sealer, own_sealer, settle
 from tests.live.test_rotation import timed
@@ -159,3 +159,21 @@ async def test_of_a_group_everybody_is_heard_again_after_keys_were_used_up():
     await settle()
     assert wires[1].got == [(1, b"under the new one")]
     assert wires[1].sealer.dropped == {}
+
+
+@pytest.mark.parametrize(
+    ("own", "far", "whole"),
+    [("a", "bcd", True), ("", "", True), ("ö" * 200, "", False)],
+)
+def test_what_a_node_says_of_itself_is_as_the_formats_have_it(own, far, whole):
+    said = About(5, ANYBODY, b"12345678", 0x01020304, own, far, b"rest").encode()
+    assert said[:16] == b"\x00\x05\xff\xff12345678\x01\x02\x03\x04"
+    if whole:
+        assert said[16:] == b"%c%b%c%brest" % (len(own), own.encode(), len(far), far.encode())
+        about = read_about(said)
+        assert about == (5, ANYBODY, b"12345678", 0x01020304, own, far, b"rest")
+        with pytest.raises(noise.Broken):
+            read_about(said[:15])
+    else:
+        assert said[16] == 255
+        assert len(said) == 16 + 1 + 255 + 1 + 4
