@@ -9,8 +9,8 @@ from innervate.kernel import cache, compilation
 from innervate.sweeping import SweepError, make_plan, scheduler
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.jobs import Jobs
-from innervate.sweeping.scheduler import Scheduler
-from innervate.sweeping.work import Done, Outcome
+from innervate.sweeping.scheduler import DEATHS_MAX, Scheduler
+from innervate.sweeping.work import Done, Job, Outcome
 from innervate.trace.sources import stamp
 from tests.sweeping.test_plan import SKIN
 
@@ -163,3 +163,74 @@ def test_a_rule_about_no_figure_and_a_worker_of_another_version_are_told(conduct
         conducted(Noting(), repeat=4, until="y.ci=5%").run()
     with pytest.raises(SweepError, match="the worker on here has other sources"):
         conducted(Noting(sources="others"), repeat=4).run()
+
+
+def test_the_time_left_is_that_of_a_run_for_each_that_is_missing(conducted, monkeypatch):
+    monkeypatch.setattr(scheduler.time, "perf_counter", lambda: 130.0)
+    made = conducted(Noting(), repeat=9, points=2)
+    for state, done in zip(made.states, (9, 4), strict=True):
+        state.goal, state.done = 9, done
+    assert (made.done, made.total) == (13, 18)
+    made.ran = 5
+    assert made.left_s is None
+    made._first_ran = (100.0, 5)
+    assert made.left_s is None  # nobody knows yet
+    made.ran = 11
+    assert made.left_s == 30 / 6 * 5
+
+
+def test_with_a_rule_there_will_be_as_many_runs_as_it_needs(conducted):
+    made = conducted(Noting(), repeat=50, until="x.ci=10%")
+    (state,) = made.states
+    state.goal, state.values = 8, {"x": dict(enumerate([1.0, 1.4] * 4))}
+    assert 8 < made.total == made.plan.until[0].needed([1.0, 1.4] * 4) < 50
+    state.values = {"x": dict(enumerate([1.0, 1.00001] * 4))}
+    assert made.total == 8  # as many as are decided
+    state.values = {"x": dict(enumerate([1.0, 9.0] * 4))}
+    assert made.total == 50
+    state.finished = True
+    assert made.total == 8
+
+
+def job(repeat, point=""):
+    return Job(point, {}, repeat, 0)
+
+
+def test_who_died_with_a_worker_goes_alone_and_is_given_up_after_the_third_time(conducted):
+    engine = Noting()
+    made, renewed = conducted(engine, repeat=9), []
+    engine.renew = lambda: renewed.append(len(made._suspects))
+    digest = made.plan.points[0].digest
+    one, other = job(0, digest), job(1, digest)
+    made.states[0].goal = 9
+    made._isolate([[one, other]])  # nobody knows which of them
+    made._isolate([[one], [other]])
+    assert set(made._deaths.values()) == {0}
+    assert (list(made._suspects), renewed) == ([one, other, one, other], [2, 4])
+    made._suspects.clear()
+    for _ in range(DEATHS_MAX - 1):
+        made._isolate([[one]])
+    assert (list(made._suspects), made.failed) == ([one] * (DEATHS_MAX - 1), 0)
+    made._isolate([[one]])
+    assert (len(made._suspects), made.done, made.failed) == (DEATHS_MAX - 1, 1, 1)
+    found = made._jobs.runs(digest, 9)
+    assert list(found) == [0]
+    assert made._deaths[digest, 1] == 0
+
+
+def test_suspects_run_one_at_a_time_before_all_others(conducted):
+    engine = Noting()
+    made = conducted(engine, repeat=9)
+    for state in made.states:
+        made._begin(state)
+    digest = made.plan.points[0].digest
+    made._suspects.extend([job(0, digest), job(1, digest)])
+    assert made._hand_out()
+    assert made._hand_out()
+    assert engine.batches == [[(digest, 0)]]
+    made._running.clear()
+    assert made._hand_out()
+    assert engine.batches[1:] == [[(digest, 1)]]
+    made._running.clear()
+    assert made._hand_out()
+    assert len(engine.batches) == 2 + len(made._running) > 2

@@ -19,6 +19,7 @@ from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, engines
 from innervate.sweeping.flat import flat
 from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.sweep import _writing
 from tests.sweeping.conftest import TIMEOUT_S, environment, start, until
 
 VARY = {"protocol.k": [2, 4]}
@@ -305,3 +306,15 @@ def test_workers_that_cannot_start_are_one_line(four, monkeypatch):
     with pytest.raises(SweepError, match="no worker can be started here"):
         innervate.sweep(four, workers=2, out="out")
     assert innervate.sweep(four, workers=1, out="out").ran == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [(OSError(28, "No space left"), "No space left"), (TimeoutError(), "TimeoutError")],
+)
+def test_why_a_sweep_cannot_be_written_is_said(error, why):
+    with (
+        pytest.raises(SweepError, match=f"out cannot be written: {why}; what is done is kept"),
+        _writing(Path("out")),
+    ):
+        raise error

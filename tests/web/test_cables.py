@@ -82,3 +82,13 @@ def test_where_each_frame_has_its_own_latency_the_mean_is_taken(spread):
     world.ends["latency"][:] = 1
     put(world, 0, 4, 1050, 1)
     assert [one["p"] for one in cables.flights(world, 1000)] == [0.5]
+
+
+def test_of_too_many_frames_the_first_are_shown(monkeypatch):
+    cables, world, _ = made()
+    world.ends["latency"][:] = 100
+    for place in range(4):
+        put(world, place, 4, 1100 - place, 1)
+    assert len(cables.flights(world, 1000)) == 4
+    monkeypatch.setattr("innervate.web.cables.FLIGHTS_MAX", 3)
+    assert [one["p"] for one in cables.flights(world, 1000)] == [0.0, 0.01, 0.02]

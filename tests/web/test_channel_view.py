@@ -1,8 +1,14 @@
 """A network of one's own on a channel, on the page."""
 
+import math
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from innervate import scenario
+from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.web.channel_view import ChannelView
 from innervate.web.errors import Refused
 from innervate.web.messages import Cut, Kill, Revive
 from innervate.web.simulated import Simulated
@@ -37,3 +43,56 @@ def test_its_nodes_are_shown_switched_off_and_on(alone):
     assert state["node_up"].tolist() == [1] * 6
     assert state["fields"]["value"] == [7] * 6
     assert state["fields"]["twice"] == [14.0] * 6
+
+
+@pytest.fixture
+def view():
+    """A view of four nodes, without a simulation: what one leaves in its tables is put there."""
+    made = object.__new__(ChannelView)
+    made.plan = SimpleNamespace(nodes=4, absent=[0, 0, 1, 0], kind="x")
+    made.shown, made.own = [{"name": "value"}], {}
+    states = np.zeros(4, [("value", np.int64)])
+    radios = np.zeros(6, [("alive", np.int64)])  # of more than there are nodes
+    world = SimpleNamespace(run={"handled": [0]}, radios=radios, stations=states,
+                            params=np.zeros(1, [("a", np.int64)]))  # fmt: skip
+    made.engine = SimpleNamespace(world=world)
+    return made
+
+
+def test_who_is_on_is_who_was_there_at_first_and_then_who_was_switched_on(view):
+    assert view.arrays(False)["node_up"].tolist() == [1, 1, 0, 1]
+    assert view.arrays(False)["unconnected"] == 1
+    view.engine.world.run["handled"] = [1]
+    assert view.arrays(False)["unconnected"] == 4
+    view.engine.world.radios["alive"][[0, 2, 5]] = 1
+    view.engine.world.stations["value"] = [5, 6, 7, 8]
+    told = view.arrays(True)
+    assert (told["node_up"].tolist(), told["unconnected"], told["apart"]) == ([1, 0, 1, 0], 2, 0)
+    assert (told["link_up"].tolist(), told["flights"]) == ([], [])
+    assert told["fields"] == {"value": [5, 6, 7, 8]}
+
+
+def test_nodes_that_are_on_are_switched_off_and_others_on(view):
+    fault = view.make(7, 3, view.kill(1, False))
+    assert (fault.at_us, fault.index, fault.action, fault.node) == (7, 3, KILL, 1)
+    assert view.takes(fault)
+    with pytest.raises(Refused, match="this node is on"):
+        view.kill(1, True)
+    mended = view.make(8, 4, view.kill(2, True))
+    assert (mended.action, mended.node, view.takes(mended)) == (JOIN, 2, False)
+    with pytest.raises(Refused, match="this node is off already"):
+        view.kill(2, False)
+    with pytest.raises(Refused, match="no node 4"):
+        view.kill(4, False)
+    with pytest.raises(Refused, match="have no links"):
+        view.cut(0, False)
+
+
+def test_nodes_lie_in_a_circle_so_far_apart(view):
+    view.plan.nodes = 12
+    places = [(one["x"], one["y"]) for one in view.scene()["nodes"]]
+    radius = 1.5 * 12 / (2 * math.pi)
+    assert [math.hypot(*place) for place in places] == pytest.approx([radius] * 12, abs=0.001)
+    assert places[0] == pytest.approx((radius, 0), abs=0.001)
+    assert places[3] == pytest.approx((0, radius), abs=0.001)
+    assert view.scene()["links"] == []

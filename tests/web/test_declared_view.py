@@ -12,6 +12,7 @@ from innervate.network import networks
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.sim.cables.declared import simulation
 from innervate.sim.cables.world import DEAD
+from innervate.web import declared_view
 from innervate.web.declared_view import DeclaredView
 from innervate.web.engine import Engine
 from innervate.web.errors import Refused, WatchError
@@ -137,3 +138,24 @@ def test_a_network_of_too_many_nodes_is_not_drawn():
     shown(nodes=1000, shape="line")
     with pytest.raises(WatchError, match="1,001 nodes are too many to be drawn; at most 1,000"):
         shown(nodes=1001, shape="line")
+
+
+def test_messages_that_may_still_come_are_not_missed(monkeypatch):
+    view, asked = shown(), []
+    monkeypatch.setattr(
+        declared_view, "headline", lambda counts, handled, goes_on: asked.append((handled, goes_on))
+    )
+    view.engine.world.run["handled"][0] = 5
+    for now_us in (499_999, 500_000):
+        view.engine.now_us = now_us
+        view.headline()
+    assert asked == [(5, True), (5, False)]
+
+
+def test_what_nodes_are_coloured_by_is_of_their_fields_or_of_functions_of_them():
+    view = shown()
+    view.own["seqno"] = ("", lambda node, params: 2 * node.seqno + 1)
+    view.shown = [{"name": "seqno"}, {"name": "parent"}]
+    cells = view.engine.world.cells[:4]
+    cells["seqno"], cells["parent"] = [3, 4, 5, 6], [0, 1, 2, 1]
+    assert view.arrays(False)["fields"] == {"seqno": [7, 9, 11, 13], "parent": [0, 1, 2, 1]}

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from innervate import scenario as scenarios
-from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.field.declared import simulation
 from innervate.sim.field.states import ALIVE
 from innervate.web.engine import Engine
@@ -89,3 +89,13 @@ def test_who_is_on_can_be_switched_off_and_who_is_off_on():
     for node, is_revived in ((0, True), (3, False)):
         with pytest.raises(Refused):
             view.kill(node, is_revived)
+
+
+@pytest.mark.parametrize(
+    ("action", "takes"),
+    [(KILL, True), (REVIVE, False), (CUT, True), (RESTORE, False), (JAM, True), (QUIET, False),
+     (RESTART, False)],
+)  # fmt: skip
+def test_what_takes_something_away_and_what_gives_it_back(action, takes):
+    view = shown()
+    assert view.takes(view.make(7, 0, {"action": action, "node": 1})) == takes

@@ -82,6 +82,16 @@ def test_the_headline_of_those_that_are_all_joined():
     assert (found.level, found.text) == ("ok", "All 4 nodes answer.")
 
 
+def test_where_nobody_answers_nodes_are_counted_and_not_their_ports():
+    places = [P[0], Place(1, 0), Place(1, 1)]
+    room = SimpleNamespace(**vars(ROOM) | {"places": places, "links": []})
+    room.number = {place: at for at, place in enumerate(places)}
+    assert State(room, {}).headline().text == "None of the 2 nodes answers."
+    assert State(room, {}).fields()["unconnected"] is None
+    one = State(room, {0: said(), 1: said(0, ports=(0, 1))}, [places[1]])
+    assert one.cut_off == [False, True, False], "of a port its own path alone"
+
+
 class Cut(State):
     is_off_when_cut = True
 
@@ -96,6 +106,12 @@ def test_what_has_changed_is_told_of_links_and_of_nodes_that_answered_all_the_ti
     gone = kind(ROOM, {i: one for i, one in told().items() if i != 1})
     assert before.changed_links(gone) == []
     assert before.changed_places(gone) == []
+    assert after.changed_places(gone) == gone.changed_places(after) == []
+    assert before.changed_links(gone) == gone.changed_links(after) == []
+    fewer = SimpleNamespace(**vars(ROOM) | {"links": LINKS[:1], "places": P[:3]})
+    assert kind(fewer, told()).changed_links(before) == [], "links that were not known before"
+    less = SimpleNamespace(**vars(fewer) | {"links": [], "places": P[:1]})
+    assert kind(less, told()).changed_places(after) == [], "nor nodes"
 
 
 def test_whole_numbers_that_all_say_are_shown_of_everybody():

@@ -73,9 +73,9 @@ def verdict(done: list[Case]) -> str:
     if not all(case.sums_up for case in done):
         return ""
     broken = sum(case.is_broken for case in done)
-    part = sum(not case.is_complete and not case.is_broken for case in done)
     if broken:
         return f"{broken} of {len(done)} broken."
+    part = sum(not case.is_complete for case in done)
     if len(done) == 1:
         return f"Nothing broken in one exploration, {'only in part' if part else 'completely'}."
     sampled = f"; {part} of them only in part" if part else ", all completely"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.spread import spread
-from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.field import ACTIONS, CUT, HARM, KILL, RESTORE, REVIVE
 from innervate.scenario.declared.field import Fault
 from innervate.sim.field.states import ALIVE
 from innervate.web.channel_view import ChannelView
@@ -47,7 +47,7 @@ class FieldView(ChannelView):
 
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""
-        return bool(fault.action in (KILL, CUT))
+        return ACTIONS[fault.action] in HARM
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or restores it."""

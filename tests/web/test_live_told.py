@@ -1,0 +1,217 @@
+"""What a page is told of running nodes over time: points, recoveries, who cut what; by a clock."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.web import live
+from innervate.web.errors import Refused
+from innervate.web.history import LOG, SERIES
+from innervate.web.live import EXPECTED_S, POLL_S, SOON_S, Live
+from innervate.web.live_poll import Poller
+from innervate.web.messages import Cut, Heal, Kill, Revive
+
+RING = [(0, 1), (1, 2), (2, 0)]
+
+
+def said(received=0, dropped=0, up=(True, True), onward=(), gateway=0, number=0):
+    """What a node of a ring of three says; its paths lead to the one before and the one behind."""
+    near = [{"node": (number + step) % 3, "ports": [port], "suspect": False}
+            for port, step in enumerate((2, 1))]  # fmt: skip
+    paths = [{"port": port, "name": f"p{port}", "own": "", "up": up[port],
+              "counters": {"received": received}} for port in range(2)]  # fmt: skip
+    return {"kind": "mesh", "role": "node" if number else "gateway", "number": number,
+            "gateway": gateway, "onward": list(onward), "paths": paths, "neighbours": near,
+            "counters": {"dropped: crc": dropped, "dropped: length": 1, "frames": 99},
+            }  # fmt: skip
+
+
+def all_of_them(**changes):
+    own = {i: {"onward": () if i == 0 else (0,)} for i in range(3)}
+    for name, change in changes.items():
+        own[int(name[1:])] |= change
+    return {i: said(number=i, **own[i]) for i in range(3)}
+
+
+class Nodes:
+    """Running nodes, what they answer, and a page's source that asks them."""
+
+    def __init__(self, monkeypatch):
+        self.now, self.told, self.asked, self.deaf = 100.0, all_of_them(), [], set()
+        clock = SimpleNamespace(monotonic=lambda: self.now)
+        monkeypatch.setattr(live, "time", clock)
+        monkeypatch.setattr(Poller, "ask_all", lambda _, request: dict(self.told))
+        monkeypatch.setattr(Poller, "ask", lambda _, requests: self._answer(requests))
+        self.source = Live([Path(name) for name in ("a", "b", "c")])
+
+    def _answer(self, requests):
+        ((node, request),) = requests.items()
+        self.asked.append((node, request["do"], request["port"]))
+        return {} if node in self.deaf else {node: {"ok": True}}
+
+    def look(self, after_s=0.0):
+        """Some time later all are asked."""
+        self.now += after_s
+        self.source._poll()
+        self.source._look()
+        return self.source.fields()
+
+    def texts(self):
+        history = self.source.history
+        return [one.what["text"] for one in history.after(LOG, 0, history.newest, 99)]
+
+    def points(self):
+        history = self.source.history
+        return [one.what for one in history.after(SERIES, 0, history.newest, 99)]
+
+
+@pytest.fixture
+def nodes(monkeypatch):
+    return Nodes(monkeypatch)
+
+
+def test_points_are_rates_since_the_last_look_and_never_below_0(nodes):
+    nodes.look(1.0)
+    assert nodes.points() == [], "of one look nobody knows a rate"
+    nodes.told = all_of_them(n1={"received": 10, "dropped": 4}, n2={"received": 5})
+    nodes.look(2.0)
+    nodes.told = all_of_them(n1={"received": 10, "dropped": 4, "gateway": None})
+    nodes.look(1.0)  # node 2 was started anew
+    assert nodes.points() == [
+        {"unconnected": 0.0, "frames": 15.0, "dropped": 2.0},
+        {"unconnected": 1.0, "frames": 0, "dropped": 0.0},
+    ]
+
+
+def test_what_others_cut_is_said_and_begins_a_recovery_what_is_put_back_only_said(nodes):
+    nodes.look(1.0)
+    nodes.told = all_of_them(n1={"up": (False, True)})  # its cable to 0
+    shown = nodes.look(1.0)
+    assert shown["recovery"]["cause"] == "link a - b cut"
+    assert shown["recovery"]["at_s"] == 2.0
+    assert shown["link_up"].tolist() == [0, 1, 1]
+    nodes.told = all_of_them()
+    shown = nodes.look(1.0)
+    assert shown["recovery"]["cause"] == "link a - b cut"
+    nodes.told = all_of_them(n1={"up": (False, False)})
+    shown = nodes.look(1.0)
+    assert shown["recovery"]["cause"] == "link a - b cut, and 1 more"
+    cuts = [text for text in nodes.texts() if text.startswith("link")]
+    assert cuts == ["link a - b cut", "link a - b put back", "link a - b cut", "link b - c cut"]
+
+
+@pytest.mark.parametrize(("after_s", "is_ours"), [(EXPECTED_S - 0.01, True),
+                                                  (EXPECTED_S + 0.01, False)])  # fmt: skip
+def test_what_was_cut_from_here_is_said_once(nodes, after_s, is_ours):
+    nodes.look(1.0)
+    nodes.source.carry_out(Cut(0))
+    assert nodes.asked == [(0, "cut", 1), (1, "cut", 0)]
+    nodes.told = all_of_them(n0={"up": (True, False)}, n1={"up": (False, True)})
+    nodes.look(after_s)
+    assert nodes.texts().count("link a - b cut") == (1 if is_ours else 2)
+    nodes.asked.clear()
+    with pytest.raises(Refused, match="carries nothing already"):
+        nodes.source.carry_out(Cut(0))
+    nodes.source.carry_out(Heal(0))
+    assert nodes.asked == [(0, "restore", 1), (1, "restore", 0)]
+    assert nodes.texts()[-1] == "link a - b put back"
+
+
+def test_a_cable_of_which_neither_end_can_be_told(nodes):
+    nodes.look(1.0)
+    nodes.deaf = {0}
+    nodes.source.carry_out(Cut(0))  # one end is enough
+    nodes.deaf = {0, 1}
+    with pytest.raises(Refused, match="neither end could be told"):
+        nodes.source.carry_out(Cut(0))
+    with pytest.raises(Refused, match="this link is not cut"):
+        nodes.source.carry_out(Heal(0))
+
+
+def test_a_node_is_cut_off_by_all_its_paths_and_let_back(nodes):
+    nodes.look(1.0)
+    nodes.source.carry_out(Kill(2))
+    assert nodes.asked == [(2, "cut", 0), (2, "cut", 1)]
+    nodes.told = all_of_them(n2={"up": (False, False)})
+    shown = nodes.look(0.5)
+    assert shown["node_up"].tolist() == [1, 1, 0]
+    assert shown["recovery"]["cause"] == "c cut off"
+    assert [text for text in nodes.texts() if text.startswith("link")] == []
+    with pytest.raises(Refused, match="c is cut off already"):
+        nodes.source.carry_out(Kill(2))
+    with pytest.raises(Refused, match="b is not cut off"):
+        nodes.source.carry_out(Revive(1))
+    nodes.deaf = {2}
+    with pytest.raises(Refused, match="c could not be told"):
+        nodes.source.carry_out(Revive(2))
+    nodes.deaf = set()
+    nodes.source.carry_out(Revive(2))
+    assert nodes.asked[-2:] == [(2, "restore", 0), (2, "restore", 1)]
+    nodes.told = all_of_them()
+    assert nodes.look(0.5)["node_up"].tolist() == [1, 1, 1]
+    del nodes.told[2]
+    nodes.look(0.5)
+    nodes.look(0.5)
+    with pytest.raises(Refused, match="c does not answer; start it again where it ran"):
+        nodes.source.carry_out(Kill(2))
+
+
+def test_how_a_recovery_went_is_told_from_the_cut_on(nodes):
+    nodes.look(1.0)
+    nodes.source.carry_out(Cut(0))
+    lost = {"n0": {"up": (True, False)}, "n1": {"up": (False, True), "gateway": None}}
+    nodes.told = all_of_them(**lost)
+    shown = nodes.look(0.3)
+    assert (shown["recovery"]["detected_ms"], shown["recovery"]["recovered_ms"]) == (300.0, None)
+    assert shown["unconnected"] == 1
+    assert nodes.look(0.2)["recovery"]["detected_ms"] == 300.0
+    lost["n1"] |= {"onward": (2,), "gateway": 0}
+    nodes.told = all_of_them(**lost)
+    assert nodes.look(0.25)["recovery"]["recovered_ms"] == 750.0
+    assert nodes.texts()[-1] == "every node has a way again after 750 ms, as they say"
+    shown = nodes.look(5.0)
+    assert shown["recovery"]["recovered_ms"] == 750.0
+    assert shown["since_cut_s"] == pytest.approx(5.8, abs=0.06)
+
+
+def test_several_that_go_are_one_cause(nodes):
+    nodes.look(1.0)
+    gone = {0: nodes.told[0]}
+    nodes.told = gone
+    nodes.look(0.5)
+    nodes.told = gone
+    shown = nodes.look(0.5)
+    assert shown["recovery"]["cause"] == "2 nodes do not answer any more"
+    assert [text for text in nodes.texts() if "not answer" in text] == [
+        "b does not answer any more", "c does not answer any more",
+    ]  # fmt: skip
+
+
+def test_nodes_are_asked_more_often_while_somebody_has_no_way(nodes):
+    source = nodes.source
+    assert source.work() == pytest.approx(POLL_S)
+    nodes.now += POLL_S / 2
+    assert source.work() == pytest.approx(POLL_S / 2)
+    source.carry_out(Cut(0))
+    nodes.told = all_of_them(n0={"up": (True, False)}, n1={"up": (False, True), "gateway": None})
+    assert source.work() == pytest.approx(SOON_S), "it is looked at once what came of a command"
+    nodes.now += SOON_S
+    nodes.told = all_of_them()
+    assert source.work() == pytest.approx(POLL_S)
+
+
+def test_a_link_that_is_new_needs_another_scene_and_one_that_nobody_names_stays(nodes):
+    source = nodes.source
+    nodes.now += 1.0
+    source.work()
+    assert (source.scenes, len(source.scene()["links"])) == (1, 3)
+    nodes.told[0]["neighbours"] = nodes.told[0]["neighbours"][1:]
+    nodes.told[2]["neighbours"] = nodes.told[2]["neighbours"][:1]
+    nodes.now += 1.0
+    source.work()
+    assert (source.scenes, len(source.scene()["links"])) == (1, 3), "neither end names it"
+    nodes.told[2]["neighbours"][0] = {"node": 1, "ports": [0, 1], "suspect": False}
+    nodes.now += 1.0
+    source.work()
+    assert (source.scenes, len(source.scene()["links"])) == (2, 3)
