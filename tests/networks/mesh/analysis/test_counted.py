@@ -1,4 +1,4 @@
-"""A mesh's summary, part by part: who was joined, what came after a death, flows, detours, spares."""
+"""A mesh's summary, part by part: who was joined, what came after a death, flows, detours."""
 
 from types import SimpleNamespace as Of
 

@@ -13,13 +13,14 @@ def test_each_row_is_a_sentence_that_names_who_it_is_about():
             (2_000_001, 0, OUTSIDE, HOLD, 3), (3_000_000, 2, OUTSIDE, NUMBERS, -1),
             (4_000_000, 0, OUTSIDE, ORDER, 0)]  # fmt: skip
     said = outside(np.array(rows, row_dtype(ROW)), lambda node: f"c{node}")
+    since = "outside what is proved from"
     assert said == [
-        "outside what is proved from 1.500000 s on: c1, which was restarted, takes a route although "
-        "c0 has an old one of it still (Restart)",
-        "outside what is proved from 2.000001 s on: c0, which forgot its feasible distance, takes a "
-        "route although c3 has an old one of it still (FD_HOLD)",
-        "outside what is proved from 3.000000 s on: numbers in use do not lie within half of all, "
-        "the oldest at c2 (Numbers)",
-        "outside what is proved from 4.000000 s on: under rule strict a beacon from c0 comes to c0 "
-        "behind a newer one (Order)",
+        f"{since} 1.500000 s on: c1, which was restarted, takes a route although c0 has an old one "
+        "of it still (Restart)",
+        f"{since} 2.000001 s on: c0, which forgot its feasible distance, takes a route although c3 "
+        "has an old one of it still (FD_HOLD)",
+        f"{since} 3.000000 s on: numbers in use do not lie within half of all, the oldest at c2 "
+        "(Numbers)",
+        f"{since} 4.000000 s on: under rule strict a beacon from c0 comes to c0 behind a newer one "
+        "(Order)",
     ]

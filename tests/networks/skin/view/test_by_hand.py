@@ -1,4 +1,4 @@
-"""A skin that is touched and commanded by hand: from which step on, whom it reaches, what is said."""
+"""A skin touched and commanded by hand: from which step on, whom it reaches, what is said."""
 
 from types import SimpleNamespace as Of
 
