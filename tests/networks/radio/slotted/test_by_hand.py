@@ -198,7 +198,7 @@ def test_a_counter_begins_with_its_packet():
 
 
 def measured(until=None, warmup=0.0, stations=2):
-    """Six packets of 40 ticks that end at 100, 200 ...; a slot is 10, after a packet 10 are idle."""
+    """Six packets of 40 ticks that end at 100, 200 ...; a slot is 10, then 10 are idle."""
     made = new_recorder(SATURATED, 2, 3, generator(1, "x"))
     for k in range(6):
         made.counts[COLLISIONS] = 10 * (k + 1)
