@@ -87,7 +87,7 @@ def test_less_is_seed_by_seed():
     assert found.measurement.endswith("less in 9 and more in 0 of 9")
     found = compared([1.0] * 9, [1.0] * 9)
     assert (found.verdict, found.reason) == ("does not hold", "why")
-    found = compared(["", 1.0, 2.0, None, 5.0], [9.0, 2.0, 1.0, None, None])
+    found = compared(["", 1.0, 2.0, None, 5.0], [0.5, 2.0, 1.0, None, None])
     assert found.measurement.endswith("less in 2 and more in 1 of 4")
 
 

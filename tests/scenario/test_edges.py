@@ -144,3 +144,9 @@ def test_four_of_a_list_are_shown():
     assert shown("a" * 49) == f'"{"a" * 45}..."'
     assert shown(10**20) == "1" + "0" * 20
     assert shown(-(10**21)) == "a number that long"
+
+
+@pytest.mark.parametrize("name", ["a\0b", "a" * 5000])
+def test_a_name_that_no_file_can_have_is_none(name):
+    with pytest.raises(ScenarioError, match="no such file, and no bundled scenario"):
+        load(name)
