@@ -2,7 +2,14 @@ from math import exp, lgamma, log1p, pi, sqrt
 
 import pytest
 
-from innervate.analysis.intervals import mean_interval, quantile, t_quantile, wilson
+from innervate.analysis.intervals import (
+    mean_interval,
+    median_interval,
+    quantile,
+    quantile_interval,
+    t_quantile,
+    wilson,
+)
 
 # Student's t as textbooks print it, to three places: shares, then a row for every freedom.
 SHARES = (0.75, 0.90, 0.95, 0.975, 0.99, 0.995, 0.9995)
@@ -70,6 +77,15 @@ def test_quantile():
     assert [quantile([5, 1, 3], share) for share in (0, 1)] == [1, 5]
     assert quantile([1, 2, 4], 0.75) == 3
     assert quantile([1, 2, 9], 0.25) == 1.5
+
+
+def test_a_quantiles_interval_leaves_out_at_most_half_the_chance_that_is_left():
+    """Of 4 values 5 in 16 draws have at most one below the median: exactly what is left here."""
+    values = [40.0, 10.0, 30.0, 20.0]
+    assert median_interval(values, 0.375) == (25.0, 20.0, 30.0)
+    assert median_interval(values, 0.376) == (25.0, 10.0, 40.0)
+    assert quantile_interval(values, 0.75, 0.1)[1:] == (30.0, 40.0)
+    assert median_interval([7.0]) == (7.0, 7.0, 7.0)
 
 
 def test_wilson():

@@ -50,6 +50,19 @@ def test_loops_are_counted_when_they_close():
     assert again.loops == [30, 50]
 
 
+def test_of_one_moment_harm_comes_before_a_change():
+    """1 takes 0 again at the very moment at which the cable to it goes: that way is none."""
+    ways = played([*UP, (40, 1, -1), (100, 1, 0)], Harm(100, cables=(0,)))
+    assert ways.steps[-1] == (40, 2)
+    assert ways.roots() == [-1, -1, 2, -1]
+
+
+def test_who_has_changed_over_does_not_share_the_lot_of_whom_it_left():
+    ways = played([*UP, (40, 3, 1), (50, 1, -1)])
+    assert ways.steps[-2:] == [(30, 0), (50, 1)]  # 3 goes through 2 by now
+    assert ways.roots() == [-1, -1, 2, 2]
+
+
 def test_changes_back_over_a_dead_cable_lead_nowhere():
     assert played([*UP, (150, 1, 0)], Harm(100, cables=(0,))).steps[-1][1] == 2
 
@@ -64,6 +77,15 @@ def test_an_outage_is_over_when_it_stays_so():
     assert settled_us(STEPS, 100, 141, 50) == 140  # nothing more is known
     assert settled_us(STEPS, 100, 130, 50) is None
     assert settled_us(STEPS, 50, 90, 50) == 50
+    assert settled_us(STEPS, 100, 500, 5) == 120  # so long exactly
+    assert settled_us(STEPS, 100, 500, 6) == 140
+
+
+def test_what_happens_at_the_end_of_what_is_looked_at_is_no_part_of_it():
+    assert most_without(STEPS, 50, 100) == 0
+    assert most_without(STEPS, 100, 120) == 2
+    assert settled_us(STEPS, 100, 120, 5) is None
+    assert time_without_us(STEPS, 100, 120) == 2 * 20
 
 
 def test_how_many_and_for_how_long():

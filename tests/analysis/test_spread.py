@@ -40,6 +40,13 @@ def test_whom_no_link_joins_is_a_hop_farther_than_the_farthest():
     assert dist(places[0], places[2]) == pytest.approx(2, abs=MOVED + 0.2)
 
 
+def test_parts_that_no_link_joins_lie_farther_apart_than_those_that_one_does():
+    places = spread(4, [(0, 1), (2, 3)]).tolist()
+    for a, b in combinations(range(4), 2):
+        far = dist(places[a], places[b])
+        assert (far < 1.4) == ((a, b) in {(0, 1), (2, 3)}), (a, b, far)
+
+
 def test_who_is_as_far_from_everybody_lies_by_itself():
     places = spread(6, list(combinations(range(6), 2))).tolist()
     assert min(dist(a, b) for a, b in combinations(places, 2)) > 0.05

@@ -84,7 +84,7 @@ class Ways:
             node = waiting.pop()
             if self._routed[node] != routed:
                 self._routed[node] = routed
-                self._without += (-1 if routed else 1) * (node in self._joined)
+                self._without += -1 if routed else 1
                 waiting += self._children[node]
 
     def _suffer(self, harm: Harm) -> None:
@@ -169,7 +169,7 @@ def settled_us(steps: Sequence[tuple[int, int]], start: int, end: int, calm_us: 
 
 
 def most_without(steps: Sequence[tuple[int, int]], start: int, end: int) -> int:
-    """The greatest number without a way between two moments, both included."""
+    """The greatest number without a way from one moment on until just before another."""
     return max((count for _, count in _between(steps, start, end)), default=0)
 
 

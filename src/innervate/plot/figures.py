@@ -85,7 +85,7 @@ def latency(run: Any) -> Figure:
     if not len(known):
         return nothing("no message whose latency is known")
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
-    ax.step(known, np.arange(1, len(known) + 1) / max(1, len(known)), where="post", lw=1)
+    ax.step(known, np.arange(1, len(known) + 1) / len(known), where="post", lw=1)
     ax.set_xlabel("latency (ms)")
     ax.set_ylabel("share delivered")
     ax.set_ylim(0, 1.02)

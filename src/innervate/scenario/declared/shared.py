@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from innervate.network import Network
 from innervate.scenario.cables import Input
 from innervate.scenario.errors import ScenarioError
-from innervate.scenario.events import in_time, refuse
+from innervate.scenario.events import exact, in_time, refuse
 from innervate.scenario.explain import alternatives, nearest
 from innervate.scenario.keys import Table, number, whole
 from innervate.scenario.lines import Key
@@ -125,7 +125,7 @@ def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]
     found: list[Input] = []
     for given in model.input:
         period = given.every_s or model.duration_s
-        times = math.ceil((model.duration_s - given.at_s) / period)
+        times = math.ceil((exact(model.duration_s) - exact(given.at_s)) / exact(period))
         who = range(nodes) if given.node is None else [given.node]
         if len(found) + times * len(who) > INPUTS_MAX:
             what = f"more than {INPUTS_MAX:,} inputs; make every_s longer or the run shorter"

@@ -50,6 +50,14 @@ def test_to_touch_or_follow_the_fence_is_not_to_cross_it():
     assert fence.overrun_cm(RING, touch, 0, 1e6) == fence.overrun_cm(RING, along, 0, 1e6) == 0
 
 
+def test_the_worst_place_is_found_where_it_is():
+    """From (400, 450) to (600, 590) of a hole: 150 / 340 of the way both edges are as near."""
+    walk = Walk(0, ((0, 400, 450), (1_000_000, 600, 590)))
+    worst = 200 * 150 / 340
+    assert fence.overrun_cm(RING, walk, 0, 1e6) == pytest.approx(worst, abs=fence.CLOSE_CM)
+    assert fence.CLOSE_CM == 1e-3
+
+
 SIDES = [
     (0, 0, 1000, 0),
     (1000, 0, 1000, 1000),

@@ -81,6 +81,14 @@ def test_nothing_delivered_is_down():
     assert (found.level, found.text) == (DOWN, "All 3 messages were not delivered.")
 
 
+def test_of_all_that_was_sent_one_alarm_that_came_is_something():
+    found = headline(all_well(), Traffic(decided=3, delivered=0, crossings=2, learned=1))
+    assert found.level == DEGRADED
+    found = headline(all_well(), Traffic(decided=3, delivered=1, crossings=2, learned=0))
+    assert found.level == DEGRADED
+    assert headline(all_well(), Traffic(decided=3, crossings=2)).level == DOWN
+
+
 def test_a_dead_node_is_said_although_all_was_delivered():
     found = headline(chain(DOWNHILL, LINE, off=(3,)), WELL)
     assert found.level == DEGRADED

@@ -130,10 +130,10 @@ def test_each_end_of_a_message_has_its_state():
 
 def test_numbers_of_offers_come_round_after_65536():
     count, gap = messages.HANDLES, 1000
-    offers = [Offer(k * gap, 1, 4, 0, 8, 0) for k in range(count + 2)]
+    offers = [Offer(k * gap, 2, 4, 0, 8, 0) for k in range(count + 2)]
     end = (count + 2) * gap
-    rows = [accepted(k * gap, 1, k % count, k % 50_000) for k in (0, 1, count, count + 1)]
-    rows.append((end - 10, 1, REPORT_EXPIRED, 0, NO_ACK))  # the newest 0: offer 65536
+    rows = [accepted(k * gap, 2, k % count, k % 50_000) for k in (0, 1, count, count + 1)]
+    rows.append((end - 10, 2, REPORT_EXPIRED, 0, NO_ACK))  # the newest 0: offer 65536
     found = messages.messages(made(rows=rows, offers=offers, ended_us=end))
     picked = [0, 1, 2, count - 1, count, count + 1]
     assert found.seq[picked].tolist() == [0, 1, -1, -1, count % 50_000, (count + 1) % 50_000]

@@ -34,6 +34,22 @@ def test_all_is_well():
     assert of(offered=1, delivered=1)[1] == "The packet was delivered."
 
 
+def test_four_robots_are_named():
+    left = "; all 10 packets were delivered."
+    assert of(off=(0, 1, 2, 3, 4))[1] == "No robot is on" + left
+    assert of(off=(0, 1, 2), away=(3, 4))[1] == "No robot is on" + left
+    assert of(stations=9, off=(1, 2, 3, 4))[1] == "Robots 1, 2, 3 and 4 are off" + left
+    assert of(stations=9, off=(0, 1, 2, 3, 4))[1] == "5 robots are off" + left
+
+
+@pytest.mark.parametrize(("still_ms", "words"), [
+    (999.4, "999 ms"), (999.6, "1 s"), (1000.0, "1 s"), (1234.5, "1.23 s"), (50.04, "50 ms"),
+])  # fmt: skip
+def test_how_long_nothing_is_delivered(still_ms, words):
+    text = of(ended=False, delivered=9, pending=1, still_ms=still_ms, timeout_ms=9.0)[1]
+    assert text.startswith(f"Nothing has been delivered for {words} although 1 packet waits;")
+
+
 @pytest.mark.parametrize(("action", "text"), [
     (KILL, "Robot 1 is off with 1 packet not sent; all 3 packets were delivered."),
     (LEAVE, "All 3 packets were delivered."),

@@ -77,6 +77,25 @@ def test_a_disaster_by_hand():
     assert summary["fifo"] == 0.0
 
 
+def test_the_first_are_told_in_order_of_success(monkeypatch):
+    """All of them only in a disaster, where each offers once or so."""
+    monkeypatch.setattr(radio, "ORDER_MAX", 3)
+    packets = [packet(0, (k + 1) * 10 * SLOT, k // 2 % 2) for k in range(5)]
+    assert radio.order(made(packets, traffic="saturated")) == [0, 0, 1]
+    assert radio.order(made(packets, arrivals=[[0], [0]])) == [0, 0, 1, 1, 0]
+
+
+def test_a_team_stands_still_since_its_newest_success():
+    """Ended at 100 ms; a packet of station 1 still waits since the beginning."""
+    packets = [packet(0, 30_000, 0), packet(0, 70_000, 0), packet(0, 90_000, 0, receivers=0)]
+    for there, still_ms in ((packets, 30.0), ([], 100.0)):
+        result = made(there)
+        for one in result.world.radios:
+            one.alive = 1
+        result.world.radios[1].backlog = result.world.radios[1].fresh = 1
+        assert radio.facts(result).still_ms == still_ms
+
+
 def test_nothing_ever_happened():
     summary = radio.summarize(made())
     for key in ("throughput", "duration_slots", "jain", "jain_round", "fifo"):

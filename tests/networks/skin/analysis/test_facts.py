@@ -5,10 +5,15 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
+from innervate.networks.skin.analysis.commands import _open, missed_on_the_way
+from innervate.networks.skin.analysis.frames import queued, under_way
 from innervate.networks.skin.analysis.headline import SkinFacts
 from innervate.networks.skin.analysis.reach import LABELS_MAX, reach, world_facts
+from innervate.networks.skin.protocol.constants import COMMAND, DATA
 from innervate.networks.skin.sim import counters as words
+from innervate.networks.skin.sim import orders
 from innervate.sim.cables.world import ALIVE, DEAD
+from innervate.sim.wheel import NIL
 
 CELLS = 4
 NEVER = -1  # cut off: not
@@ -61,3 +66,49 @@ def test_a_summary_names_a_hundred_and_counts_all(count, before, most):
     }
     assert set(reach(result, None).values()) == {None}
     assert LABELS_MAX == 100  # docs: at most 100
+
+
+OFF, LOST, HAD, CAME = orders.WAS_OFF, orders.HAD_NO_WAY, orders.HAD_A_WAY, orders.CAME
+POOL = 4  # the first slot of a frame on its way
+
+
+def with_commands(*flying):
+    """Three cells; commands 0 and 7, and a place that none has; two frames wait at port 1.
+
+    A ring of three frames a port: what waits at port 1 begins with its last place.
+    """
+    data, old = Of(kind=DATA, sq=9), Of(kind=COMMAND, sq=5)
+    ring = [Of(kind=COMMAND, sq=1000 + i) for i in range(6)]
+    ring[5], ring[3] = old, data
+    events = [Of(bucket=0, kind=words.COMMAND_BLOCK) for _ in range(POOL)]  # timers
+    events += [Of(bucket=0, kind=words.COMMAND_BLOCK) for _ in flying]
+    events += [Of(bucket=NIL, kind=words.COMMAND_BLOCK), Of(bucket=0, kind=0)]
+    frames = [*(Of(kind=COMMAND, sq=sq) for sq in flying), Of(kind=COMMAND, sq=7), data]
+    counters = [0] * 64
+    counters[words.GIVEN], counters[words.MISSED + HAD - OFF] = 3, 20
+    return Of(
+        watch=Of(due_number=[0, 7, -1], due=[HAD, LOST, OFF, HAD, CAME, OFF, HAD, HAD, HAD]),
+        run=[Of(queue_frames=3, pool_slots=POOL)], counters=counters, queue=ring, frames=frames,
+        buffers=[Of(queued=0, first=0), Of(queued=2, first=2)],
+        wheel=Of(events=events, pool=[NIL, len(events), 99]),
+    )  # fmt: skip
+
+
+def test_what_waits_at_a_port_goes_round_its_ring():
+    world = with_commands(0)
+    assert [frame.sq for frame in queued(world)] == [5, 9]
+    assert [frame.sq for frame in under_way(world)] == [0, 5]
+
+
+@pytest.mark.parametrize(("flying", "missed", "in_flight"), [
+    ((), {OFF: 2, LOST: 1, HAD: 2}, 0),
+    ((0,), {OFF: 2, LOST: 0, HAD: 1}, 2),  # who has no way may get one, while it flies
+    ((7,), {OFF: 2, LOST: 1, HAD: 1}, 1),
+    ((0, 7), {OFF: 2, LOST: 0, HAD: 0}, 3),
+])  # fmt: skip
+def test_who_may_still_get_a_command_has_not_missed_it(flying, missed, in_flight):
+    world = with_commands(*flying)
+    assert _open(world, 3) == (missed, in_flight)
+    assert missed_on_the_way(world, 3) == 20 + missed[HAD]
+    world.counters[words.GIVEN] = 0
+    assert missed_on_the_way(world, 3) == 0

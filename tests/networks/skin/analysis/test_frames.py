@@ -1,5 +1,7 @@
 import dataclasses
 import random
+from array import array
+from types import SimpleNamespace as Of
 
 import numpy as np
 import pytest
@@ -88,3 +90,17 @@ def test_beacon_share_is_eq_9(go):
     """250 beacons a second and direction: 1.5 % (E28)."""
     result = go("setup-3", "protocol.updates=periodic", "timing.drift_ppm=0", seconds=1)
     assert frames.beacon_share(result) == pytest.approx(0.015, rel=0.02)
+
+
+def test_beacons_take_a_share_of_the_time_that_was_simulated():
+    """100 frames of 60 us on both ways of one cable in 30 ms, of a run that was to take longer."""
+    graph = Of(peer=array("i", [4, -1, -1, -1, 0]))
+    counters = [0] * 64
+    counters[wires.SENT + wires.URGENT_BLOCK] = 100
+    plan = Of(graph=graph, wire_us=60, duration_us=9_000_000)
+    run = Of(plan=plan, counters=counters, ended_us=30_000)
+    assert frames.beacon_share(run) == pytest.approx(0.1)
+    run.ended_us = 0
+    assert frames.beacon_share(run) is None
+    graph.peer[0] = graph.peer[4] = -1
+    assert frames.beacon_share(Of(plan=plan, counters=counters, ended_us=30_000)) is None

@@ -149,7 +149,7 @@ def one(plan, rows, places):
         "at_s": at / 1e6, "action": ACTIONS[fault.action],
         "detected_ms": ms(detected, min), "converged_ms": ms(turned, max),
         "routed_ms": None if gone_total else others, "others_ms": others, "without_way": without,
-        "cut_cells": used, "cut_off": min(gone, gone_total), "cut_off_total": gone_total,
+        "cut_cells": used, "cut_off": gone, "cut_off_total": gone_total,
         "joined_again": max(0, there - step(rows, JOINED, first + 1, graph.cells)),
     }  # fmt: skip
 

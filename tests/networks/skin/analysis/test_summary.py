@@ -1,8 +1,15 @@
 import json
+from types import SimpleNamespace as Of
 
+import numpy as np
 import pytest
 
 from innervate.networks.skin.analysis.summary import broken_ports, summarize
+from innervate.networks.skin.protocol.constants import ONE, REPORT_BROKEN
+from innervate.sim.cables.world import ALIVE, DEAD, ROW
+from innervate.sim.tables import row_dtype
+from tests.networks.skin.runs import line as cells_in_a_line
+from tests.networks.skin.runs import plan_of
 
 KEYS = {
     "kind", "name", "seed", "duration_s", "events", "events_per_s", "wall_s", "fingerprint",
@@ -54,6 +61,21 @@ def test_neighbours_of_a_dead_cell_are_broken_and_it_is_not_listed(line, go):
     result = go(line(3, event=[event]))
     found = [(broken["cell"], broken["port"], broken["to"]) for broken in broken_ports(result)]
     assert found == [("p0 r0 c0", "E", "p0 r0 c1 W"), ("p0 r0 c2", "W", "p0 r0 c1 E")]
+
+
+def test_a_port_is_broken_from_the_last_time_it_was_found_so():
+    """Three cells in a row; who is off finds nothing, and a port without a cable is none."""
+    rows = [(100, 0, REPORT_BROKEN, 1, 1), (200, 0, REPORT_BROKEN, 1, 0),
+            (300, 0, REPORT_BROKEN, 1, 1), (400, 1, REPORT_BROKEN, 0, 1)]  # fmt: skip
+    penalties = [(ONE - 1, ONE, ONE, 0), (ONE, 0, 0, 0), (2 * ONE, 0, 0, 0)]
+    result = Of(
+        plan=plan_of(cells_in_a_line(3)), rows=np.array(rows, row_dtype(ROW)),
+        world=Of(cells=[Of(pf=pf) for pf in penalties], alive=[ALIVE, DEAD, ALIVE, ALIVE]),
+    )  # fmt: skip
+    assert broken_ports(result) == [
+        {"cell": "p0 r0 c0", "port": "E", "since_s": 0.0003, "to": "p0 r0 c1 W"},
+        {"cell": "p0 r0 c2", "port": "W", "since_s": None, "to": "p0 r0 c1 E"},
+    ]
 
 
 def test_unobserved_runs_have_a_summary_too(line, go):

@@ -1,3 +1,5 @@
+from types import SimpleNamespace as Of
+
 import numpy as np
 import pytest
 
@@ -33,6 +35,25 @@ def test_loss_during_a_recovery_is_a_hole(touched):
 
 def test_nothing_received_yet(touched):
     assert not received_image(touched, 0.0).known.any()
+
+
+def test_a_sample_is_known_from_when_it_came_until_a_window_later():
+    """Cell 1 has two samples: the newer one counts. Of cell 3 nothing came."""
+    made = [(100, 0, (3, 3, 4), 10), (150, 1, (6, 6, 6), 20), (160, 1, (90, 60, 0), 30),
+            (200, 2, (9, 9, 10), 40)]  # fmt: skip
+    kinds = [("time", np.int64), ("cell", np.int64), ("force", np.int64, 3),
+             ("proximity", np.int64)]  # fmt: skip
+    run = Of(plan=Of(graph=Of(cells=4)), deliveries=np.array(made, kinds))
+    for now_us, ages in ((199, (99, 39, -1, -1)), (200, (-1, 40, 0, -1)), (249, (-1, 89, 49, -1)),
+                         (260, (-1, -1, 60, -1)), (300, (-1, -1, -1, -1))):  # fmt: skip
+        found = received_image(run, now_us / 1e6, 100e-6)
+        assert found.age_us.tolist() == list(ages), now_us
+        known = [age >= 0 for age in ages]
+        assert found.known.tolist() == known
+        assert found.force_mn.tolist() == [f * k for f, k in zip((3, 50, 9, 0), known, strict=True)]
+        assert found.proximity.tolist() == [
+            p * k for p, k in zip((10, 30, 40, 0), known, strict=True)
+        ]
 
 
 def test_a_run_will_do_as_well(touched):

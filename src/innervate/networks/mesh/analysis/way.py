@@ -87,10 +87,11 @@ def way(result: Any, crossing: Crossing, sent: list[Hop] | None = None) -> list[
         ]
         if not fitting:
             break
-        # The last hop ends as the monitor accepts it; before, what was heard first was passed on.
+        # The last hop ends as the monitor accepts it, and no other; of those before, what was heard
+        # first was passed on.
         exact = [hop for hop in fitting if hop.end_us == crossing.accepted_us]
         likely = [hop for hop in fitting if _chance(result, hop.node, here) >= ONE // 2]
-        hop = (exact if exact and not found else likely or fitting)[0]
+        hop = (exact or likely or fitting)[0]
         found.append(hop)
         here, before = hop.node, hop.start_us
     return found[::-1]

@@ -188,4 +188,4 @@ def _count(count: int, one: str, many: str) -> str:
 
 
 def _time(value_ms: float) -> str:
-    return f"{value_ms / 1000:.3g} s" if value_ms >= 1000 else f"{value_ms:.3g} ms"
+    return f"{value_ms / 1000:.3g} s" if value_ms >= 999.5 else f"{value_ms:.3g} ms"

@@ -109,8 +109,7 @@ def _at(steps: ApartSteps | JoinedSteps | UnroutedSteps, row: int, otherwise: in
 def _cut_off(steps: ApartSteps, window: tuple[int, int]) -> tuple[int, int]:
     """Cells cut off inside a window, and all that are so at its end."""
     first, behind = np.searchsorted(steps.row, window).tolist()
-    total = _at(steps, window[1], 0)
-    return min(int(steps.fresh[first:behind].sum()), total), total
+    return int(steps.fresh[first:behind].sum()), _at(steps, window[1], 0)
 
 
 def _since(start_us: int, time_us: int | None) -> float | None:

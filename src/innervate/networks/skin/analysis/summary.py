@@ -100,8 +100,8 @@ def broken_ports(result: Any) -> list[BrokenPort]:
     alive = np.array(result.world.alive[: graph.cells]) == ALIVE
     ends = np.flatnonzero((penalty >= ONE) & (peer >= 0) & np.repeat(alive, PORTS))
     changes = broken_changes(result)
-    found = changes.broken == 1
-    since = dict(zip(changes.end[found].tolist(), changes.time_us[found].tolist(), strict=True))
+    # Of several changes of a port the last, which is that it was found broken.
+    since = dict(zip(changes.end.tolist(), changes.time_us.tolist(), strict=True))
     return [
         {
             "cell": graph.label(end // PORTS),

@@ -7,7 +7,7 @@ from math import ceil
 
 from innervate.networks.skin.scenario.model import CommandTable, EventTable, SkinScenario
 from innervate.scenario.actions.cables import TABLE
-from innervate.scenario.events import Finding, in_order, in_time, own_keys, refuse
+from innervate.scenario.events import Finding, exact, in_order, in_time, own_keys, refuse
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
 
@@ -185,4 +185,4 @@ def commands_of(table: CommandTable, duration_s: float) -> int:
     """How many commands a table makes before the end."""
     if table.rate_hz == 0:
         return 1
-    return max(1, ceil((duration_s - table.at_s) * table.rate_hz))
+    return max(1, ceil((exact(duration_s) - exact(table.at_s)) * exact(table.rate_hz)))

@@ -1,0 +1,234 @@
+"""The slotted loops with arrivals that are written here, where nothing is left to a draw."""
+
+import numpy as np
+import pytest
+
+from innervate.networks.radio.slotted import chance, contend, turns
+from innervate.networks.radio.slotted.draws import UNIT, choose, draw, generator
+from innervate.networks.radio.slotted.drive import poisson_table
+from innervate.networks.radio.slotted.model import Setting, _measure, _Times
+from innervate.networks.radio.slotted.recorder import (
+    COLLISIONS,
+    DISASTER,
+    DONE,
+    LIMIT,
+    NEVER,
+    POISSON,
+    SATURATED,
+    deliver,
+    new_recorder,
+    opening,
+    ready,
+)
+
+LATE = 10**6
+
+
+def offered(*arrivals, traffic=POISSON):
+    """A recorder of stations whose packets are offered at these times, as many of each."""
+    packets = len(arrivals[0])
+    made = new_recorder(traffic, len(arrivals), packets, generator(1, "by hand"))
+    if traffic == POISSON:
+        made.arrivals[:] = np.ravel(arrivals)
+        made.offer[:] = [times[0] for times in arrivals]
+    return made
+
+
+def served(recorder):
+    """(station, offered, end) of every success."""
+    count = int(recorder.counts[DONE])
+    columns = recorder.station, recorder.offered, recorder.end
+    return list(zip(*(column[:count].tolist() for column in columns), strict=True))
+
+
+def test_who_has_a_packet_and_when_the_channel_is_looked_at_next():
+    made = offered([5], [6], [NEVER])
+    found = np.zeros(3, np.int64)
+    assert (ready(made, 4, found), ready(made, 5, found), found[0]) == (0, 1, 0)
+    assert (ready(made, 6, found), found[:2].tolist()) == (2, [0, 1])
+    assert [opening(made, at, 10) for at in (0, 4, 5, 6)] == [10, 14, 5, 6]
+    made.offer[0] = 6
+    assert [opening(made, at, 3) for at in (0, 1, 2, 3)] == [6, 7, 8, 6]
+
+
+@pytest.mark.parametrize(("traffic", "next_"), [(SATURATED, 70), (DISASTER, NEVER), (POISSON, 9)])
+def test_after_a_success_the_next_packet_is_offered(traffic, next_):
+    made = offered([3, 9], [4, 8], traffic=traffic)
+    made.counts[COLLISIONS] = 6
+    began = int(made.offer[0])
+    deliver(made, 0, 70)
+    assert served(made) == [(0, began, 70)]
+    assert (made.offer[0], made.sent.tolist(), made.before[0]) == (next_, [1, 0], 6)
+
+
+def test_a_run_ends_with_the_first_station_that_has_nothing_left():
+    made = offered([3, 9], [4, 8])
+    for end in (10, 20, 30):
+        deliver(made, 0, end)
+    assert served(made) == [(0, 3, 10), (0, 9, 20)]
+    assert made.counts[LIMIT] == 2
+
+
+def test_with_turns_a_packet_waits_for_that_of_its_station():
+    made = offered([0, 40], [12, LATE])
+    turns.take_turns(made, 1, 9)
+    assert served(made) == [(0, 0, 9), (1, 12, 39), (0, 40, 49)]
+
+
+def test_who_is_alone_reserves_nothing_and_who_is_not_reports():
+    times = turns.Reservation(slot=1, turn=2, packet=5, lead=10, report=3, each=8)
+    made = offered([0, 30, 100], [30, 31, LATE])
+    turns.reserve(made, times)
+    # Alone up to 7, and a slot; two collide at 30: a report, then turn after turn.
+    first, second = sorted(served(made)[1:3])
+    assert served(made)[0] == (0, 0, 7)
+    assert {first[1:], second[1:]} <= {(30, 50), (30, 58)}
+    assert [end for _, _, end in served(made)] == [7, 50, 58, 66, 107]
+    assert made.counts[COLLISIONS] == 1
+
+
+def branch(depth, collides=False):
+    made = offered([0], [0], [0], [0], traffic=DISASTER)
+    after = np.array(depth)
+    added = turns._branch(made, np.arange(4), after, len(depth), 50)
+    return added, after.tolist(), served(made), int(made.counts[COLLISIONS])
+
+
+def test_a_step_of_splitting():
+    assert branch([1, 2, -1]) == (0, [0, 1, -1], [], 0)
+    assert branch([2, 0, 1, -1]) == (0, [1, -1, 0, -1], [(1, 0, 50)], 0)
+    added, depth, none, collisions = branch([0, 3, 0, -1])
+    assert (added, depth[1], depth[3], none, collisions) == (2, 4, -1, [], 1)
+    assert {depth[0], depth[2]} <= {0, 1}
+
+
+def test_each_resolution_begins_anew():
+    made = offered([0, 10, 40], [LATE, LATE, LATE])
+    turns.split(made, 7)
+    assert served(made) == [(0, 0, 7), (0, 10, 21), (0, 40, 49)]
+
+
+def test_who_always_sends_when_it_has_a_packet():
+    made = offered([0, 25, 100], [LATE, LATE, LATE])
+    chance.attempt(made, UNIT, 10, 50, 5)
+    assert served(made) == [(0, 0, 50), (0, 25, 105), (0, 100, 160)]
+    slots = offered([1, 2, 3], [LATE, LATE, LATE])
+    chance.attempt(slots, UNIT, 50, 50, 0)
+    assert [end for *_, end in served(slots)] == [100, 150, 200]
+
+
+def test_a_draw_is_looked_up_in_shares_up_to_it():
+    at = draw(generator(3, "x"), UNIT)
+    assert choose(generator(3, "x"), [at, UNIT]) == 1
+    assert choose(generator(3, "x"), [at + 1, UNIT]) == 0
+    assert choose(generator(3, "x"), [at - 1, at, at + 1, UNIT]) == 2
+
+
+@pytest.mark.parametrize("mean", [0.001, 1.0, 7.5, 60.0])
+def test_shares_of_a_poisson_number_add_up(mean):
+    table = poisson_table(mean) / UNIT
+    assert table[0] == pytest.approx(np.exp(-mean), abs=1e-9)
+    assert table[-1] == pytest.approx(1.0, abs=1e-8)
+    shares = np.diff(table, prepend=0.0)
+    assert (shares * np.arange(len(table))).sum() == pytest.approx(mean, abs=1e-6)
+
+
+RULES = contend.Contention(slot=10, packet=20, cost=10, turn=3, back=15, backoff=10, linear=0,
+                           redraw=0)  # fmt: skip
+
+
+def contended(*arrivals, **rules):
+    made = offered(*arrivals)
+    contend.contend(made, RULES._replace(**rules))
+    return served(made), int(made.counts[COLLISIONS])
+
+
+@pytest.mark.parametrize(("back", "second"), [(15, 61), (3, 56)])
+def test_a_sender_sends_again_when_it_hears_again_that_the_channel_is_idle(back, second):
+    made = new_recorder(SATURATED, 1, 2, generator(1, "x"))
+    contend.contend(made, RULES._replace(back=back))
+    assert [end for *_, end in served(made)] == [23, second]
+
+
+def test_a_packet_is_sent_from_the_beginning_of_a_slot():
+    assert contended([0, 101], [LATE, LATE])[0] == [(0, 0, 23), (0, 101, 133)]
+    assert contended([110, 131], [LATE, LATE])[0] == [(0, 110, 133), (0, 131, 171)]
+
+
+@pytest.mark.parametrize(("turn", "collisions"), [(5, 0), (6, 1)])
+def test_who_decides_before_it_can_hear_another_collides_with_it(turn, collisions):
+    """A carrier is heard a turn and half a slot after its decision; slots are of 10."""
+    found, met = contended([0, LATE], [10, 9 * LATE], turn=turn)
+    assert min(met, 1) == collisions
+    if not collisions:
+        assert found[:2] == [(0, 0, 25), (1, 10, 60)]
+
+
+def test_counters_stand_still_while_others_send():
+    """802.11 DCF in saturation, against a few lines for two stations."""
+    made = new_recorder(SATURATED, 2, 40, generator(5, "dcf"))
+    rules = contend.Counters(slot=10, success=100, cost=70, window=4, stages=2, at_once=0)
+    contend.distribute(made, rules)
+    rng = generator(5, "dcf")
+    left, stage, time, ends, met = [draw(rng, 4), draw(rng, 4)], [0, 0], 0, [], 0
+    while len(ends) < 80:
+        wait = min(left)
+        who = [i for i in (0, 1) if left[i] == wait]
+        time += 10 * wait + (100 if len(who) == 1 else 70)
+        met += len(who) > 1
+        for i in (0, 1):
+            if i in who:
+                stage[i] = 0 if len(who) == 1 else min(stage[i] + 1, 2)
+                left[i] = draw(rng, 4 << stage[i])
+            else:
+                left[i] -= wait + 1
+        if len(who) == 1:
+            ends.append((who[0], time))
+    assert [(who, end) for who, _, end in served(made)] == ends
+    assert made.counts[COLLISIONS] == met > 0
+
+
+def test_a_counter_begins_with_its_packet():
+    made = offered([0, 500], [3, LATE])
+    contend.distribute(made, contend.Counters(10, 40, 30, window=1, stages=0, at_once=1))
+    assert served(made) == [(0, 0, 40), (1, 3, 80), (0, 500, 540)]
+    late = offered([101, 150], [LATE, LATE])
+    contend.distribute(late, contend.Counters(10, 40, 30, window=1, stages=0, at_once=1))
+    assert served(late) == [(0, 101, 150), (0, 150, 190)]
+
+
+def measured(until=None, warmup=0.0, stations=2):
+    """Six packets of 40 ticks that end at 100, 200 ...; a slot is 10, then 10 are idle."""
+    made = new_recorder(SATURATED, 2, 3, generator(1, "x"))
+    for k in range(6):
+        made.counts[COLLISIONS] = 10 * (k + 1)
+        deliver(made, k % 2 if k < 4 else 0, 100 * (k + 1))
+    made.counts[COLLISIONS] = 99
+    setting = Setting("csma-cd-d2", stations, 4, "saturated", warmup=warmup, until_slots=until)
+    return _measure(made, setting, _Times(10, 40, 10))
+
+
+def test_all_of_a_run_counts_up_to_the_idle_slot_of_its_last_packet():
+    found = measured()
+    assert (found.elapsed_slots, found.duration_slots, found.airtime_slots) == (61, 60, 24)
+    assert found.throughput == pytest.approx(240 / 610)
+    assert (found.successes, found.order, found.collisions) == ([4, 2], [0, 1, 0, 1, 0, 0], 99)
+    assert found.delay_slots.tolist() == [10, 20, 20, 20, 20, 10]
+    assert measured(stations=0).delay_slots.tolist() == []
+
+
+@pytest.mark.parametrize(("until", "count"), [(29.9, 2), (30, 3), (59.9, 5), (60, 6)])
+def test_what_ends_later_does_not_count_and_time_ends_there(until, count):
+    found = measured(until)
+    assert sum(found.successes) == count
+    assert found.elapsed_slots == (61 if count == 6 else until)
+    assert found.collisions == (99 if count == 6 else 10 * (count + 1))
+
+
+def test_the_warm_up_ends_with_the_idle_slot_of_its_last_packet():
+    found = measured(warmup=0.5)
+    assert (found.elapsed_slots, found.collisions) == (30, 99 - 30)
+    assert (found.order, found.duration_slots) == ([1, 0, 0], 60)
+    assert measured(until=45, warmup=0.5).elapsed_slots == pytest.approx(45 - 21)
+    nothing = measured(until=5)
+    assert (nothing.throughput, nothing.duration_slots, nothing.order) == (0.0, 0.0, [])
