@@ -22,7 +22,7 @@ WORKERS ?= 2
 unexport PYTHONDONTWRITEBYTECODE
 
 # Two workers more than there are processors: tests that wait leave theirs to others.
-PYTEST = $(BIN)/python -m pytest -n $$(( $(WORKERS) + 3 )) --dist worksteal
+PYTEST = $(BIN)/python -m pytest -n $$(( $(WORKERS) + 2 )) --dist worksteal
 
 # What many tests run is compiled before they start, where it is not compiled yet.
 COMPILE = $(BIN)/python -m tests.loops $(WORKERS)

@@ -10,6 +10,7 @@ import pytest
 
 import innervate
 from innervate.cli.app import app
+from tests.fixtures.once import made_once
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -26,10 +27,11 @@ def build(folder, config):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("site")
-    done = build(folder, ROOT / "mkdocs.yml")
-    assert done.returncode == 0, done.stderr
-    return folder
+    def make(folder):
+        done = build(folder, ROOT / "mkdocs.yml")
+        assert done.returncode == 0, done.stderr
+
+    return made_once(tmp_path_factory, "site", make)
 
 
 def test_every_page_is_there_and_every_link_leads_somewhere(site):

@@ -163,7 +163,7 @@ def explored_cells():
 def explored_routers(which):
     fields = (mesh_fields.node, mesh_fields.gate)[which](3)
     made, kept = plain.make("Record", fields)(), mesh_shape.shapes(3, 1)[which]
-    kept.times = frozenset()  # what is kept of these is a distance: any is in range
+    kept.timed.clear()  # what is kept of these is a distance: any is in range
 
     def speaks():
         try:

@@ -76,7 +76,7 @@ class Shape:
         self.pool: dict[Any, Any] = {}
         self.put = _putter(declared, times)
         self._values = attrgetter(*names)
-        self._timed = [
+        self.timed = [
             (self.place[name], age if name in AGES else ahead, length)
             for name, length, *_ in declared if name in times
         ]  # fmt: skip
@@ -90,7 +90,7 @@ class Shape:
     def take(self, record: Any, now: int) -> tuple[Any, ...]:
         """The record's value; arrays that many states share are kept once."""
         found = list(self._values(record))
-        for place, since, length in self._timed:
+        for place, since, length in self.timed:
             value, grain = found[place], self.grain
             found[place] = (
                 [since(t, now, grain) for t in value] if length else since(value, now, grain)
