@@ -18,7 +18,7 @@ from innervate.network import networks
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES, PICTURE = ROOT / "src", ROOT / "docs/images/house.svg"
 SPINE, HOME = "innervate", "innervate.networks"
-WIDTH, FLOOR = 1.7, 1.0  # of a room with its gap, of a floor
+WIDTH, FLOOR = 1.9, 1.1  # of a room with its gap, of a floor
 WALL, LIGHT, DARK = "#52606d", "#e8eef4", "#1f2933"
 TINTS = ("#dcefe3", "#fdeedb", "#e6e3f6", "#f9e2e2", "#e3f0f7", "#f3f0da")
 
@@ -76,14 +76,14 @@ def house(
             at[room] = (x, FLOOR * floor)
     for one, other in sorted(graph.edges):
         (x, y), (to_x, to_y) = at[one], at[other]
-        ax.plot([x, to_x], [y - 0.22, to_y + 0.22], color=WALL, lw=0.6, alpha=0.55, zorder=1)
+        ax.plot([x, to_x], [y - 0.3, to_y + 0.3], color=WALL, lw=0.6, alpha=0.55, zorder=1)
     for room, (x, y) in at.items():
-        box = FancyBboxPatch((x - 0.72, y - 0.22), 1.44, 0.44, boxstyle="round,pad=0.02",
+        box = FancyBboxPatch((x - 0.84, y - 0.3), 1.68, 0.6, boxstyle="round,pad=0.02",
                              fc=tint, ec=WALL, lw=0.8, zorder=2)  # fmt: skip
         ax.add_patch(box)
-        ax.text(x, y + 0.05, room, ha="center", va="center", size=7, color=DARK, zorder=3)
+        ax.text(x, y + 0.09, room, ha="center", va="center", size=6.2, color=DARK, zorder=3)
         count = f"{lines(home, room):,}"
-        ax.text(x, y - 0.12, count, ha="center", va="center", size=5.5, color=WALL, zorder=3)
+        ax.text(x, y - 0.15, count, ha="center", va="center", size=5.5, color=WALL, zorder=3)
     return wide * WIDTH
 
 
@@ -93,7 +93,7 @@ def draw() -> Path:
     figure, ax = plt.subplots(figsize=(22, 6))
     spine = imports(graph, SPINE, [room for room in rooms(SPINE) if room != "networks"])
     right = house(ax, spine, floors(spine), SPINE, 0.0, LIGHT)
-    ax.text(right / 2, -0.6, "the spine: names no network", ha="center", size=9, color=DARK)
+    ax.text(right / 2, -0.75, "the spine: names no network", ha="center", size=9, color=DARK)
     homes = [f"{HOME}.{name}" for name in networks()]
     plans = [imports(graph, home, [room for room in rooms(home) if room != "network"])
              for home in homes]  # fmt: skip
@@ -101,10 +101,10 @@ def draw() -> Path:
     for home, inside, tint in zip(homes, plans, TINTS, strict=True):
         width = house(ax, inside, level, home, right + 0.5, tint)
         called = home.removeprefix("innervate.").replace(".", "/")
-        ax.text(right + 0.5 + width / 2, -0.6, called, ha="center", size=9, color=DARK)
+        ax.text(right + 0.5 + width / 2, -0.75, called, ha="center", size=9, color=DARK)
         right += 0.5 + width
     ax.set_xlim(-0.2, right + 0.2)
-    ax.set_ylim(-0.9, None)
+    ax.set_ylim(-1.05, None)
     ax.set_axis_off()
     plt.rcParams["svg.hashsalt"] = "house"  # the same bytes for the same rooms
     figure.savefig(PICTURE, bbox_inches="tight", metadata={"Date": None})
