@@ -58,6 +58,12 @@ def test_an_overdue_timer_fires_at_once(node, time, overdue):
     assert fires(world_of(), node, time, -overdue) == time
 
 
+def test_what_is_half_a_round_ahead_or_more_is_overdue():
+    world = world_of(0)
+    assert fires(world, 0, 70, HALF30 - 1) == 70 + HALF30 - 1
+    assert fires(world, 0, 70, HALF30) == 70
+
+
 @given(NODE, TIME, st.integers(1, 10**6))
 def test_a_clock_keeps_within_its_drift_and_never_goes_back(node, time, step):
     world = world_of()
