@@ -35,12 +35,12 @@ class Do:
         to.seq = frame.seq
 
 
-def small_world(**kept):
+def small_world(keys=None, **kept):
     """Nothing is under way; clocks do not drift, and are 100, 200 and 300 us ahead."""
-    plan = plan_of(line(2, data={"rate_hz": 100}, timing={"loss": 0.0}))
+    plan = plan_of(keys or line(2, data={"rate_hz": 100}, timing={"loss": 0.0}))
     with mock.patch.object(cables, "BATCH", 8), mock.patch.object(tables, "PLAIN_ROWS", 8):
         world = build(plan, plain=True, **kept)
-    for node in range(3):
+    for node in range(world.run[0].nodes):
         world.alive[node] = ALIVE
         world.clocks[node].offset = 100 * (node + 1)
         world.clocks[node].rate = 0

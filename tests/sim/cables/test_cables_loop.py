@@ -90,8 +90,9 @@ def test_commands_come_before_the_events_of_their_moment(played):
     assert played.world.run[0].next_command == 4
 
 
-def test_a_command_behind_the_end_is_not_obeyed(played):
-    assert played(20, 1000, (20, CUT)) == ([(0, 10)], DONE)
+@pytest.mark.parametrize("at", [20, 25])
+def test_a_command_behind_the_end_is_not_obeyed(played, at):
+    assert played(20, 1000, (at, CUT)) == ([(0, 10)], DONE)
     assert played.world.run[0].next_command == 0
 
 

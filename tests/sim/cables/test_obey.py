@@ -11,6 +11,7 @@ from innervate.sim.cables import commands
 from innervate.sim.cables.wires import LOSSY
 from innervate.sim.cables.world import ALIVE, DEAD, OFF, TIMER_SLOTS
 from innervate.sim.status import MEMORY_LOST, ON_INPUT
+from tests.networks.skin.runs import free
 from tests.sim.cables.small import END, PEER, SINK, Do, small_world, timers
 
 NOW = 5_000
@@ -59,6 +60,13 @@ def test_who_watches_is_told_before_and_after_and_where(do, action, where, node)
     assert around == [("before_change",), ("on_change", NOW, node, 6)]
     assert do.said[0] == around[0]
     assert do.said[-1] == around[1]
+
+
+def test_a_cable_of_the_last_of_many_interfaces_is_the_sinks():
+    do = Do(small_world(free([("pc", f"n{i}") for i in range(7)])))
+    obey(do, CUT, end=len(do.world.ends) - 1)
+    assert do.said[-1] == ("on_change", NOW, 7, 6)
+    assert do.world.epoch[4 * 6] == 1
 
 
 def test_who_does_not_watch_is_told_nothing(do):

@@ -1,0 +1,220 @@
+"""What is kept of any network on a channel, and how a declared one is told of it: by hand."""
+
+from types import SimpleNamespace as Of
+
+import numpy as np
+import pytest
+
+from innervate.dialect.access import PACKET
+from innervate.dialect.arith import MASK30
+from innervate.sim import taps
+from innervate.sim.cables.declared import Unfit
+from innervate.sim.channel import declared, listening
+from innervate.sim.channel.declared import DeclaredChannel
+from innervate.sim.channel.listening import (
+    ARRIVED,
+    BROKEN_OFF,
+    COLLIDED,
+    DELIVERED,
+    NOISY,
+    OFF,
+    SENDING,
+    SENT,
+)
+from innervate.sim.counts import Counts
+from innervate.sim.heap import AIR_BITS
+
+HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
+HEARD = {"alive": 1, "deaf": 0, "spoilt": 0, "clear": True}
+
+
+def world_of(**more):
+    run = {"checks": 1, "broken": 0, "broken_node": -1, "packets": 1, "packet_limit": 9, "taps": 0,
+           "tap_limit": 9, "ta_us": 30}  # fmt: skip
+    radio = Of(alive=1, deaf=0, offset=100, next_offer=5, backlog=2)
+    return Of(
+        run=[Of(**run | more)], above=Of(counters=[0] * listening.COUNTERS, items=None, kinds=None),
+        radios=[radio, Of(**vars(radio))], packets=[Of() for _ in range(4)],
+        words=[[5, 5], [5, 9]], low=[0, 0], high=[8, 8], degree=[3, 2],
+        taps=[Of() for _ in range(4)], tapped=[Of() for _ in range(4)],
+        air=[Of(start=60, spoilt=0) for _ in range(16)], frames=[Of(seq=k) for k in range(16)],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("state", "word", "why"), [
+    ({"received": True}, ARRIVED, taps.FINE),
+    ({"alive": 0, "deaf": 1, "clear": False}, OFF, taps.COLLISION),
+    ({"deaf": 1, "clear": False, "spoilt": 1}, SENDING, taps.SENDING),
+    ({"clear": False, "spoilt": 1}, COLLIDED, taps.COLLISION),
+    ({"spoilt": 1}, BROKEN_OFF, taps.SPOILT), ({}, NOISY, taps.NOISE),
+])  # fmt: skip
+def test_what_became_of_a_frame_is_counted_once_by_what_comes_first(state, word, why):
+    world, how = world_of(), HEARD | {"received": False} | state
+    world.radios[1].alive, world.radios[1].deaf = how["alive"], how["deaf"]
+    world.air[3].spoilt = how["spoilt"]
+    assert listening.why(world, 1, 3, how["clear"], how["received"]) == why
+    assert [k for k, count in enumerate(world.above.counters) if count] == [word]
+    assert world.above.counters[word] == 1
+
+
+def test_a_delivery_has_its_row_if_rows_are_kept():
+    world = world_of()
+    listening.keep(world, 1, 5, 900, 70)
+    assert vars(world.packets[1]) == {"time": 900, "node": 1, "handle": 5, "slots": 70}
+    world.run[0].packet_limit = 0
+    listening.keep(world, 1, 5, 900, 70)
+    assert (world.run[0].packets, world.above.counters[DELIVERED]) == (2, 2)
+
+
+@pytest.mark.parametrize(("node", "run", "found"), [
+    (0, {}, (0, -1)), (1, {}, (listening.BROKEN_RANGE, 1)), (1, {"checks": 0}, (0, -1)),
+    (1, {"broken": 2}, (2, -1)),
+])  # fmt: skip
+def test_a_value_out_of_range_breaks_a_run_that_is_checked_once(node, run, found):
+    world = world_of(**run)
+    listening.check_range(world, node)
+    assert (world.run[0].broken, world.run[0].broken_node) == found
+
+
+# A declared network.
+
+
+def copy(to, frame):
+    to.seq = frame.seq
+
+
+def kind_of(frame):
+    return 40 + frame.seq
+
+
+@pytest.mark.parametrize("limit", [0, 9])
+def test_a_frame_counts_for_all_who_could_hear_it_and_is_kept_with_its_start(limit):
+    do, world = Of(**declared._noted(copy, kind_of, False)), world_of(tap_limit=limit)
+    do.record_sent(world, 0, Of(seq=7), 1_000)
+    do.record_received(world, 1, (1 << AIR_BITS) | 2, 1_200, True, False)
+    world.radios[1].alive = 0
+    do.record_received(world, 1, 3, 1_300, True, False)
+    assert (world.above.counters[SENT], world.above.counters[OFF]) == (3, 1)
+    rows = [vars(row) for row in world.taps[: world.run[0].taps]]
+    assert rows == [] if limit == 0 else rows == [
+        {"time": 1_030, "start": 1_030, "at": 0, "sender": 0, "out": 1, "why": taps.FINE},
+        {"time": 1_200, "start": 60, "at": 1, "sender": 1, "out": 0, "why": taps.NOISE},
+    ]  # fmt: skip
+    assert [vars(one) for one in world.tapped[:2]] == (
+        [{"seq": 7}, {"seq": (1 << AIR_BITS) | 2}] if limit else [{}, {}])  # fmt: skip
+
+
+@pytest.mark.parametrize(("is_timed", "made_at", "time", "latency"), [
+    (False, 60, 90, -1), (True, 60, 90, 30), (True, 0, 90, -1), (True, MASK30 - 9, MASK30 + 11, 20),
+    (True, 1, 1, 0),
+])  # fmt: skip
+def test_a_delivery_took_as_long_as_since_it_was_handed_in(is_timed, made_at, time, latency):
+    do, world = Of(**declared._noted(copy, kind_of, is_timed)), world_of()
+    do.note_received(world, 1, Of(seq=2, made_at=made_at), time)
+    assert (world.packets[1].handle, world.packets[1].slots) == (42, latency)
+
+
+@pytest.mark.parametrize(("is_timed", "at", "made_at"), [
+    (False, 70, 9), (True, 70, 70), (True, 0, 1), (True, MASK30 + 1, 1), (True, MASK30 + 71, 70),
+])  # fmt: skip
+def test_what_a_node_is_handed_is_the_oldest_that_waits(is_timed, at, made_at):
+    given = []
+    protocol = Of(**dict.fromkeys(HANDLERS, print))
+    protocol.on_input = lambda _node, _params, now, kind, item, _out: given.append(
+        (now, kind, item.seq))  # fmt: skip
+    made_of = Of(**declared._entries(protocol, copy, is_timed))
+    world = world_of()
+    world.above.items = [Of(seq=10 + k) for k in range(6)]
+    world.above.kinds = [20 + k for k in range(6)]
+    world.arrivals, world.item = [0, 0, 0, at, 99, 99], [Of(seq=0, made_at=9)]
+    world.stations, world.params, world.out = [None, None], [None], None
+    made_of.on_input(world, 1, 500, PACKET)
+    assert given == [(500, 23, 13)]  # five have come, two of them wait: the fourth
+    assert (world.radios[1].backlog, world.item[0].made_at) == (1, made_at)
+    made_of.on_input(world, 1, 600, 77)
+    assert given[1:] == []  # what a channel's devices tell is nothing for a network of one's own
+    assert world.radios[1].backlog == 1
+
+
+def network_of(timers=2, fields=("kind", "slots")):
+    frame = tuple((name, 0, 0, 9, "", "") for name in fields)
+    protocol = Of(__name__="talk", TIMERS=timers, **dict.fromkeys(HANDLERS, print))
+    return Of(protocol=protocol, fields=Of(FRAME=frame), name="talk", has=lambda _: False)
+
+
+@pytest.mark.parametrize(("given", "says"), [
+    ({}, None), ({"timers": 3}, "at most 2 timers, not 3"),
+    ({"fields": ("kind",)}, "no field slots"),
+])  # fmt: skip
+def test_what_a_channel_cannot_do_is_said(monkeypatch, given, says):
+    monkeypatch.setattr(declared, "invariants_of", lambda *_: {})
+    if says is None:
+        assert callable(declared.functions(network_of(**given)).watch)
+    else:
+        with pytest.raises(Unfit, match=says):
+            declared.functions(network_of(**given))
+
+
+def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_clock():
+    seen = []
+
+    def holds(state, params, now):
+        seen.append(now)
+        return False
+
+    watch = declared._watching([holds])["watch"]
+    world = world_of(trail_limit=0)
+    world.stations, world.params = [None, None], [None]
+    watch(world, 0, MASK30, 1, 2)
+    assert (seen, world.run[0].broken) == ([99], 64)
+    other = world_of(trail_limit=0)
+    other.stations, other.params = [None, None], [None]
+    watch(other, 1, 70, 1, 2)
+    assert (other.run[0].broken, len(seen)) == (listening.BROKEN_RANGE, 1)
+
+
+# From outside.
+
+
+class Bare(DeclaredChannel):
+    """Without a folder's words."""
+
+    broken_words = listening.WORDS
+
+
+def bare(**run):
+    numbers = np.zeros(1, [(name, np.int64) for name in (
+        "rows", "packets", "trail", "status", "checks", "broken", "broken_node", "broken_at", "now",
+        "offers")])  # fmt: skip
+    for name, value in run.items():
+        numbers[name] = value
+    radios = np.zeros(4, [("alive", np.int64), ("leaving", np.int64)])
+    radios["alive"], radios["leaving"] = (1, 0, 1, 0), (1, 0, 0, 1)
+    counters = np.arange(3, 3 + 7 * listening.COUNTERS, 7)
+    world = Of(run=numbers, radios=radios, above=Of(counters=counters))
+    return Bare(Of(stations=3, seed=8, kind="talk"), world, None)
+
+
+def test_frames_and_messages_are_counted_by_name():
+    assert bare(offers=9).counts() == Counts(
+        nodes=3, off=(1,), sent=3, arrived=10, offered=9, delivered=52,
+        lost_by={"collision": 17, "sending": 24, "noise": 31, "off": 38, "broken_off": 45},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("at", "words"), [(-1, "0.000000"), (70, "0.000070")])
+def test_what_broke_is_told_with_when_and_by_whom(at, words):
+    said = bare(broken=listening.BROKEN_RANGE, broken_node=2, broken_at=at).broken_line()
+    what = "a value of node 2 is out of its declared range"
+    assert said == f"invariant broken at {words} s (seed 8): {what}"
+
+
+def test_packets_that_were_handed_up_are_deliveries():
+    running = bare()
+    kinds = [(name, np.int64) for name in ("time", "node", "handle", "slots", "offered")]
+    packets = np.array([(900, 1, 5, 70, 3), (950, 2, 6, -1, 4)], kinds)
+    running.world.rows = running.world.trail = running.world.packets = packets[:0]
+    running._kept["packets"].append(packets)
+    found = running.take()
+    assert set(found) == {"rows", "trail", "deliveries"}
+    assert found["deliveries"].tolist() == [(900, 1, 0, 5, 70), (950, 2, 0, 6, -1)]
