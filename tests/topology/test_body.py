@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.topology import TopologyError, body_graph, cells_from_urdf
+from innervate.topology import TopologyError, body_graph, cells_from_urdf, normals_from_urdf
+from innervate.topology.body import CELLS_MAX
 from innervate.topology.layout import cell_places
 
 ROBOT = "package:icub-models/iCubGenova02"
@@ -121,3 +122,68 @@ def test_icub_skin(pattern: str, cells: int) -> None:
 def test_icub_robots_are_named_when_one_is_not_there() -> None:
     with pytest.raises(TopologyError, match="iCubGenova02"):
         cells_from_urdf("package:icub-models/iCubNowhere", "x")
+
+
+def test_a_frame_is_turned_by_roll_then_pitch_then_yaw(tmp_path: Path) -> None:
+    """A cell faces along the z axis of its link, and lies where its joints put it."""
+    turns = ["0 0 0", "0.5 0 0", "0 0.5 0", "0.5 0 1", "0 0.5 1", "0.3 0.4 0.5"]
+    joints = "".join(
+        f'<link name="c{i}"/><joint name="j{i}" type="fixed"><parent link="base"/>'
+        f'<child link="c{i}"/><origin xyz="0 0 {i}" rpy="{rpy}"/></joint>'
+        for i, rpy in enumerate(turns)
+    )
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{joints}</robot>')
+    sin, cos = math.sin, math.cos
+    found = normals_from_urdf("r.urdf", "c*", tmp_path)
+    assert found[:5] == [
+        pytest.approx(one)
+        for one in [
+            (0, 0, 1), (0, -sin(0.5), cos(0.5)), (sin(0.5), 0, cos(0.5)),
+            (sin(0.5) * sin(1), -sin(0.5) * cos(1), cos(0.5)),
+            (sin(0.5) * cos(1), sin(0.5) * sin(1), cos(0.5)),
+        ]
+    ]  # fmt: skip
+    x, y = cos(0.3) * sin(0.4), -sin(0.3)  # after roll and pitch
+    turned = (x * cos(0.5) - y * sin(0.5), x * sin(0.5) + y * cos(0.5), cos(0.3) * cos(0.4))
+    assert found[5] == pytest.approx(turned)
+    assert cells_from_urdf("r.urdf", "c*", tmp_path)[1][2] == pytest.approx((0, 0, 2000))
+
+
+def test_a_chain_of_joints_adds_up_in_the_frames_of_its_links(tmp_path: Path) -> None:
+    quarter = math.pi / 2
+    links = "".join(f'<link name="l{i}"/>' for i in range(4))
+    joints = "".join(
+        f'<joint name="j{i}" type="fixed"><parent link="l{i}"/><child link="l{i + 1}"/>'
+        f'<origin xyz="1 0 0" rpy="0 0 {quarter}"/></joint>'
+        for i in (2, 0, 1)
+    )
+    (tmp_path / "r.urdf").write_text(f'<robot name="r">{links}{joints}</robot>')
+    names, places = cells_from_urdf("r.urdf", "l*", tmp_path)
+    assert names == ["l0", "l1", "l2", "l3"]
+    assert places == [pytest.approx(one, abs=1e-9) for one in [
+        (0, 0, 0), (1000, 0, 0), (1000, 1000, 0), (0, 1000, 0)]]  # fmt: skip
+
+
+def test_the_graph_that_is_kept_stays_as_it_is() -> None:
+    places = [(0.0, 0.0, 0.0), (10.0, 0.0, 0.0)]
+    first = body_graph(["a", "b"], places, 20.0, 1)
+    first.add_interface(1)
+    again = body_graph(["a", "b"], places, 20.0, 1)
+    assert (again.interfaces, len(again.peer)) == (1, 9)
+    assert list(again.positions) == [0, 0, 0, 10, 0, 0]
+
+
+def test_too_many_cells_are_refused() -> None:
+    names = [f"c{i}" for i in range(CELLS_MAX + 1)]
+    with pytest.raises(TopologyError, match="5001 links match; at most 5000") as caught:
+        body_graph(names, [(0.0, 0.0, 0.0)] * len(names), 20.0, 1)
+    assert caught.value.subject == "links"
+
+
+def test_an_interface_on_a_cell_without_a_port_is_refused() -> None:
+    places = [(0.0, 0.0, 0.0)] + [
+        (10.0 * x, 10.0 * y, 0.0) for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))
+    ]
+    with pytest.raises(TopologyError, match="a has no free port") as caught:
+        body_graph(list("abcde"), places, 10.0, ["a"])
+    assert caught.value.subject == "interfaces"

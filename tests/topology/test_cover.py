@@ -7,9 +7,9 @@ from itertools import combinations
 
 import pytest
 
-from innervate.topology import TopologyError, cells_from_urdf
+from innervate.topology import TopologyError, cells_from_urdf, normals_from_urdf
 from innervate.topology.body import joining_reach
-from innervate.topology.cover import thinned
+from innervate.topology.cover import find_mesh, thinned
 
 pytest.importorskip("trimesh")
 ROBOT = """<robot name="r">
@@ -191,3 +191,45 @@ def test_thinning_keeps_all_that_are_far_apart():
 def test_the_reach_that_joins_all():
     assert joining_reach([(0, 0, 0), (3, 0, 0), (10, 0, 0), (4, 0, 0)]) == 6
     assert joining_reach([(0, 0, 0)]) == 0
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_points_are_thinned_across_the_cubes_they_lie_in(axis):
+    def at(value):
+        return tuple(value if a == axis else 0.5 for a in range(3))
+
+    assert thinned([at(0.9), at(1.1), at(-0.05)], 1.0) == [at(0.9)]
+    apart = [at(0.5), at(1.5), at(-0.5)]
+    assert thinned(apart, 1.0) == apart
+    assert thinned([at(2.75), at(1.5), at(3.5), at(3.75)], 1.0) == [at(2.75), at(1.5), at(3.75)]
+
+
+def test_cells_face_outwards(robot):
+    _, places = cells_from_urdf(robot, "ball", None, 15.0)
+    normals = normals_from_urdf(robot, "ball", None, 15.0)
+    assert len(normals) == len(places) > 10
+    for place, normal in zip(places, normals, strict=True):
+        assert math.hypot(*normal) == pytest.approx(1)
+        assert sum(a * b for a, b in zip(place, normal, strict=True)) > 0.95 * 30
+
+
+def test_what_is_to_be_seen_comes_before_what_is_hit(tmp_path):
+    shapes = "".join(f'<{kind}><geometry><sphere radius="{r}"/></geometry></{kind}>'
+                     for kind, r in (("collision", 0.09), ("visual", 0.03)))  # fmt: skip
+    (tmp_path / "one.urdf").write_text(f'<robot name="r"><link name="a">{shapes}</link></robot>')
+    _, places = cells_from_urdf(str(tmp_path / "one.urdf"), "*", None, 15.0)
+    assert max(math.hypot(*place) for place in places) == pytest.approx(30, abs=0.1)
+
+
+def test_a_mesh_is_looked_for_beside_and_above_and_below_its_packages_name(tmp_path):
+    urdf = tmp_path / "share" / "bot" / "urdf" / "bot.urdf"
+    urdf.parent.mkdir(parents=True)
+    for place in ("share/bot/urdf/near.stl", "share/bot/meshes/arm.stl"):
+        (tmp_path / place).parent.mkdir(exist_ok=True)
+        (tmp_path / place).touch()
+    assert find_mesh("near.stl", urdf) == urdf.parent / "near.stl"
+    wanted = tmp_path / "share/bot/meshes/arm.stl"
+    for name in ("package://bot/meshes/arm.stl", "meshes/arm.stl", f"file://{wanted}"):
+        assert find_mesh(name, urdf) == wanted
+    with pytest.raises(TopologyError, match=r"none\.stl is not there"):
+        find_mesh("package://bot/none.stl", urdf)

@@ -68,3 +68,42 @@ def test_random_links_are_a_graph_or_an_error(links: list[tuple[str, str]]) -> N
         return
     assert sum(1 for _ in graph.links()) == len(links)
     assert len(cell_places(graph)) == graph.cells
+
+
+@pytest.mark.parametrize(("text", "end"), [
+    ("n1", ("n1", -1)), ("n1.2", ("n1", 2)), ("n1.down", ("n1", 3)), ("a.b.E", ("a.b", 1)),
+    ("pc", ("pc", -1)), ("pc.0", ("pc", 0)), ("pc.1048575", ("pc", 1_048_575)),
+    ("pcs.1", ("pcs", 1)),
+])  # fmt: skip
+def test_an_end_is_a_name_and_perhaps_a_port(text: str, end: tuple[str, int]) -> None:
+    assert split_end(text) == end
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ("pc.1048576", "no interface port"), ("pc.00000000", "no interface port"),
+    ("pc.-1", "no interface port"), ("pc.0.1", "no interface port"), ("pc.", "names no cell"),
+    (".1", "names no cell"), (" ", "names no cell"), ("n1.4", "no port is called"),
+])  # fmt: skip
+def test_what_is_no_end(text: str, words: str) -> None:
+    with pytest.raises(TopologyError, match=words):
+        split_end(text)
+
+
+@pytest.mark.parametrize(
+    ("ends", "gap"), [(["pc.1"], 0), (["pc.0", "pc.2"], 1), (["pc.3", "pc.1"], 0)]
+)
+def test_an_interface_port_that_nothing_is_on_is_named(ends: list[str], gap: int) -> None:
+    links = [(end, f"n{i}") for i, end in enumerate(ends)]
+    most = max(int(end[3:]) for end in ends)
+    with pytest.raises(TopologyError, match=f"port pc.{most} but nothing is on pc.{gap};"):
+        free_graph(links)
+    filled = free_graph([*links, *(("pc", f"m{i}") for i in range(most + 1 - len(ends)))])
+    assert filled.interfaces == most + 1
+
+
+def test_a_cell_has_four_cables_and_the_fifth_is_refused_on_its_side() -> None:
+    links = [("a", name) for name in "bcde"]
+    assert free_graph(links).neighbours(0) == [1, 2, 3, 4]
+    with pytest.raises(TopologyError, match="a has no port left") as caught:
+        free_graph([*links, ("f", "a")])
+    assert caught.value.subject == "link.4.b"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from array import array
 
 import pytest
 from hypothesis import given
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from innervate.topology import Graph, Patch, TopologyError, from_patches, join_chain, port_number
 from innervate.topology.layout import cell_places
+from innervate.topology.patch import neighbour
 
 shapes = st.tuples(st.integers(1, 7), st.integers(1, 7), st.sampled_from("ZS"))
 
@@ -127,3 +129,63 @@ def test_a_million_cells_are_quick() -> None:
     assert graph.cells == 100_020
     assert max(depths) == 13
     assert min(depths) == 1
+
+
+@pytest.mark.parametrize(
+    ("wiring", "near"),
+    [
+        ("Z", {(1, 1): [(1, 0), (1, 2), (0, 1), (2, 1)], (2, 1): [(2, 0), (2, 2), (1, 1), None]}),
+        ("S", {(1, 1): [(1, 0), (1, 2), (0, 2), (2, 1)], (2, 1): [(2, 0), (2, 2), (1, 1), None],
+               (0, 1): [(0, 0), (0, 2), None, (1, 0)], (0, 0): [None, (0, 1), None, None],
+               (1, 2): [(1, 1), None, None, (2, 2)]}),
+    ],
+)  # fmt: skip
+def test_each_rule_wires_its_own_neighbours(
+    wiring: str, near: dict[tuple[int, int], list[tuple[int, int] | None]]
+) -> None:
+    patch = Patch(3, 3, wiring, 40)
+    for (row, column), wanted in near.items():
+        assert [neighbour(patch, row, column, port) for port in range(4)] == wanted
+    graph = from_patches([(3, 3, wiring)])
+    for (row, column), wanted in near.items():
+        ends = [graph.peer[graph.end(3 * row + column, port)] for port in range(4)]
+        cells = [-1 if one is None else 3 * one[0] + one[1] for one in wanted]
+        assert [end // 4 if end >= 0 else -1 for end in ends] == cells
+
+
+@pytest.mark.parametrize(("rows", "joint"), [(1, 0), (2, 1), (3, 1), (10, 5)])
+def test_patches_are_joined_in_the_middle_of_their_sides(rows: int, joint: int) -> None:
+    graph = from_patches([(3, 2, "Z"), (2, rows, "Z"), (4, 3, "S"), (1, 1, "Z")])
+    join_chain(graph, 1, 2)
+    across = [(a, b) for a, b in graph.links() if graph.patch_of(a // 4) != graph.patch_of(b // 4)]
+    left, right = graph.patches[1], graph.patches[2]
+    assert across == [(4 * left.cell(joint, 1) + 1, 4 * right.cell(1, 0))]
+
+
+def test_what_no_cable_leads_to_is_nowhere() -> None:
+    graph = from_patches([(2, 1, "Z"), (1, 1, "Z")])
+    assert (list(graph.depths()), graph.depth_max) == ([-1, -1, -1], 0)
+    assert graph.add_interface(1) == 0
+    assert graph.add_interface(1, "up") == 1
+    assert (list(graph.depths()), graph.depth_max) == ([2, 1, -1], 2)
+    assert graph.neighbours(graph.sink) == [1, 1]
+    assert (list(graph.ends_of(graph.sink)), list(graph.ends_of(1))) == ([12, 13], [4, 5, 6, 7])
+    assert [graph.port_of(end) for end in (7, 11, 12, 13)] == [3, 3, 0, 1]
+    assert Graph(0, 0, array("i")).depth_max == 0
+
+
+def test_a_port_in_the_way_is_told_with_those_that_are_free() -> None:
+    graph = from_patches([(1, 1, "Z")] * 3)
+    graph.connect(graph.end(0, 1), graph.end(1, 0))
+    with pytest.raises(TopologyError, match="p2 r0 c0 W cannot be joined to it; free on p0 r0"):
+        graph.connect(graph.end(0, 1), graph.end(2, 0))
+    with pytest.raises(TopologyError, match=r"port p0 r0 c0 E is .* so p2 r0 c0 W cannot"):
+        graph.connect(graph.end(2, 0), graph.end(0, 1))
+    assert graph.free_ports(2) == [0, 1, 2, 3]
+    assert graph.free_end(0) == 0
+    assert graph.free_end(0, "down") == 3
+    graph.add_interface(2)
+    with pytest.raises(TopologyError, match="use another interface port"):
+        graph.connect(graph.end(graph.sink, 0), graph.end(1, 3))
+    assert Graph(2, 0, array("i", [-1] * 8)).label(1) == "cell 1"
+    assert graph.nodes == 4

@@ -165,3 +165,93 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         measured.read(tmp_path / "binary")
     with pytest.raises(TopologyError, match=r"no link has a quality of 0\.9 or better"):
         measured.from_lines("A B 0.8").kept(0.9)
+
+
+@pytest.mark.parametrize(("x", "y", "fits"), [
+    (90, 180, True), (-90, -180, True), (90.1, 0, False), (0, 180.1, False), (0, -181, False),
+    (True, 0, False), (0, "1", False), (None, 300, True), (1, None, True),
+])  # fmt: skip
+def test_degrees_are_those_of_the_earth(x: object, y: object, fits: bool) -> None:
+    text = json.dumps({"nodes": [{"id": 1}, {"id": 2, "x": x, "y": y}], "links": []})
+    if fits:
+        assert measured.from_json(text).names == ["1", "2"]
+    else:
+        with pytest.raises(TopologyError, match="x or y of node 1"):
+            measured.from_json(text)
+
+
+@pytest.mark.parametrize(("share", "fits"), [
+    (0, True), (1, True), (1.01, False), (-0.1, False), (True, False), ("1", False),
+])  # fmt: skip
+def test_a_quality_is_a_share(share: object, fits: bool) -> None:
+    link = {"source": 1, "target": 2, "target_tq": share}
+    text = json.dumps({"nodes": [{"id": 1}, {"id": 2}], "links": [link]})
+    if fits:
+        assert measured.from_json(text).links == {(0, 1): (float(str(share)), 1.0)}
+    else:
+        with pytest.raises(TopologyError, match="target_tq of link 0"):
+            measured.from_json(text)
+
+
+def test_links_of_no_type_count_always_and_missing_types_are_named() -> None:
+    nodes = [{"id": i} for i in range(3)]
+    links = [{"source": 0, "target": 1, "type": "vpn"}, {"source": 1, "target": 2}]
+    text = json.dumps({"nodes": nodes, "links": links})
+    assert set(measured.from_json(text, ["wifi"]).links) == {(1, 2)}
+    assert set(measured.from_json(text, ["wifi", "vpn"]).links) == {(0, 1), (1, 2)}
+    text = json.dumps({"nodes": nodes, "links": links[:1]})
+    with pytest.raises(TopologyError, match="no link is of type wifi or fibre; there is vpn"):
+        measured.from_json(text, ["wifi", "fibre"])
+
+
+def test_links_that_are_good_enough_both_ways_are_kept_with_their_nodes() -> None:
+    links = {(0, 2): (0.5, 0.9), (1, 2): (0.9, 0.49), (2, 3): (1.0, 0.6)}
+    network = measured.Measured(list("abcd"), links, [(i, -i) for i in range(4)])
+    kept = network.kept(0.5)
+    assert (kept.names, kept.points) == (["a", "c", "d"], [(0, 0), (2, -2), (3, -3)])
+    assert kept.links == {(0, 1): (0.5, 0.9), (1, 2): (1.0, 0.6)}
+    assert network.kept(0.51).names == ["c", "d"]
+    assert network.best_connected() == 2
+    apart = measured.Measured(list("abcde"), {(0, 1): (1.0, 0.0), (1, 2): (0.1, 0.1)}, [])
+    assert apart.largest().names == ["b", "c"]  # over a link that works one way nothing comes back
+    assert apart.best_connected() == 1
+
+
+def test_who_has_no_place_is_put_amidst_its_neighbours_however_far_they_are() -> None:
+    degrees = [(50.0, 10.0), None, None, (50.0, 10.02), None]
+    points = measured._metres(degrees, [(0, 1), (1, 2), (2, 3)])
+    (west, _), first, second, (east, _), alone = points
+    assert west == -east < 0
+    assert (first, second, alone) == ((west, 0), (east, 0), (0, 0))
+    assert measured._metres([None, None], [(0, 1)]) == []
+
+
+def test_names_that_are_there_more_than_once_are_told_apart() -> None:
+    assert measured._different(["a", "b", "a"]) == ["a-0", "b", "a-2"]
+
+
+@pytest.mark.parametrize(("line", "both"), [
+    ("A B", (1.0, 1.0)), ("A B 0", (0.0, 0.0)), ("A B 1 0.5", (1.0, 0.5)), ("B A 1 0.5", None),
+])  # fmt: skip
+def test_a_line_has_a_quality_there_and_back(line: str, both: tuple[float, float] | None) -> None:
+    found = measured.from_lines(line)
+    assert found.links == {(0, 1): both or (1.0, 0.5)}
+    assert found.names == line.split()[:2]
+
+
+@pytest.mark.parametrize("line", ["A", "A B 1 1 1", "A B -0.1", "A B x", "A B 0.5 1.1"])
+def test_a_line_that_is_no_link(line: str) -> None:
+    with pytest.raises(TopologyError, match="line 2 is no link"):
+        measured.from_lines(f"A B\n{line}")
+
+
+def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(measured, "SIZE_MAX", 12)
+    (tmp_path / "net").write_text("A B 0.5 0.25")
+    assert measured.read(tmp_path / "net").links == {(0, 1): (0.5, 0.25)}
+    (tmp_path / "net").write_text("A B 0.5 0.255")
+    with pytest.raises(TopologyError, match="is too large"):
+        measured.read(tmp_path / "net")
+    (tmp_path / "net").write_bytes(b"\xef\xbb\xbf \n{}")
+    with pytest.raises(TopologyError, match="lacks the lists"):
+        measured.read(tmp_path / "net")

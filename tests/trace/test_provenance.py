@@ -1,4 +1,6 @@
+import hashlib
 import json
+import platform
 import subprocess
 from pathlib import Path
 
@@ -51,3 +53,21 @@ def test_the_checkout_that_it_runs_from_is_its_own():
     root = Path(__file__).resolve().parents[2]
     assert checkout() == checkout(root)
     assert (checkout()[0] is not None) == (root / ".git").exists()
+
+
+def test_it_says_what_it_was_told_and_hashes_the_scenario():
+    text = 'kind = "mesh"\n'
+    told = {"seeds": [1], "fingerprint": "f", "wall_s": 2.5}
+    said = provenance(scenario_toml=text, checks=False, interrupted=True, **told)
+    assert said["scenario_sha256"] == hashlib.sha256(text.encode()).hexdigest()
+    assert (said["checks"], said["interrupted"], said["schema"]) == (False, True, 1)
+    assert said["python"] == platform.python_version()
+    assert (said["commit"], said["modified"]) == checkout()
+
+
+def test_a_package_that_is_missing_has_no_version(monkeypatch):
+    monkeypatch.setattr("innervate.trace.provenance.PACKAGES", ("numpy", "no-such-package"))
+    said = provenance(scenario_toml="", seeds=[], fingerprint="", wall_s=0, checks=True,
+                      interrupted=False)  # fmt: skip
+    assert said["packages"]["no-such-package"] is None
+    assert said["packages"]["numpy"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -49,3 +51,22 @@ def test_draws_are_even() -> None:
 def test_draw_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="n >= 1"):
         Stream(1).draw(0)
+
+
+def test_a_uniform_draw_comes_to_both_ends() -> None:
+    draws = stream(1, "ends")
+    assert {draws.uniform(-1, 2) for _ in range(200)} == {-1, 0, 1, 2}
+    assert {draws.draw(1) for _ in range(9)} == {0}
+    assert draws.uniform(5, 5) == 5
+
+
+def test_a_stream_is_known_by_its_seed_and_its_name() -> None:
+    digest = hashlib.blake2b(b"7/clock/3", digest_size=8).digest()
+    known = Stream(int.from_bytes(digest, "big"))
+    assert stream(7, "clock/3").next64() == known.next64()
+    assert Stream(-1).next64() == Stream(2**64 - 1).next64()
+
+
+def test_a_draw_is_the_share_that_a_number_is_of_all() -> None:
+    one, other = Stream(5), Stream(5)
+    assert [one.draw(1000) for _ in range(5)] == [other.next64() * 1000 >> 64 for _ in range(5)]

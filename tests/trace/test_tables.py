@@ -1,6 +1,7 @@
 import subprocess
 import sys
 
+import numpy
 import polars
 import pytest
 
@@ -48,3 +49,17 @@ def test_the_room_loads_without_numpy_and_polars():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_columns_that_lack_values_are_floats_and_others_stay_whole():
+    columns = {"opened_us": [1, 2], "closed_us": [3, None], "cell": [3, 4], "length": [4, 2]}
+    made = tables.arrays(tables.frame(LOOPS, columns))
+    assert {name: array.dtype.kind for name, array in made.items()} == {
+        "opened_us": "i", "closed_us": "f", "cell": "i", "length": "i"}  # fmt: skip
+    assert made["closed_us"][0] == 3
+    assert numpy.isnan(made["closed_us"][1])
+
+
+def test_a_table_that_cannot_be_written_says_so(tmp_path):
+    with pytest.raises(OSError, match="loops"):
+        tables.write(LOOPS, {c.name: [] for c in LOOPS.columns}, tmp_path / "none")

@@ -15,6 +15,7 @@ UNHEARD = -32_768
 NEAREST_CM = 100  # closer than 1 m the path loss is that of 1 m
 _NORMAL = NormalDist()
 _STEPS = 1 << 53
+_MOST = 1 - 1 / _STEPS  # the greatest share below 1
 
 Point = tuple[int, int]
 
@@ -41,7 +42,8 @@ def grid(count: int, columns: int, spacing_cm: int) -> list[Point]:
 
 def normal_cdb(draw: Draw, sigma_cdb: int) -> int:
     """A normally distributed number of 0.01 dB around 0."""
-    return round(_NORMAL.inv_cdf(((draw.next64() >> 11) + 0.5) / _STEPS) * sigma_cdb)
+    share = min(((draw.next64() >> 11) + 0.5) / _STEPS, _MOST)
+    return round(_NORMAL.inv_cdf(share) * sigma_cdb)
 
 
 def path_loss_cdb(distance_cm: int, exponent_c: int) -> int:
