@@ -121,10 +121,10 @@ def pc(which, is_plain):
     return looked_at_between(running, ports, running.world.pc, BROKEN_RANGE, 3)
 
 
-def gateways(rank, is_plain):
+def gateways(gate, is_plain):
     plan = mesh_plan(3, capacity=4, ranks=[1, -1, 0])
     running = mesh_simulate.simulation(plan, plain=is_plain)
-    record, node = running.world.gates[rank], plan.ranks.index(rank)
+    record, node = running.world.gates[gate], (0, 2)[gate]  # in the order of nodes
     return looked_at_between(running, mesh_fields.gate(4), record, BROKEN_MESH, node)
 
 

@@ -19,7 +19,7 @@ from innervate.kernel.stop import Stop
 from innervate.sim import taps
 from innervate.sim.counts import Counts
 from innervate.sim.status import BROKEN, DONE
-from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows, put
+from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows, put, row_dtype
 
 Advance = Callable[[Any, int, int], None]
 Progress = Callable[[int, int], None]
@@ -128,8 +128,8 @@ class Simulation(ABC):
         """The rows that were made since the last call, by table."""
         found = {}
         for name, parts in self._kept.items():
-            none = getattr(self.world, name)[:0]
-            found[name] = np.concatenate(parts) if parts else none.copy()
+            none = np.zeros(0, row_dtype(self.tables[name], self.wide))
+            found[name] = np.concatenate(parts) if parts else none
             parts.clear()
         return found
 

@@ -246,7 +246,7 @@ def _set_nodes(world: w.World, plan: Any, of: Records) -> None:
     steep = round(plan.drift_ppm * (1 << 30) / 1_000_000)
     rates = uniform(plan.seed, "drift", nodes, 2 * steep + 1) - steep
     _fill(world.clocks, "rate", rates, nodes)
-    _fill(world.starts, "inverse", (1 << 60) // ((1 << 30) + rates) - 1, nodes)
+    _fill(world.starts, "inverse", (1 << 60) // ((1 << 30) + rates), nodes)
     _fill(world.clocks, "offset", uniform(plan.seed, "offset", nodes, 1 << 30), nodes)
     first = {
         "rng": uniform(plan.seed, "nodes", cells, rng.FIXED_POINT - 1) + 1,

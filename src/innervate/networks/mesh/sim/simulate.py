@@ -173,9 +173,10 @@ class MeshSimulation(Field):
     def broken_between(self) -> tuple[int, int] | None:
         """The ranges of gateways' records: of hundreds of words, which few events change."""
         fields = mesh_fields.gate(self.plan.capacity)
-        for rank in range(len(self.world.gates) - 1):
-            if not is_in_range(self.world.gates[rank], fields):
-                return medium.BROKEN_RANGE, self.plan.ranks.index(rank)
+        nodes = (node for node, rank in enumerate(self.plan.ranks) if rank >= 0)
+        for gate, node in zip(self.world.gates, nodes, strict=False):
+            if not is_in_range(gate, fields):
+                return medium.BROKEN_RANGE, node
         return None
 
     def broken_line(self) -> str:
