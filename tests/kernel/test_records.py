@@ -45,3 +45,11 @@ def test_a_plain_twin_is_read_and_written_as_one_row_of_words():
         words[i] = 20 + i
     assert (twin.mode, list(twin.dist), list(twin.one), twin.last) == (20, [21, 22, 23], [24], 25)
     assert [words[i] for i in range(6)] == list(range(20, 26))
+
+
+def test_a_record_without_fields_has_a_word_that_nobody_reads():
+    """A network without parameters ran plain only."""
+    made = records.zeros((), 3)
+    assert (made.shape, made.dtype.itemsize) == ((3,), 4)
+    assert [len(limits) for limits in records.bounds(())] == [0, 0]
+    assert records.dtype((), word=np.int64).itemsize == 8

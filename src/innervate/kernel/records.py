@@ -13,16 +13,21 @@ CACHE_LINE = 64
 Field = tuple[str, int | str, int, int, str, str]
 Declaration = tuple[Field, ...]
 Limits = tuple[int, int]
+# What a record without fields holds: compiled, none is empty.
+NOTHING: Declaration = (("nothing", 0, 0, 0, "", "not used"),)
 Test = Callable[[Any], bool]
 
 
 def dtype(declaration: Declaration, itemsize: int = 0, word: Any = np.int32) -> np.dtype[Any]:
-    """The NumPy record of a declaration: `word` throughout, padded to `itemsize` bytes if given."""
+    """The NumPy record of a declaration: `word` throughout, padded to `itemsize` bytes if given.
+
+    One without fields has a word that nobody reads.
+    """
     names: list[str] = []
     formats: list[Any] = []
     offsets: list[int] = []
     offset = 0
-    for name, length, *_ in declaration:
+    for name, length, *_ in declaration or NOTHING:
         count = int(length)
         names.append(name)
         formats.append((word, (count,)) if count else word)

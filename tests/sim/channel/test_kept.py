@@ -23,6 +23,9 @@ from innervate.sim.channel.listening import (
 )
 from innervate.sim.counts import Counts
 from innervate.sim.heap import AIR_BITS
+from innervate.sim.recorded import Recorded
+from innervate.sim.tables import get
+from tests.networks.radio.runs import radio_plan
 
 HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
 HEARD = {"alive": 1, "deaf": 0, "spoilt": 0, "clear": True}
@@ -218,3 +221,25 @@ def test_packets_that_were_handed_up_are_deliveries():
     found = running.take()
     assert set(found) == {"rows", "trail", "deliveries"}
     assert found["deliveries"].tolist() == [(900, 1, 0, 5, 70), (950, 2, 0, 6, -1)]
+
+
+@pytest.mark.parametrize("plain", [True, False])
+def test_what_users_give_stands_in_its_order_and_the_mediums_own_fields_behind(monkeypatch, plain):
+    own = (("kind", 0, 0, 9, "", ""), ("seq", 0, 0, 255, "", ""), ("slots", 0, 0, 9, "", ""))
+    fields = Of(STATE=own[:1], FRAME=own, PARAMS=())
+    monkeypatch.setattr(declared, "networks", lambda: {"radio": Of(fields=fields)})
+    plan = radio_plan(3)
+    inputs = [Of(kind=6, item={"seq": 8, "slots": 2}), Of(kind=5, item={"seq": 9})]
+
+    class Plan:
+        def __getattr__(self, name):
+            return inputs if name == "inputs" else getattr(plan, name)
+
+    world = declared.world_of(Plan(), plain, Recorded())
+    assert [int(get(world.above.items, i, "seq")) for i in range(3)] == [8, 9, 0]
+    assert [int(kind) for kind in world.above.kinds] == [6, 5, 0]
+    assert int(get(world.above.items, 0, "slots")) == 2
+    assert (int(get(world.frames, 0, "count")), int(get(world.item, 0, "ago"))) == (0, 0)
+    assert int(get(world.stations, 2, "queued")) == 0
+    twice = declared.extended((("count", 0, 1, 5, "", "own"),), declared.OF_FRAME)
+    assert [(name, what) for name, *_, what in twice] == [("count", "own"), ("handle", "not used")]
