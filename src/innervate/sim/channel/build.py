@@ -23,7 +23,7 @@ class Records(NamedTuple):
     """Declarations of a protocol's records, as columns of name, length, range, unit, meaning.
 
     Attributes:
-        station: state of a station.
+        station: state of a station; `number`, `rng` and `choice`, where declared, are set here.
         params, frame, packet: parameters, frames, and what a station is handed to send.
     """
 
@@ -83,7 +83,7 @@ def build(
         tapped=tables.states(of.frame, tapped),
     )
     _set_run(world, plan, of, kept)
-    _set_stations(world, plan)
+    _set_stations(world, plan, {name for name, *_ in fields})
     _set_events(world, plan)
     return world
 
@@ -163,13 +163,14 @@ def _set_run(world: r.World, plan: Any, of: Records, kept: Recorded) -> None:
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in of.params})
 
 
-def _set_stations(world: r.World, plan: Any) -> None:
+def _set_stations(world: r.World, plan: Any, names: set[str]) -> None:
     n = plan.stations
     seeds = uniform(plan.seed, "stations", n, rng.FIXED_POINT - 1) + 1
     offsets = uniform(plan.seed, "offset", n, 1 << 30)
     first = 0
     for i in range(n):
-        put(world.stations, i, number=i, rng=int(seeds[i]), choice=rng.GENERATE)
+        own = {"number": i, "rng": int(seeds[i]), "choice": rng.GENERATE}
+        put(world.stations, i, **{name: own[name] for name in own if name in names})
         put(world.radios, i, offset=int(offsets[i]), first_offer=first, next_offer=first)
         put(world.radios, i, candidate=NEVER, leaving=int(plan.absent[i]), told_at=NEVER)
         first += len(plan.arrivals[i])
