@@ -94,7 +94,7 @@ def test_what_is_given_or_sensed_knows_when_it_was(at, made_at):
 
 @pytest.mark.parametrize(("fields", "made_at", "time", "latency"), [
     (FRAME, 60, 90, -1), (TIMED, 60, 90, 30), (TIMED, 0, 90, -1), (TIMED, 1, 1, 0),
-    (TIMED, MASK30 - 9, MASK30 + 11, 20),
+    (TIMED, 5, MASK30 + 26, 20), (TIMED, MASK30 - 9, MASK30 + 11, 20),
 ])  # fmt: skip
 def test_a_delivery_took_as_long_as_since_it_was_handed_in(fields, made_at, time, latency):
     do, world = functions(protocol_of(), Of(FRAME=fields)), world_of()

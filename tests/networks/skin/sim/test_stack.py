@@ -213,11 +213,11 @@ def test_a_sample_at_the_pc_has_a_row_and_its_latency(said, limit):
     world = world_of(delivery_limit=limit)
     for row in world.deliveries:
         row.force, row.accel = [0] * 3, [0] * 3
-    stack.on_deliver(world, MASK30 + 41, SINK, 1, frame(made_at=MASK30 - 9))
-    assert (world.counters[DELIVERED], world.delays[1].sum, world.delays[1].count) == (1, 50, 1)
+    stack.on_deliver(world, MASK30 + 41, SINK, 1, frame(made_at=5))
+    assert (world.counters[DELIVERED], world.delays[1].sum, world.delays[1].count) == (1, 35, 1)
     if limit:
         assert vars(world.deliveries[1]) == {
-            "time": MASK30 + 41, "port": 1, "cell": 3, "seq": 4, "hops": 5, "latency": 50,
+            "time": MASK30 + 41, "port": 1, "cell": 3, "seq": 4, "hops": 5, "latency": 35,
             "proximity": 6, "temperature": 7, "force": [1, 2, 3], "accel": [8, 9, 10],
         }  # fmt: skip
     assert world.run[0].deliveries == (2 if limit else 1)
@@ -290,14 +290,14 @@ def test_a_command_that_comes_is_counted_once_by_what_it_finds(
 ):
     world.run[0].observe, world.watch.due_number[SLOT] = observe, 1
     world.watch.due[SLOT * CELLS + 2] = state
-    orders.reach(world, MASK30 + 41, 2, Of(sq=number, made_at=MASK30 - 9))
+    orders.reach(world, MASK30 + 41, 2, Of(sq=number, made_at=5))
     assert {k for k, count in enumerate(world.counters) if count} == {counter}
     is_first = counter == REACHED
     assert due(world)[2] == (CAME if is_first else state)
-    assert (world.delays[2].count, world.delays[2].sum) == ((1, 50) if is_first else (0, 0))
+    assert (world.delays[2].count, world.delays[2].sum) == ((1, 35) if is_first else (0, 0))
     assert world.run[0].rows == (is_first and observe)
     if world.run[0].rows:
-        row = {"time": MASK30 + 41, "node": 2, "code": orders.ORDER_CAME, "a": 1, "b": 50}
+        row = {"time": MASK30 + 41, "node": 2, "code": orders.ORDER_CAME, "a": 1, "b": 35}
         assert vars(world.rows[0]) == row
 
 

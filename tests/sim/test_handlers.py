@@ -1,0 +1,138 @@
+"""Every medium calls a protocol's functions with what is the node's, in their order."""
+
+from types import SimpleNamespace as Of
+
+import pytest
+
+from innervate.networks.mesh.sim import stacks
+from innervate.sim.cables import declared as cables
+from innervate.sim.channel.calls import handlers
+from innervate.sim.field import declared as field
+from innervate.sim.field import listening
+
+NODE, NOW, FRAME = 1, 500, "a frame"
+CALLED = {  # what each is called with, behind the world and the node
+    "on_start": (NOW, 3), "on_frame": (NOW, FRAME), "on_timer": (NOW, 4), "on_input": (NOW, 5),
+    "on_carrier": (NOW, 6, 7),
+}  # fmt: skip
+HANDED = {  # what is handed on, between the parameters and the outbox
+    "on_start": (NOW, 3), "on_frame": (NOW, 0, FRAME), "on_timer": (NOW, 4),
+    "on_input": (NOW, 5, "item"), "on_carrier": (NOW, 6, 7),
+}  # fmt: skip
+
+
+class Protocol:
+    """Notes what it is called with."""
+
+    def __init__(self, *without):
+        self.said = []
+        for name in HANDED:
+            if name not in without:
+                setattr(self, name, lambda *what, name=name: self.said.append((name, *what)))
+
+
+WORLD = Of(
+    stations=["s0", "s1"], nodes=["n0", "n1"], params=["params"], out="out", item=["item"],
+    macs=["m0", "m1"], mac_params=["mac params"], mac_out="mac out", mac_item=["item"],
+    gates=["g0", "g1", "g2"], radios=[Of(gate=0), Of(gate=2)],
+)  # fmt: skip
+
+
+def by_name(functions):
+    return {function.__name__: function for function in functions}
+
+
+@pytest.mark.parametrize("name", HANDED)
+def test_over_a_channel(name):
+    protocol = Protocol()
+    by_name(handlers(protocol))[name](WORLD, NODE, *CALLED[name])
+    assert protocol.said == [(name, "s1", "params", *HANDED[name], "out")]
+
+
+@pytest.mark.parametrize("name", HANDED)
+def test_over_a_field(name):
+    protocol = Protocol()
+    by_name(field._entries(protocol, set()))[name](WORLD, NODE, *CALLED[name])
+    assert protocol.said == [(name, "s1", "params", *HANDED[name], "out")]
+
+
+@pytest.mark.parametrize("name", ["on_start", "on_timer", "on_frame", "on_input"])
+def test_over_cables(name):
+    protocol = Protocol()
+    world = Of(cells=["c0", "c1"], params=["params"], out="out", sample=["item"],
+               clocks=[None, Of(offset=100, rate=0)])  # fmt: skip
+    called = {**CALLED, "on_frame": (NOW - 100, 2, FRAME)}
+    handed = {**HANDED, "on_frame": (NOW, 2, FRAME)}
+    cables._entries(protocol)[name](world, NODE, *called[name])
+    assert protocol.said == [(name, "c1", "params", *handed[name], "out")]
+
+
+@pytest.mark.parametrize("name", ["on_start", "on_timer", "on_frame", "on_input"])
+def test_a_router_has_a_gateways_record_besides(name):
+    protocol = Protocol()
+    by_name(stacks._router(protocol))[name](WORLD, NODE, *CALLED[name])
+    assert protocol.said == [(name, "n1", "g2", "params", *HANDED[name], "out")]
+
+
+@pytest.mark.parametrize("name", HANDED)
+@pytest.mark.parametrize("of", ["a mesh", "a field"])
+def test_a_medium_access_has_records_of_its_own(monkeypatch, name, of):
+    protocol = Protocol()
+    if of == "a mesh":
+        monkeypatch.setattr(stacks, "csma", protocol)
+        made = stacks._csma()
+    else:
+        monkeypatch.setattr(field, "access_of", lambda network: Of(entry="csma"))
+        monkeypatch.setattr(field.importlib, "import_module", lambda entry: protocol)
+        made = field._mac(Of(over="csma", protocol=None))
+    by_name(made)[f"mac_{name}"](WORLD, NODE, *CALLED[name])
+    assert protocol.said == [(name, "m1", "mac params", *HANDED[name], "mac out")]
+
+
+@pytest.mark.parametrize("name", HANDED)
+def test_without_a_medium_access_nothing_is_called(name):
+    protocol = Protocol()
+    by_name(field._mac(Of(over="", protocol=protocol)))[f"mac_{name}"](WORLD, NODE, *CALLED[name])
+    assert protocol.said == []
+
+
+def test_who_hears_carriers_is_told_of_its_own_end_and_of_changes(monkeypatch):
+    told = []
+    monkeypatch.setattr(
+        listening, "tell_carrier", lambda _w, _do, *what: told.append(("one", *what))
+    )
+    monkeypatch.setattr(
+        listening, "tell_changes", lambda _w, _do, *what: told.append(("all", *what))
+    )
+    made = by_name(field._entries(Protocol(), set()))
+    made["tell_end"](WORLD, None, NODE, NOW, 1)
+    made["note_carriers"](WORLD, None, NOW)
+    assert told == [("one", NODE, NOW), ("all", NOW)]
+    deaf = by_name(field._entries(Protocol("on_carrier"), set()))
+    deaf["tell_end"](WORLD, None, NODE, NOW, 1)
+    deaf["note_carriers"](WORLD, None, NOW)
+    assert len(told) == 2
+
+
+def test_who_wants_to_know_is_told_what_became_of_its_frames(monkeypatch):
+    told = []
+    monkeypatch.setattr(listening, "tell_gone", lambda _w, _do, *what: told.append(what))
+    protocol = Protocol("on_carrier")
+    protocol.on_sent = lambda *what: protocol.said.append(what)
+    made = by_name(field._entries(protocol, set()))
+    made["on_sent"](WORLD, NODE, NOW, 1)
+    made["tell_end"](WORLD, None, NODE, NOW, 0)
+    made["note_carriers"](WORLD, None, NOW)
+    assert protocol.said == [("s1", "params", NOW, 1, "out")]
+    assert told == [(NODE, NOW, 0)]
+
+
+def test_frames_pass_through_a_function_on_their_way():
+    do = stacks.plain(stacks.mesh(), stacks.Layer(field.access), None)
+    assert do.copy_frame is stacks.copy_frame
+    seen = []
+    through = stacks.plain(stacks.mesh(), stacks.Layer(field.access, "channel"), seen.append)
+    with pytest.raises(AttributeError):
+        through.copy_frame(Of(), "frame")
+    assert (seen, through.channel, do.channel) == (["frame"], "channel", None)
+    assert do.short is field.access.short
