@@ -4,8 +4,10 @@ from types import SimpleNamespace as Of
 
 import pytest
 
+from innervate.dialect.rng import GENERATE
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
+from innervate.networks.mesh.scenario.params import FORGET_S
 from innervate.networks.mesh.scenario.plan import Offer, Walk
 from innervate.networks.mesh.sim import build, orders, recorder, simulate
 from innervate.networks.mesh.sim.build import DUPLICATES, FORGET_US, OUTBOX
@@ -60,6 +62,7 @@ def test_a_plan_becomes_the_numbers_of_its_radios(world):
     assert run["capture"] == powers.capture_ratio(600)
     assert run["free"] == len(world.air) == 8 * N + 64
     assert run["duplicate_limit"] == DUPLICATES // 2 - (N + 1) * (OUTBOX + 1) // 4
+    assert FORGET_US == 1e6 * FORGET_S  # what a scenario that says nothing has
     words = sum(max(int(field[1]), 1) for field in mesh_fields.gate(32))
     assert run["gate_words"] == words
     assert [int(get(world.mac_params, 0, name)) for name in build.CSMA] == [99, 3, 6, 8]
@@ -81,6 +84,7 @@ def test_gateways_have_a_record_and_all_others_share_one(world):
     assert world.radios["held"].tolist() == world.radios["tell_at"].tolist() == [NONE] * N
     assert list(zip(world.radios["x"].tolist(), world.radios["y"].tolist(), strict=True)) == [
         (0, 0), (300, 0), (0, 500), (9, 9)]  # fmt: skip
+    assert set(world.nodes["choice"].tolist()) == {GENERATE}  # also that which stands for all anew
     assert len(set(world.macs["rng"].tolist())) == len(set(world.nodes["rng"].tolist()[:N])) == N
 
 
@@ -116,8 +120,10 @@ def test_an_ideal_medium_or_a_channel_below_has_no_collisions_of_its_own():
     assert over.below.radios["leaving"].tolist()[:N] == [1] * N
     assert over.below.above is over.heap
     assert int(get(over.below.run, 0, "loss")) == 0
-    lossy = build.build(team(N, chance=30_000), False)
-    assert int(get(lossy.below.run, 0, "loss")) == 32_768 - 30_000
+    lossy = team(N)
+    lossy.radio.prob_q15[1], lossy.radio.prob_q15[7], lossy.radio.prob_q15[5] = 31_000, 30_000, 0
+    below = build.build(lossy, False).below  # as the worst pair; nobody is a pair with himself
+    assert int(get(below.run, 0, "loss")) == 32_768 - 30_000
 
 
 @pytest.mark.parametrize(("kept", "limits"), [

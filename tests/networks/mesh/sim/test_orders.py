@@ -8,7 +8,7 @@ from innervate.networks.mesh.protocol.constants import ACK, MESSAGE, REPORT_GRAP
 from innervate.networks.mesh.sim import orders, recorder, stacks
 from innervate.sim import taps
 from innervate.sim.field import calls, medium, motion, queue
-from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, ON_AIR
+from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, ON_AIR, VOID
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
 
 LIMITS = ("row", "sent", "delivered", "round", "trail", "tap")
@@ -18,13 +18,15 @@ NODES = 2
 
 def pressing(size=0, **run):
     given = {"broken": 0, "duplicates": 5, "duplicate_limit": 5, "nodes": NODES}
-    given |= dict.fromkeys(COUNTS, 9) | {f"{name}_limit": 9 for name in LIMITS}
+    for limit, (name, count) in enumerate(zip(LIMITS, COUNTS, strict=True), 20):
+        given |= {f"{name}_limit": limit, count: limit}
     keys = [0] * (64 * NODES + 64 + 3)
     return orders.pressing(Of(run=[Of(**given | run)], heap=Of(size=[size], keys=keys)))
 
 
 @pytest.mark.parametrize(("given", "why"), [
-    ({}, DONE), ({"broken": 1, "rows": 10}, BROKEN), *(({name: 10}, ROWS_FULL) for name in COUNTS),
+    ({}, DONE), ({"broken": 1, "rows": 99}, BROKEN),
+    *(({name: 21 + place}, ROWS_FULL) for place, name in enumerate(COUNTS)),
     ({"duplicates": 6}, orders.DUPLICATES_FULL), ({"size": 3}, DONE), ({"size": 4}, POOL_FULL),
 ])  # fmt: skip
 def test_the_loop_stops_while_there_is_room_for_one_event_more(given, why):
@@ -154,15 +156,17 @@ def test_what_was_on_the_air_has_a_row_with_all_that_it_said():
         "dest": 6, "seq": 7, "path_len": 2, "bytes": 33, "receivers": 5,
     }  # fmt: skip
     assert world.run[0].sent == 2
-    world.air[0].state = COMMITTED
-    recorder.record_sent(world, 0, 90, 33, 5)
+    for state in (COMMITTED, VOID):  # not yet, or not any more
+        world.air[0].state = state
+        recorder.record_sent(world, 0, 90, 33, 5)
     quiet = rows_of(sent_limit=0)
     recorder.record_sent(quiet, 0, 90, 33, 5)
     assert (world.run[0].sent, quiet.run[0].sent) == (2, 1)
 
 
 @pytest.mark.parametrize(("length", "body"), [
-    (0, [0, 0, 0, 0]), (1, [21, 0, 0, 0]), (3, [21, 22, 23, 0]), (5, [21, 22, 23, 24]),
+    (0, [0, 0, 0, 0]), (1, [21, 0, 0, 0]), (2, [21, 22, 0, 0]), (3, [21, 22, 23, 0]),
+    (4, [21, 22, 23, 24]), (5, [21, 22, 23, 24]),
 ])  # fmt: skip
 def test_a_delivery_has_a_row_with_the_first_bytes_that_there_are(length, body):
     world = rows_of()
@@ -191,13 +195,13 @@ def test_deliveries_of_nodes_are_looked_at_for_the_same_twice(
 
 
 def test_a_place_in_a_table_is_its_own_or_the_next_that_is_free():
-    keys = [0] * 8
+    keys, some = [0] * 8, range(11, 99, 11)
     places = []
-    for key in (11, 22, 33, 44, 55):
+    for key in some:
         places.append(recorder.place_of(keys, key))
         keys[places[-1]] = key
-    assert len(set(places)) == 5
-    assert [recorder.place_of(keys, key) for key in (11, 22, 33, 44, 55)] == places
+    assert sorted(places) == list(range(8))
+    assert [recorder.place_of(keys, key) for key in some] == places
 
 
 def test_a_round_counts_the_links_that_a_gateway_knows_and_those_that_are_good():
