@@ -46,6 +46,7 @@ from innervate.networks.skin.sim.orders import (
 from innervate.scenario.actions.cables import GIVE as TO_GIVE
 from innervate.sim.cables.wires import DELIVERED
 from innervate.sim.cables.world import ALIVE, DEAD
+from innervate.topology.layout import cell_places
 from tests.networks.skin.runs import line, plan_of
 
 CELLS, SINK = 3, 3
@@ -363,3 +364,13 @@ def test_a_command_of_the_pc_is_a_row():
 ])  # fmt: skip
 def test_a_loop_is_called_by_what_it_is_compiled_for(script, rule, name):
     assert simulate.loop_name(Of(script=script, params={"rule": rule})) == name
+
+
+def test_a_touch_and_all_cells_have_their_places_in_micrometres():
+    plan = plan_of(line(3, data={"rate_hz": 10}))
+    assert build(plan, True).carrier == ([], [], [0, 0, 1], [])
+    plan.touch = Of(x_um=[1, 2], y_um=[3, 4], radius_um=5, force_mn=6, step_us=7)
+    felt = build(plan, True).carrier
+    places = [round(1000 * x) for place in cell_places(plan.graph) for x in place]
+    assert felt == ([1, 2], [3, 4], [5, 6, 7], places)
+    assert places == [0, 0, 14_000, 0, 28_000, 0]
