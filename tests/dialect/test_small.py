@@ -79,6 +79,7 @@ def test_plain_records_begin_in_their_ranges_and_apart():
     with pytest.raises(AttributeError):
         one.pth = 1
     assert made.__name__ == "Frame"
+    assert plain.make("One", (("only", 1, 2, 9, "", ""),))().only == [2]
 
 
 def test_actions_are_put_one_behind_the_other_until_there_is_no_room():

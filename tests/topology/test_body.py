@@ -187,3 +187,33 @@ def test_an_interface_on_a_cell_without_a_port_is_refused() -> None:
     with pytest.raises(TopologyError, match="a has no free port") as caught:
         body_graph(list("abcde"), places, 10.0, ["a"])
     assert caught.value.subject == "interfaces"
+
+
+def test_a_frame_is_turned_within_the_one_that_it_hangs_on(tmp_path: Path) -> None:
+    quarter = math.pi / 2
+    origins = [("1 0 0", f"0 0 {quarter}"), ("1 0 0", f"{quarter} 0 0"), ("0 0 1", "0 0 0")]
+    joints = "".join(
+        f'<link name="l{i + 1}"/><joint name="j{i}" type="fixed"><parent link="l{i}"/>'
+        f'<child link="l{i + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/></joint>'
+        for i, (xyz, rpy) in enumerate(origins)
+    )
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="l0"/>{joints}</robot>')
+    assert normals_from_urdf("r.urdf", "l2", tmp_path) == [pytest.approx((1, 0, 0))]
+    places = cells_from_urdf("r.urdf", "l*", tmp_path)[1]
+    assert places[2:] == [pytest.approx((1000, 1000, 0)), pytest.approx((2000, 1000, 0))]
+
+
+@pytest.mark.parametrize("xyz", ["0 0 nan", "0 inf 0", "0 -inf inf", "0 0 0 0", ""])
+def test_an_origin_takes_three_numbers(tmp_path: Path, xyz: str) -> None:
+    (tmp_path / "r.urdf").write_text(URDF.replace("0.02 0 0", xyz))
+    with pytest.raises(TopologyError, match="takes three numbers"):
+        cells_from_urdf("r.urdf", "skin_*", tmp_path)
+
+
+def test_an_expression_is_of_whole_names_and_a_glob_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(URDF)
+    for part in ("skin_", "kin_0", r"skin_\d\d"):
+        with pytest.raises(TopologyError, match=r"no link of r\.urdf matches"):
+            cells_from_urdf("r.urdf", part, tmp_path)
+    assert cells_from_urdf("r.urdf", "skin_0|arm", tmp_path)[0] == ["arm", "skin_0"]
+    assert cells_from_urdf("r.urdf", "*", tmp_path)[0] == ["base", "arm", "skin_0", "skin_1"]

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import pytest
 
-from innervate.topology import TopologyError, cells_from_urdf, normals_from_urdf
+from innervate.topology import TopologyError, cells_from_urdf, cover, normals_from_urdf
 from innervate.topology.body import joining_reach
 from innervate.topology.cover import find_mesh, thinned
 
@@ -233,3 +233,20 @@ def test_a_mesh_is_looked_for_beside_and_above_and_below_its_packages_name(tmp_p
         assert find_mesh(name, urdf) == wanted
     with pytest.raises(TopologyError, match=r"none\.stl is not there"):
         find_mesh("package://bot/none.stl", urdf)
+
+
+def test_all_links_together_carry_no_more_cells_than_there_can_be(tmp_path, monkeypatch):
+    ball = '<visual><geometry><sphere radius="0.03"/></geometry></visual>'
+    links = "".join(f'<link name="b{i}">{ball}</link>' for i in range(2))
+    (tmp_path / "two.urdf").write_text(f'<robot name="r">{links}</robot>')
+    monkeypatch.setattr(cover, "CELLS_MAX", 13)
+    assert len(cells_from_urdf(str(tmp_path / "two.urdf"), "b0", None, 30.0)[0]) <= 13
+    with pytest.raises(TopologyError, match="a pitch of 30 mm makes more than 13 cells") as caught:
+        cells_from_urdf(str(tmp_path / "two.urdf"), "*", None, 30.0)
+    assert caught.value.subject == "pitch_mm"
+
+
+def test_a_mesh_is_known_by_its_suffix_however_it_is_written(robot, tmp_path):
+    (tmp_path / "tile.stl").rename(tmp_path / "TILE.STL")
+    upper = robot_of(tmp_path, '<mesh filename="TILE.STL" scale="0.001 0.001 0.001"/>')
+    assert len(cells_from_urdf(upper, "*", None, 20.0)[0]) > 5

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.topology import TopologyError, free_graph
+from innervate.topology import TopologyError, free, free_graph
 from innervate.topology.free import split_end
 from innervate.topology.layout import cell_places
 
@@ -107,3 +107,11 @@ def test_a_cell_has_four_cables_and_the_fifth_is_refused_on_its_side() -> None:
     with pytest.raises(TopologyError, match="a has no port left") as caught:
         free_graph([*links, ("f", "a")])
     assert caught.value.subject == "link.4.b"
+
+
+def test_there_are_no_more_cells_than_there_can_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(free, "CELLS_MAX", 3)
+    assert free_graph([("a", "b"), ("b", "c")]).cells == 3
+    with pytest.raises(TopologyError, match="more than 3 cells") as caught:
+        free_graph([("a", "b"), ("c", "d")])
+    assert caught.value.subject == "link"

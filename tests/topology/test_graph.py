@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from innervate.topology import Graph, Patch, TopologyError, from_patches, join_chain, port_number
+from innervate.topology import graph as graphs
 from innervate.topology.layout import cell_places
 from innervate.topology.patch import neighbour
 
@@ -189,3 +190,21 @@ def test_a_port_in_the_way_is_told_with_those_that_are_free() -> None:
         graph.connect(graph.end(graph.sink, 0), graph.end(1, 3))
     assert Graph(2, 0, array("i", [-1] * 8)).label(1) == "cell 1"
     assert graph.nodes == 4
+
+
+def test_all_interface_ports_are_the_pcs() -> None:
+    graph = from_patches([(2, 1, "Z")])
+    for port in ("up", "down", "W"):
+        graph.add_interface(0, port)
+    for port in ("up", "down", "E"):
+        graph.add_interface(1, port)
+    assert [graph.node_of(end) for end in range(6, 14)] == [1, 1] + [2] * 6
+    assert graph.neighbours(0) == [2, 1, 2, 2]
+    assert graph.label_end(13) == "pc.5"
+
+
+def test_all_patches_together_are_no_larger_than_they_can_be(monkeypatch) -> None:
+    monkeypatch.setattr(graphs, "CELLS_MAX", 10)
+    assert from_patches([(2, 3, "Z"), (2, 2, "S")]).cells == 10
+    with pytest.raises(TopologyError, match="more than 10 cells"):
+        from_patches([(2, 3, "Z"), (2, 2, "S"), (1, 1, "Z")])

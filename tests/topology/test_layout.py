@@ -173,3 +173,39 @@ def test_a_skin_round_a_limb_is_unrolled_where_it_has_most_room(count):
     assert x.max() == pytest.approx(30 * (math.tau - widest), abs=0.5)
     gaps = np.sort(np.diff(np.sort(x)))
     assert gaps == pytest.approx(np.sort(np.diff([*arcs, arcs[0] + math.tau]))[:-1] * 30, abs=0.5)
+
+
+def limb(axis, side, third):
+    """A skin of four rings round a limb, 1.3 times as long as it is thick."""
+    points = []
+    for height in (-30.0, -10.0, 10.0, 30.0):
+        for k in range(8):
+            u, v = 17 * math.cos(k * math.pi / 4), 17 * math.sin(k * math.pi / 4)
+            points.append(tuple(height * a + u * b + v * c
+                                for a, b, c in zip(axis, side, third, strict=True)))  # fmt: skip
+    return points
+
+
+HALF = math.sqrt(0.5)
+TURNS = {
+    "x": ((1, 0, 0), (0, 1, 0), (0, 0, 1)), "z": ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "x and y": ((HALF, HALF, 0), (HALF, -HALF, 0), (0, 0, 1)),
+    "x against y": ((HALF, -HALF, 0), (HALF, HALF, 0), (0, 0, 1)),
+    "y against z": ((0, HALF, -HALF), (0, HALF, HALF), (1, 0, 0)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("way", TURNS)
+def test_a_limb_is_unrolled_along_its_longest_axis_wherever_that_points(way):
+    points = limb(*TURNS[way])
+    axis = layout._longest_axis(points)
+    along = sum(a * b for a, b in zip(axis, TURNS[way][0], strict=True))
+    assert abs(along) == pytest.approx(1, abs=1e-6)
+    assert layout._longest_axis([(0.0, 0.0, 0.0)]) == (1.0, 0.0, 0.0)
+
+
+def test_cells_that_nothing_joins_with_the_pc_stand_at_the_bottom():
+    graph = free_graph([("pc.0", "a"), ("a", "b"), ("x", "y")])
+    rows = {name: y for name, (_, y) in zip(graph.names, cell_places(graph), strict=True)}
+    step = 2 * PITCH_MM
+    assert rows == {"a": 0, "b": step, "x": 2 * step, "y": 2 * step}

@@ -20,3 +20,10 @@ def test_a_port_that_nothing_is_on_is_no_way():
 def test_what_no_cable_leads_to_is_tied_to_nobody():
     graph = free_graph([("pc.0", "a"), ("a", "pc.1"), ("b", "c")])
     assert tied_at(graph) == {1: 1}
+
+
+def test_the_two_nearest_of_three_ports_tie():
+    star = [("pc.0", "a"), ("pc.1", "b"), ("a", "m"), ("b", "m"), ("m", "c"), ("c", "pc.2")]
+    assert tied_at(free_graph(star)) == {2: 1}  # to m all three
+    longer = [*star[:4], ("m", "d"), ("d", "c"), ("c", "pc.2")]
+    assert tied_at(free_graph(longer)) == {2: 1}  # to m the first two

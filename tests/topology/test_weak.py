@@ -77,3 +77,11 @@ def test_a_skin_of_patches_joined_by_single_cables():
     join_chain(graph, 0, 3)
     graph.add_interface(0)
     assert [one.isolated for one in weak_points(graph) if one.end >= 0] == [48, 32, 16]
+
+
+def test_of_those_that_isolate_as_many_cables_come_before_cells_and_lower_numbers_first():
+    graph = free_graph([("pc.0", "a"), ("a", "b"), ("b", "c"), ("pc.1", "x"), ("x", "y")])
+    found = weak_points(graph)
+    assert found == sorted(found, key=lambda one: (-one.isolated, one.end < 0, one.node, one.end))
+    twos = [(one.end >= 0, one.node) for one in found if one.isolated == 2]
+    assert twos == [(True, -1), (True, -1), (False, 0)]

@@ -63,3 +63,9 @@ def test_columns_that_lack_values_are_floats_and_others_stay_whole():
 def test_a_table_that_cannot_be_written_says_so(tmp_path):
     with pytest.raises(OSError, match="loops"):
         tables.write(LOOPS, {c.name: [] for c in LOOPS.columns}, tmp_path / "none")
+
+
+def test_as_many_columns_of_other_names_are_refused():
+    columns = {"opened_us": [1], "closed_us": [2], "cell": [3], "lenght": [4]}
+    with pytest.raises(ValueError, match=r"table loops has columns .*length.*, not .*lenght"):
+        tables.frame(LOOPS, columns)

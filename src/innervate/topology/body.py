@@ -207,7 +207,7 @@ def propose(graph: Graph, count: int) -> list[int]:
     if len(free) < count:
         message = f"only {len(free)} cells have a free port for {count} interfaces; ask for fewer"
         raise TopologyError(message, "interfaces")
-    if count == 0 or not free:
+    if count == 0:
         return []
     centre = [math.fsum(graph.positions[a::3]) / graph.cells for a in range(3)]
     away = {c: math.dist(graph.positions[3 * c : 3 * c + 3], centre) for c in free}

@@ -162,16 +162,30 @@ def _unrolled(positions: array[float]) -> list[Point]:
 
 
 def _longest_axis(points: list[tuple[float, ...]]) -> tuple[float, ...]:
-    """Direction of greatest variance, by power iteration on the 3 x 3 covariance."""
+    """Direction of greatest variance, by power iteration on the 3 x 3 covariance.
+
+    From several starts: one alone may stand square to it, and would never turn there.
+    """
     spread = [[math.fsum(p[a] * p[b] for p in points) for b in range(3)] for a in range(3)]
-    axis = tuple(1.0 + spread[a][a] for a in range(3))
+    starts = (
+        tuple(1.0 + spread[a][a] for a in range(3)),
+        *(tuple(float(a == b) for b in range(3)) for a in range(3)),
+    )
+    found = [_grown(spread, start) for start in starts]
+    most = max(norm for norm, _ in found)
+    return next(axis for norm, axis in found if norm >= (1 - 1e-9) * most)
+
+
+def _grown(spread: list[list[float]], axis: tuple[float, ...]) -> tuple[float, tuple[float, ...]]:
+    """How much a direction grows that was turned towards the greatest variance, and itself."""
+    norm = 0.0
     for _ in range(60):
-        grown = tuple(_dot(tuple(spread[a]), axis) for a in range(3))
+        grown = tuple(_dot(tuple(row), axis) for row in spread)
         norm = math.sqrt(_dot(grown, grown))
         if norm < 1e-9:
-            return (1.0, 0.0, 0.0)
+            return 0.0, (1.0, 0.0, 0.0)
         axis = tuple(v / norm for v in grown)
-    return axis
+    return norm, axis
 
 
 def _dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:

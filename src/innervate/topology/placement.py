@@ -150,7 +150,7 @@ def components(near: Sequence[Sequence[int]]) -> list[list[int]]:
         part = [node for node, far in enumerate(hops) if far >= 0]
         left.difference_update(part)
         found.append(part)
-    return sorted(found, key=lambda part: (-len(part), part))
+    return sorted(found, key=len, reverse=True)  # of equal ones that with the least number first
 
 
 UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
