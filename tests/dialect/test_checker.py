@@ -70,3 +70,11 @@ def test_functions_that_call_each_other_in_a_ring_are_told_each():
 def test_what_a_protocol_may_import(line, home, fits):
     found = broken_rules(f'"""Doc."""\n{line}\n', home=home)
     assert [one.line for one in found] == ([] if fits else [2])
+
+
+def test_calls_that_debug_are_for_plain_runs_unless_they_are_ones_own():
+    text = '"""Doc."""\ndef f(n):\n    """Doc."""\n    print(n / 2)\n    breakpoint()\n'
+    found = broken_rules(text)
+    assert [(one.line, one.in_plain) for one in found] == [(4, True), (5, True)]
+    own = text.replace("/ 2", "+ 2") + 'def print(n):\n    """Doc."""\n    return n\n'
+    assert [one.line for one in broken_rules(own)] == [5]

@@ -40,3 +40,15 @@ def test_rounds_that_are_not_seen():
     for body in ("while a:\n  send()", "for i in range(a):\n  if b:\n    return send()"):
         with pytest.raises(Unknown):
             count(body)
+
+
+@pytest.mark.parametrize(("rounds", "most"), [("N", 3), ("1, N", 2), ("N, 8, 2", 3), ("M", None)])
+def test_rounds_may_be_named(rounds, most):
+    body = ast.parse(f"def on_timer():\n  for i in range({rounds}):\n    send()").body
+    functions = {one.name: one for one in body}
+    if most is None:
+        with pytest.raises(Unknown) as caught:
+            actions("on_timer", functions, {"N": 3, "OTHER": 9})
+        assert caught.value.line == 2
+    else:
+        assert actions("on_timer", functions, {"N": 3, "OTHER": 9}) == most
