@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from statistics import NormalDist
 from typing import Protocol
 
-UNHEARD = -32_768
+UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
 NEAREST_CM = 100  # closer than 1 m the path loss is that of 1 m
 _NORMAL = NormalDist()
 _STEPS = 1 << 53
@@ -151,6 +151,3 @@ def components(near: Sequence[Sequence[int]]) -> list[list[int]]:
         left.difference_update(part)
         found.append(part)
     return sorted(found, key=len, reverse=True)  # of equal ones that with the least number first
-
-
-UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
