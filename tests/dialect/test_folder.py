@@ -194,6 +194,7 @@ def laid(seq=("seq", 0, 8, False), way=("way", 2, 3, True), kind=1):
     ({"way": ("way", 2, 2, True)}, "news: way is -4 to 3 in FRAME; 2 bits hold -2 to 1"),
     ({"way": ("way", 2, 3, False)}, "3 bits hold 0 to 7"),
     ({"way": ("way", 3, 3, True)}, "way has 3 here and length 2 in FRAME"),
+    ({"way": ("way", 1, 3, True)}, "way has 1 here and length 2 in FRAME"),
     ({"way": ("way", "seq", 3, True)}, "way is of variable number"),
     ({"way": ("way", 2, "seq", True)}, "way is of variable number"),
     ({"way": None}, "no frame carries way of FRAME"),

@@ -2,6 +2,7 @@
 
 import ast
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -42,3 +43,11 @@ def test_a_mistake_is_planted_in_one_place_only():
     for text in ("no such text", "cell.parent = NONE"):
         with pytest.raises(ValueError, match="times in innervate"):
             source.functions(CELL, change=(text, "pass"))
+
+
+def test_constants_are_in_capitals():
+    module = ModuleType("some")
+    vars(module).update(LIMIT=3, IS_ON=True, limit=4, Name="a", __file__="some.py")
+    found = source.Function("f", ast.parse("def f():\n    pass").body[0], module)
+    assert found.constants == {"LIMIT": 3, "IS_ON": 1}
+    assert (found.module, found.path) == ("some", "some.py")

@@ -1,5 +1,6 @@
 """What the kernel does besides compiling, by hand: folders, interrupts, hashes, ranges, forms."""
 
+import ctypes
 import os
 import signal
 import threading
@@ -285,3 +286,29 @@ def test_a_loop_is_loaded_once_for_each_form_and_compiled_once(monkeypatch):
     unnamed = ready.Loop("", compiled)
     unnamed(fits, 5, 6)
     assert (ran[5:], len(asked)) == (["made", (fits, 5, 6)], 2)
+
+
+def test_nobody_else_may_even_look_while_one_is_alone(tmp_path):
+    fcntl = pytest.importorskip("fcntl", reason="files are locked as on POSIX")
+    path = tmp_path / "loop.lock"
+    with path.open("ab") as other:
+        with cache.alone(path), pytest.raises(BlockingIOError):
+            fcntl.flock(other, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        fcntl.flock(other, fcntl.LOCK_SH | fcntl.LOCK_NB)
+
+
+@pytest.mark.parametrize(("status", "is_fine"), [(0, True), (-2, True), (1, False), (-1, False)])
+def test_a_ready_loop_is_handed_addresses_lengths_and_limits(status, is_fine):
+    seen = []
+    number = ctypes.c_int64
+    code = ctypes.CFUNCTYPE(ctypes.c_int32, *[number] * 8)(
+        lambda _result, _failure, *given: seen.append(given) or status
+    )
+    advance = ready.called(ctypes.cast(code, ctypes.c_void_p).value, 2)
+    arrays = [np.arange(3), np.zeros(5)]
+    if is_fine:
+        advance(arrays, np.int64(70), 9)
+    else:
+        with pytest.raises(RuntimeError, match=f"ended with status {status}"):
+            advance(arrays, 70, 9)
+    assert seen == [(arrays[0].ctypes.data, 3, arrays[1].ctypes.data, 5, 70, 9)]

@@ -194,8 +194,9 @@ def test_deliveries_of_nodes_are_looked_at_for_the_same_twice(
     assert looked == [(2, one, 90)] * count
 
 
-def test_a_place_in_a_table_is_its_own_or_the_next_that_is_free():
-    keys, some = [0] * 8, range(11, 99, 11)
+@pytest.mark.parametrize("first", range(1, 30, 4))
+def test_a_place_in_a_table_is_its_own_or_the_next_that_is_free(first):
+    keys, some = [0] * 8, range(first, first + 8 * 11, 11)
     places = []
     for key in some:
         places.append(recorder.place_of(keys, key))

@@ -30,7 +30,9 @@ from innervate.networks.skin.sim.counters import (
     ADDRESSED,
     COMMAND_BLOCK,
     GIVEN,
+    LOOPED,
     MISSED,
+    NO_ROUTE,
     REACHED,
     REPEATED,
     STRAY,
@@ -374,3 +376,7 @@ def test_a_touch_and_all_cells_have_their_places_in_micrometres():
     places = [round(1000 * x) for place in cell_places(plan.graph) for x in place]
     assert felt == ([1, 2], [3, 4], [5, 6, 7], places)
     assert places == [0, 0, 14_000, 0, 28_000, 0]
+
+
+def test_why_cells_gave_samples_up_is_told_by_name():
+    assert simulate.SkinSimulation.dropped == {"no_route": NO_ROUTE, "loop": LOOPED}
