@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 from collections import namedtuple
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -312,3 +313,17 @@ def test_a_ready_loop_is_handed_addresses_lengths_and_limits(status, is_fine):
         with pytest.raises(RuntimeError, match=f"ended with status {status}"):
             advance(arrays, 70, 9)
     assert seen == [(arrays[0].ctypes.data, 3, arrays[1].ctypes.data, 5, 70, 9)]
+
+
+def test_a_world_that_is_lent_again_is_not_looked_at_again():
+    asked, ran = [], []
+    compiled = SimpleNamespace(
+        overloads={}, typeof_pyval=lambda value: asked.append(value) or "kind",
+        compile=lambda kinds: lambda *given: ran.append((kinds, *given[1:])),
+    )  # fmt: skip
+    loop = tables.Lending(compiled)
+    one, other = World(np.zeros(2), Inner(np.zeros(3))), World(np.zeros(2), Inner(np.zeros(3)))
+    for world, looks in ((one, 3), (one, 3), (other, 6), (one, 9)):
+        loop(world, 7, 8)
+        assert len(asked) == looks
+    assert ran == [(("kind",) * 3, 7, 8)] * 4
