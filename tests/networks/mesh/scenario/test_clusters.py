@@ -257,7 +257,8 @@ def test_a_run_says_which_cluster_it_is_of() -> None:
     summary = summarize(result)
     assert summary["cluster"] == {"number": 2, "of": 3, "nodes": 30}
     assert (summary["nodes"], summary["delivery_ratio"]) == (14, 1.0)
-    assert opening(summary | {"name": "x"}) == "x: cluster 2 of 3, 30 nodes in all; here 14 nodes, 13 good links"
+    said = "x: cluster 2 of 3, 30 nodes in all; here 14 nodes, 13 good links"
+    assert opening(summary | {"name": "x"}) == said
     assert "cluster" not in summarize(simulate(scenario.plan(load(SMALL)), plain=True))
 
 
