@@ -46,6 +46,8 @@ class MeasuredOptions:
         A node as the file calls it: only those about it, nearest first, by their better links.
     nodes
         At most so many of them, 2 to 254; around the best connected node if none is named.
+    gateways
+        So many clusters of at most 254 nodes, each with a gateway and a channel of its own.
     """
 
     network: str | None = None
@@ -53,12 +55,13 @@ class MeasuredOptions:
     min_tq: float | None = None
     around: str | None = None
     nodes: Whole | None = None
+    gateways: Whole | None = None
 
     @property
     def wanted(self) -> dict[str, Any]:
         """What was chosen of the network."""
         chosen = {"types": self.types, "min_tq": self.min_tq, "around": self.around,
-                  "nodes": self.nodes}  # fmt: skip
+                  "nodes": self.nodes, "gateways": self.gateways}  # fmt: skip
         return {key: value for key, value in chosen.items() if value is not None}
 
 

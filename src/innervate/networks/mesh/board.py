@@ -80,10 +80,10 @@ def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     return {**mesh_parameters(count, wanted, where), **own}
 
 
-small_parameters, middle_parameters, large_parameters = (
+small_parameters, middle_parameters, wide_parameters, large_parameters = (
     partial(node_parameters, size) for size in CLASSES
 )
-OF_CLASS = dict(zip(CLASSES, ("small", "middle", "large"), strict=True))
+OF_CLASS = dict(zip(CLASSES, ("small", "middle", "wide", "large"), strict=True))
 
 CSMA = Role(
     "csma", "innervate.networks.mesh.protocol.csma",

@@ -20,8 +20,6 @@ def summary_lines(run: Run) -> list[str]:
 def _first(run: Run) -> str:
     summary = run.mesh
     return (
-        f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
-        f"{words.number_of(summary['links'], 'good link')}; "
-        f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s, "
-        f"seed {summary['seed']}"
+        f"{mesh_words.opening(summary)}; {run.result.ended_us / 1e6:.4g} s simulated in "
+        f"{summary['wall_s']:.2f} s, seed {summary['seed']}"
     )

@@ -29,7 +29,9 @@ def test_a_number_is_that_of_the_simulated_network(name):
         assert ours == LIVE.get(name, simulated()[name])
 
 
-@pytest.mark.parametrize(("nodes", "width"), [(2, 32), (32, 32), (33, 64), (64, 64), (65, 254)])
+@pytest.mark.parametrize(
+    ("nodes", "width"), [(2, 32), (32, 32), (33, 64), (64, 64), (65, 128), (128, 128), (129, 254)]
+)
 def test_all_others_may_be_neighbours(nodes, width):
     made = mesh_parameters(nodes, {})
     assert (made["width"], made["places"]) == (width, width)

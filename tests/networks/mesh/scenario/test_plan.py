@@ -38,7 +38,7 @@ def floats_in(value: Any, where: str) -> list[str]:
             if field.name != "scenario"
             for w in floats_in(getattr(value, field.name), f"{where}.{field.name}")
         ]
-    return [] if isinstance(value, int | str) else [f"{where}: {type(value).__name__}"]
+    return [] if isinstance(value, int | str | None) else [f"{where}: {type(value).__name__}"]
 
 
 @pytest.mark.parametrize("name", MESHES)

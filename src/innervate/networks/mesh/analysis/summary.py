@@ -37,6 +37,7 @@ from innervate.networks.mesh.analysis.summary_keys import (
     Counts,
     Flow,
     MeshSummary,
+    OfCluster,
     Stretch,
 )
 from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
@@ -54,10 +55,8 @@ def summarize(result: Any) -> MeshSummary:
         result: of `sim.mesh.simulate`, with its rows kept.
     """
     plan, counts = result.plan, result.counts
-    found = messages(result)
-    kinds = network.acked_kinds(result.sent)
-    led = network.gateways(result)
-    ground = Ground(plan)
+    found, kinds = messages(result), network.acked_kinds(result.sent)
+    led, ground = network.gateways(result), Ground(plan)
     crossings = all_crossings(result)
     again, met = duplicates(result), looped(result)
     sent = traffic(found, crossings, again, met, plan.faults)
@@ -86,7 +85,15 @@ def summarize(result: Any) -> MeshSummary:
         "airtime": network.airtime(result, kinds),
         "give_ups": give_ups(result),
         "suspects": network.suspects(result),
+        **_of_cluster(plan.cluster),
     }
+
+
+def _of_cluster(cluster: Any) -> OfCluster:
+    if cluster is None:
+        return {}
+    sizes = cluster.sizes
+    return {"cluster": {"number": cluster.number, "of": len(sizes), "nodes": sum(sizes)}}
 
 
 def _counts(found: Messages) -> Counts:

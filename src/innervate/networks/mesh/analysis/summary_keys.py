@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypedDict, final
+from typing import Literal, NotRequired, TypedDict, final
 
 from innervate.analysis.summary_common import Common, Percentiles
 
@@ -140,6 +140,24 @@ class Airtime(TypedDict):
     busiest_share: float
 
 
+class InClusters(TypedDict):
+    """Which of several clusters this is, from 1 on; how many there are, and nodes in all."""
+
+    number: int
+    of: int
+    nodes: int
+
+
+class OfCluster(TypedDict):
+    """What the summary of a part of a larger network has, and no other.
+
+    Attributes:
+        cluster: which part it is; missing if it is the whole.
+    """
+
+    cluster: NotRequired[InClusters]
+
+
 class Suspects(TypedDict):
     """How often a node gave up on a neighbour; `wrong`: on one that was switched on."""
 
@@ -148,7 +166,7 @@ class Suspects(TypedDict):
 
 
 @final
-class MeshSummary(Common):
+class MeshSummary(Common, OfCluster):
     """The summary of a mesh's run.
 
     Attributes:

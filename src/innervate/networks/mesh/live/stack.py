@@ -33,7 +33,7 @@ from innervate.networks.mesh.protocol.neighbours import (
 from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.upward import is_better, is_uplink
 
-CLASSES = (32, 64, 254)
+CLASSES = (32, 64, 128, 254)
 OUTBOX = 160  # more than twice the frames that a queue can hold
 ASKED = 256  # frames that may still be acknowledged: a slow link's acks come late
 RSSI = -50  # of every frame that comes over a cable, dBm

@@ -14,7 +14,7 @@ from innervate.networks.mesh.plot import film as mesh_film
 from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot import node_report as mesh_node_report
 from innervate.networks.mesh.plot.sheet import Sheet
-from innervate.networks.mesh.plot.words import REPORTS, fault_words, sentences
+from innervate.networks.mesh.plot.words import REPORTS, fault_words, opening, sentences
 from innervate.plot import page, svg, words
 from innervate.plot.page import ROWS_MAX, details, figure, keys, pictures, section, table, tiles
 
@@ -45,8 +45,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     """What happened, and the figures to know."""
     model = result.plan.scenario.model
     over = (
-        f"{summary['name']}: {words.number_of(summary['nodes'], 'node')}, "
-        f"{words.number_of(summary['links'], 'good link')}, radio {model.radio.profile}, "
+        f"{opening(summary)}, radio {model.radio.profile}, "
         f"failover {model.protocol.failover}; seed {summary['seed']}"
     )
     said = page.paragraphs(sentences(result, summary))

@@ -76,6 +76,16 @@ def fault_words(plan: Any, fault: Any) -> str:
     }[fault.action]
 
 
+def opening(summary: Mapping[str, Any]) -> str:
+    """What ran: "name: 30 nodes, 118 good links"; of several clusters, which one."""
+    part = ""
+    if "cluster" in summary:
+        of = summary["cluster"]
+        part = f"cluster {of['number']} of {of['of']}, {of['nodes']:,} nodes in all; here "
+    nodes, links = number_of(summary["nodes"], "node"), number_of(summary["links"], "good link")
+    return f"{summary['name']}: {part}{nodes}, {links}"
+
+
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     """What happened, for somebody who knows nothing of it; alarms first, they matter most."""
     found = [

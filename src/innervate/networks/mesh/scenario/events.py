@@ -63,6 +63,8 @@ def absent(model: MeshScenario, nodes: Nodes, roles: dict[str, int]) -> list[int
     for index, event in ordered:
         if event.node is None or event.action not in ("kill", "revive", "restart"):
             continue
+        if not nodes.is_here(event.node):
+            continue
         node = _node(nodes, index, event.node, roles)
         if node not in seen:
             found[node] = int(event.action == "revive")
@@ -140,6 +142,9 @@ def _hits(
             message += f"{target_of(event.action)}s that are {which}"
             raise nodes.source.error(("event", index, "random"), message)
         return sorted(free.pop(draw.draw(len(free))) for _ in range(event.random))
+    named = [event.node] if event.link is None else list(event.link)
+    if not all(nodes.is_here(one) for one in named if one is not None):
+        return []
     if event.link is not None:
         a, b = (nodes.number(("event", index, "link", i), end) if end not in roles else
                 roles[str(end)] for i, end in enumerate(event.link))  # fmt: skip

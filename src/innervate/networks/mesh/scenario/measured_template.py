@@ -37,6 +37,17 @@ CROWD_TUNED = {
 }  # fmt: skip
 
 
+GATEWAY = """\
+# gateway = "..."             # a node by its name; the best connected one if left out
+"""
+CLUSTERS = """\
+
+[clusters]                    # several meshes, each on a channel of its own
+gateways = {gateways:<18} # so many, amidst the others; or their names
+run = 1                       # which of them is run
+"""
+
+
 TEMPLATE = """\
 # A network as it was measured: everybody has something to tell the gateway.
 # Check it with `innervate check FILE`, run it with `innervate run FILE`.
@@ -45,8 +56,7 @@ schema = 1
 name = {name}
 duration_s = 60.0             # simulated time
 seed = 1                      # same seed, same run
-# gateway = "..."             # a node by its name; the best connected one if left out
-
+{gateway}
 [import]
 {imported}
 
@@ -77,7 +87,7 @@ def measured(name: str, network: str, wanted: dict[str, Any], folder: str) -> tu
         name: of the scenario.
         network: a file as the scenario's folder sees it, a bundled one like "freifunk/leipzig", or
             "topohub:" and a name.
-        wanted: what was chosen of it: types, min_tq, around, nodes.
+        wanted: what was chosen of it: types, min_tq, around, nodes; gateways, for clusters.
         folder: the scenario's.
 
     Raises:
@@ -86,15 +96,17 @@ def measured(name: str, network: str, wanted: dict[str, Any], folder: str) -> tu
     wanted = {"types": ["wifi"], **wanted}
     first = loads(_text(name, network, wanted), folder=folder)
     whole, why = found_at(first.model.import_, first.source), ""
-    if not {"min_tq", "around", "nodes"} & wanted.keys():
+    if not {"min_tq", "around", "nodes", "gateways"} & wanted.keys():
         fitting, why = _fitting(whole)
         wanted |= fitting
     wanted = {"min_tq": MIN_TQ} | wanted
     bare = loads(_text(name, network, wanted), folder=folder)
     taken = nodes_of(bare.model, bare.source)
-    text = _text(name, network, wanted, tuned(taken))
-    held = f"links of {wanted['min_tq']:g} and better hold them together"
-    return text, f"Taken: {len(taken.names)} of {len(whole.names)} nodes; {held}{why}."
+    clusters = wanted.get("gateways", 1)
+    text = _text(name, network, wanted, tuned(taken, clusters))
+    held = f"links of {wanted['min_tq']:g} and better hold them together{why}"
+    parts = f", in {clusters} clusters" if clusters > 1 else ""
+    return text, f"Taken: {len(taken.names)} of {len(whole.names)} nodes{parts}; {held}."
 
 
 def _fitting(whole: Measured) -> tuple[dict[str, Any], str]:
@@ -110,15 +122,17 @@ def _fitting(whole: Measured) -> tuple[dict[str, Any], str]:
     if least is not None and least <= MIN_TQ_MAX:
         return {"min_tq": least}, f"; those of {MIN_TQ:g} hold {count}, too many for a mesh"
     middle = largest.names[largest.best_connected()]
-    why = f"; about the best connected one of {count}, too many for a mesh"
+    why = (
+        f"; about the best connected one of {count}, too many for a mesh: --gateways makes several"
+    )
     return {"around": middle, "nodes": NODES_MAX}, why
 
 
-def tuned(taken: Nodes) -> dict[str, Any]:
-    """The keys of [protocol] that suit a measured network."""
+def tuned(taken: Nodes, clusters: int = 1) -> dict[str, Any]:
+    """The keys of [protocol] that suit a measured network, or so many parts of it."""
     links = [pair for pair, both in taken.links.items() if min(both) > 0]
     most = max(len(near) for near in neighbours(len(taken.names), links))
-    crowd = len(taken.names) > CROWD or most > NEIGHBOURS
+    crowd = len(taken.names) > clusters * CROWD or most > NEIGHBOURS
     return CROWD_TUNED if crowd else TUNED
 
 
@@ -134,7 +148,13 @@ def _text(
     for key, words in COMMENTS.items():
         if key in chosen:
             lines.append(f"{f'{key} = {inline(chosen[key])}':<29} # {words}")
+    gateway = GATEWAY
+    if "gateways" in chosen:
+        gateway = CLUSTERS.format(gateways=chosen["gateways"])
     settings = [f"{key} = {inline(value)}" for key, value in (protocol or {}).items()]
     return TEMPLATE.format(
-        name=inline(name), imported="\n".join(lines), protocol="\n".join(settings)
+        name=inline(name),
+        gateway=gateway,
+        imported="\n".join(lines),
+        protocol="\n".join(settings),
     )

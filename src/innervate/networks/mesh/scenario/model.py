@@ -73,7 +73,7 @@ class PlacementTable(keys.Table, frozen=True, kw_only=True):
     layout: Literal["random", "grid", "line"] = "random"
     side_m: Length = 100.0
     spacing_m: Length = 10.0
-    columns: Annotated[int, keys.whole("columns", 1, 254)] | None = None
+    columns: Annotated[int, keys.whole("columns", 1, 2_000)] | None = None
 
 
 class ImportTable(keys.Table, frozen=True, kw_only=True):
@@ -87,7 +87,18 @@ class ImportTable(keys.Table, frozen=True, kw_only=True):
     min_tq: Quality = 0.3
     largest_component: bool = True
     around: Annotated[int | str, Meta(description="a node as the file calls it")] | None = None
-    nodes: Annotated[int, keys.whole("nodes", 2, 254)] | None = None
+    nodes: Annotated[int, keys.whole("nodes", 2, 2_000)] | None = None
+
+
+class ClustersTable(keys.Table, frozen=True, kw_only=True):
+    """[clusters]: several meshes, each with a gateway and a channel of its own."""
+
+    gateways: Annotated[
+        int | list[NodeId],
+        Meta(description="a number of gateways, 1 to 64, or a list of nodes"),
+    ]
+    nodes_max: Annotated[int, keys.whole("nodes", 1, 254)] = 254
+    run: Annotated[int, keys.whole("cluster to be run, from 1 on", 1, 64)] = 1
 
 
 class MeshRadioTable(keys.Table, frozen=True, kw_only=True):
@@ -189,6 +200,7 @@ class MeshScenario(keys.Table, frozen=True, kw_only=True):
     Link = LinkedTable
     Placement = PlacementTable
     Import = ImportTable
+    Clusters = ClustersTable
     Radio = MeshRadioTable
     Protocol = MeshProtocolTable
     Flow = FlowTable
@@ -202,12 +214,13 @@ class MeshScenario(keys.Table, frozen=True, kw_only=True):
     duration_s: Annotated[float, keys.above_0("seconds", limit=100_000)] = 60.0
     seed: keys.Seed = 1
     # Its range is checked in rules.py, where the reason is known.
-    nodes: Annotated[int | None, Meta(description="a whole number of nodes, 1 to 254")] = None
+    nodes: Annotated[int | None, Meta(description="a whole number of nodes")] = None
     gateway: NodeId | None = None
     standby: Annotated[list[NodeId], Meta(description="a list of nodes, in order of rank")] = []
     monitor: Annotated[int | str, Meta(description='a node, or "gateway"')] = "gateway"
     placement: PlacementTable = PlacementTable()
     import_: ImportTable | None = field(name="import", default=None)
+    clusters: ClustersTable | None = None
     radio: MeshRadioTable = MeshRadioTable()
     protocol: MeshProtocolTable = MeshProtocolTable()
     fence: FenceTable | None = None

@@ -7,7 +7,7 @@ from math import ceil, exp, isqrt, log
 from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshScenario
-from innervate.networks.mesh.scenario.nodes import Nodes, listed
+from innervate.networks.mesh.scenario.nodes import NODES_MAX, Nodes, listed
 from innervate.networks.mesh.scenario.plan import ONE, MeshRadio
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB, REPORT_CDB, Profile
 from innervate.scenario.errors import ScenarioError
@@ -16,6 +16,7 @@ from innervate.topology.placement import UNHEARD, Point
 from innervate.trace.streams import stream
 
 MEAN_DEGREE = 8.0
+MEAN_DEGREE_OF_MANY = 12.0  # of more than a mesh has: with 8 hardly one of them in ten is connected
 REACH = 1.5  # spacings of a grid or line: its eight, or two, neighbours are in reach
 SHADOWING_DB, DIRECTION_DB = 3.0, 1.0
 WORK_MAX = 3_000_000  # pairs looked at before a connected placement is given up
@@ -185,7 +186,8 @@ def _power_cdb(
         reach_m = REACH * table.spacing_m
     if reach_m is not None:
         return least + placement.path_loss_cdb(ceil(100 * reach_m), exponent_c), []
-    degree = MEAN_DEGREE if radio.mean_degree is None else radio.mean_degree
+    usual = MEAN_DEGREE if count <= NODES_MAX else MEAN_DEGREE_OF_MANY
+    degree = usual if radio.mean_degree is None else radio.mean_degree
     pairs = count * (count - 1) // 2
     if not pairs:
         return least, []

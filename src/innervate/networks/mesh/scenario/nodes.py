@@ -16,6 +16,7 @@ from innervate.topology.errors import TopologyError
 from innervate.topology.placement import Point
 
 NODES_MAX = 254
+CLUSTERED_MAX = 2_000  # in all clusters: so many are planned in a minute
 RESERVED = ("all", "random", "monitor", "gateway")
 BUNDLED_IMPORTS = "freifunk/"
 
@@ -29,12 +30,14 @@ class Nodes:
         names: per node, all different.
         points: per node (x, y) in cm; empty where none are given.
         links: (a, b) with a < b -> quality a to b and b to a, if links are given.
+        everybody: of one cluster of several: the names of all, by which numbers in the file go.
     """
 
     source: Source
     names: list[str]
     points: list[Point] = field(default_factory=list)
     links: dict[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
+    everybody: list[str] = field(default_factory=list)
     _numbers: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -47,22 +50,37 @@ class Nodes:
             ScenarioError: there is no such node.
         """
         if isinstance(given, int):
-            if 0 <= given < len(self.names):
-                return given
-            last = len(self.names) - 1
+            everybody = self.everybody or self.names
+            if 0 <= given < len(everybody):
+                return self._numbers[everybody[given]]
+            last = len(everybody) - 1
             message = f"{dotted(key)}: there is no node {given}; they are numbered 0 to {last}"
             raise self.source.error(key, message)
         if given in self._numbers:
             return self._numbers[given]
-        hint = alike(given, self.names)
+        hint = alike(given, self.everybody or self.names)
         raise self.source.error(key, f"{dotted(key)}: there is no node {shown(given)}{hint}")
 
+    def is_here(self, given: int | str) -> bool:
+        """False for a node of another cluster."""
+        if isinstance(given, int) and 0 <= given < len(self.everybody):
+            given = self.everybody[given]
+        return given in self._numbers or given not in self.everybody
 
-def too_many(count: int) -> str:
+
+def most_of(model: MeshScenario) -> int:
+    """How many nodes a scenario may have."""
+    return NODES_MAX if model.clusters is None else CLUSTERED_MAX
+
+
+def too_many(count: int, most: int = NODES_MAX) -> str:
     """Why a network of that many nodes cannot be: the reason is the same in every mode."""
+    if most == CLUSTERED_MAX:
+        return f"{count} nodes are too many: clusters have at most {CLUSTERED_MAX} together"
     return (
         f"{count} nodes are too many: an address is one byte, so a mesh has at most {NODES_MAX} "
-        "of them, in the table-free mode (protocol.tables = false) too"
+        "of them, in the table-free mode (protocol.tables = false) too; [clusters] makes several "
+        f"meshes of up to {CLUSTERED_MAX} nodes"
     )
 
 
@@ -105,8 +123,8 @@ def nodes_of(model: MeshScenario, source: Source) -> Nodes:
             table.quality if isinstance(table.quality, tuple) else (table.quality, table.quality)
         )
         found.links[min(a, b), max(a, b)] = (there, back) if a < b else (back, there)
-    if len(found.names) > NODES_MAX:
-        raise source.error(("link",), too_many(len(found.names)))
+    if len(found.names) > most_of(model):
+        raise source.error(("link",), too_many(len(found.names), most_of(model)))
     return found
 
 
@@ -124,10 +142,11 @@ def _imported(model: MeshScenario, source: Source) -> Nodes:
     except TopologyError as error:
         raise source.error(("import", error.subject or "min_tq"), str(error)) from None
     if table.around is not None or table.nodes is not None:
-        found = found.around(_middle(table, whole, found, source), table.nodes or NODES_MAX)
+        middle = _middle(table, whole, found, source)
+        found = found.around(middle, table.nodes or most_of(model))
     elif table.largest_component:
         found = found.largest()
-    if len(found.names) > NODES_MAX:
+    if len(found.names) > most_of(model):
         least = whole.least_for(NODES_MAX, in_one=table.largest_component)
         remedy = f"import.nodes = {NODES_MAX} takes those around the best connected one"
         if least is not None:

@@ -120,6 +120,7 @@ class MeshPlan:
         origin_cm: the fence's corner: x and y in the protocol are (position - origin) / unit_cm.
         offers: messages in order of time.
         faults: events in order of time.
+        cluster: which part of a larger network this is (`clusters.Cluster`), None if it is whole.
     """
 
     scenario: Any
@@ -144,3 +145,4 @@ class MeshPlan:
     origin_cm: tuple[int, int] = (0, 0)
     offers: list[Offer] = field(default_factory=list)
     faults: list[MeshFault] = field(default_factory=list)
+    cluster: Any = None

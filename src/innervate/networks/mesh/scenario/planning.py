@@ -9,6 +9,7 @@ from typing import Any
 from innervate.networks.mesh.protocol import table
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR, MTU, PARTS_MAX, WHOLE_GRAPH
 from innervate.networks.mesh.protocol.round import SLACK
+from innervate.networks.mesh.scenario import clusters
 from innervate.networks.mesh.scenario import events as mesh_events
 from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario import robots as mesh_robots
@@ -39,9 +40,13 @@ def plan(scenario: Any) -> MeshPlan:
     source = scenario.source
     duration_us = max(1, round(model.duration_s * 1e6))
     nodes = nodes_of(model, source)
+    network = _network(model, nodes, profile_of(model.radio.profile, len(nodes.names)))
+    cluster = None
+    if model.clusters is not None:
+        model, network, cluster = clusters.cut(model, network)
+        nodes = network.nodes
     profile = profile_of(model.radio.profile, len(nodes.names))
     profile = suited(model, profile, len(nodes.names))
-    network = _network(model, nodes, profile)
     ranks = _ranks(model, network)
     gateway = ranks.index(0)
     monitor = MONITOR if model.monitor == "gateway" else nodes.number(("monitor",), model.monitor)
@@ -80,6 +85,7 @@ def plan(scenario: Any) -> MeshPlan:
             model, nodes, flows, profile.settled, duration_us, params["mtu"]
         ),
         faults=mesh_events.faults(model, nodes, network.good, spared, roles, profile.rssi50_cdb),
+        cluster=cluster,
     )
 
 

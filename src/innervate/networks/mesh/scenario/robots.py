@@ -55,7 +55,7 @@ def walks(model: MeshScenario, nodes: Nodes, points: list[Point], duration_us: i
         ScenarioError: a robot without a position, or one that changes its way too often.
     """
     found = []
-    for i, robot in enumerate(model.robot):
+    for i, robot in _here(model, nodes):
         node = nodes.number(("robot", i, "node"), robot.node)
         draw = stream(model.seed, f"robot/{i}")
         box = _area(model, robot, points)
@@ -82,6 +82,11 @@ def walks(model: MeshScenario, nodes: Nodes, points: list[Point], duration_us: i
                 raise nodes.source.error(("robot", i), message)
         found.append(Walk(node, tuple(walk)))
     return found
+
+
+def _here(model: MeshScenario, nodes: Nodes) -> list[tuple[int, RobotTable]]:
+    """The robots of this cluster with their places in the file."""
+    return [(i, robot) for i, robot in enumerate(model.robot) if nodes.is_here(robot.node)]
 
 
 def _area(model: MeshScenario, robot: RobotTable, points: list[Point]) -> Box | None:

@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
-from innervate.networks.mesh.scenario.nodes import NODES_MAX, RESERVED, too_many
+from innervate.networks.mesh.scenario.nodes import NODES_MAX, RESERVED, most_of, too_many
 from innervate.scenario.actions.field import TABLE
 from innervate.scenario.events import Finding, in_time, own_keys, refuse
 from innervate.scenario.source import Source, shown
 
 POWERS = ("mean_degree", "reach_m", "tx_dbm")
+CLUSTERS_MAX = 64
 
 
 def check(source: Source, model: MeshScenario) -> None:
@@ -23,6 +24,7 @@ def check(source: Source, model: MeshScenario) -> None:
 def _findings(source: Source, model: MeshScenario) -> Iterator[Finding]:
     yield from _origin(model)
     yield from _nodes(model)
+    yield from _clusters(model)
     yield from _links(model)
     yield from _radio(model)
     yield from _protocol(model)
@@ -67,12 +69,15 @@ def _origin(model: MeshScenario) -> Iterator[Finding]:
 
 
 def _nodes(model: MeshScenario) -> Iterator[Finding]:
-    if model.nodes is not None and model.nodes > NODES_MAX:
-        yield ("nodes",), too_many(model.nodes)
+    most = most_of(model)
+    if model.nodes is not None and model.nodes > most:
+        yield ("nodes",), too_many(model.nodes, most)
     if model.nodes is not None and model.nodes < 1:
-        yield ("nodes",), f"nodes must be 1 to {NODES_MAX}, not {model.nodes}"
-    if len(model.node) > NODES_MAX:
-        yield ("node",), too_many(len(model.node))
+        yield ("nodes",), f"nodes must be 1 to {most}, not {model.nodes}"
+    if len(model.node) > most:
+        yield ("node",), too_many(len(model.node), most)
+    if model.import_ is not None and (model.import_.nodes or 0) > most:
+        yield ("import", "nodes"), too_many(model.import_.nodes or 0, most)
     for index, node in enumerate(model.node):
         key = ("node", index)
         if node.name in RESERVED:
@@ -90,6 +95,22 @@ def _nodes(model: MeshScenario) -> Iterator[Finding]:
         yield ("placement",), "[placement] goes with nodes = ...; leave it out"
     if model.placement.layout == "random" and model.placement.columns is not None:
         yield ("placement", "columns"), 'placement.columns goes with layout = "grid"'
+
+
+def _clusters(model: MeshScenario) -> Iterator[Finding]:
+    table = model.clusters
+    if table is None:
+        return
+    given = table.gateways
+    count = given if isinstance(given, int) else len(given)
+    if not 1 <= count <= CLUSTERS_MAX:
+        message = f"clusters.gateways must be 1 to {CLUSTERS_MAX} of them, not {count}"
+        yield ("clusters", "gateways"), message
+    if table.run > count:
+        message = f"clusters.run = {table.run}, but there are {count} clusters; make it smaller"
+        yield ("clusters", "run"), message
+    if model.gateway is not None:
+        yield ("gateway",), "clusters.gateways says who leads; leave gateway out"
 
 
 def _links(model: MeshScenario) -> Iterator[Finding]:

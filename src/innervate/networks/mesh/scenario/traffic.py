@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import msgspec
+
 from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.protocol.messages import payload_limit
 from innervate.networks.mesh.scenario.model import FlowTable, MeshScenario
-from innervate.networks.mesh.scenario.nodes import Nodes
+from innervate.networks.mesh.scenario.nodes import RESERVED, Nodes
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.radio.scenario.traffic import exponential
 from innervate.trace.streams import Stream, stream
@@ -23,7 +25,26 @@ def pairs(model: MeshScenario, nodes: Nodes, gateway: int, monitor: int) -> list
     Raises:
         ScenarioError: a node that is not there, or too few to draw from.
     """
-    return [_pairs(model, nodes, i, flow, gateway, monitor) for i, flow in enumerate(model.flow)]
+    return [
+        _pairs(model, nodes, i, local, gateway, monitor) if local is not None else []
+        for i, local in enumerate(_local(nodes, flow, gateway) for flow in model.flow)
+    ]
+
+
+def _local(nodes: Nodes, flow: FlowTable, gateway: int) -> FlowTable | None:
+    """A flow as it is in this cluster: a node elsewhere is behind the gateway.
+
+    None if it has no part here, or between the gateway and another cluster alone.
+    """
+    from_here, to_here = nodes.is_here(flow.from_), nodes.is_here(flow.to)
+    if from_here and to_here:
+        return flow
+    here = flow.from_ if from_here else flow.to
+    if not (from_here or to_here) or here in ("gateway", nodes.names[gateway]):
+        return None
+    if from_here:
+        return msgspec.structs.replace(flow, to="gateway")
+    return None if here in RESERVED else msgspec.structs.replace(flow, from_="gateway", pairs=1)
 
 
 def _pairs(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.model import MeshScenario
-from innervate.networks.mesh.scenario.nodes import listed
+from innervate.networks.mesh.scenario.nodes import RESERVED, listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
 from innervate.scenario.actions.field import JAM
 from innervate.scenario.events import opening, told
@@ -35,6 +37,7 @@ def describe(made: MeshPlan) -> str:
     forwarding = {TABLES: model.protocol.failover, TABLE_FREE: "table-free"}
     lines = [
         opening(made),
+        *_cluster(made),
         f"  nodes      {made.nodes}, gateway {made.names[gateway]}{standby}, monitor {monitor}",
         f"  radio      {model.radio.profile}, {made.mac}, {len(made.good)} good links, "
         f"{degree:.1f} a node, at most {max(hops)} hops from the gateway",
@@ -53,6 +56,23 @@ def describe(made: MeshPlan) -> str:
     if made.walks:
         lines.append(f"  robots     {listed([made.names[walk.node] for walk in made.walks], 8)}")
     return "\n".join([*lines, *told(made, fault_words, warnings(made))])
+
+
+def _cluster(made: MeshPlan) -> list[str]:
+    """Of several clusters which one this is, and how large all are."""
+    found = made.cluster
+    if found is None:
+        return []
+    sizes = ", ".join(
+        f"{name} {size}" for name, size in zip(found.gateways, found.sizes, strict=True)
+    )
+    lines = [f"  clusters   {found.words}; nodes of each gateway: {sizes}"]
+    if len(found.sizes) > 1:
+        lines.append(
+            f"             the others: clusters.run = 1 to {len(found.sizes)}, or all in a row: "
+            f"innervate sweep FILE --vary clusters.run=1..{len(found.sizes)}"
+        )
+    return lines
 
 
 def warnings(made: MeshPlan) -> list[str]:
@@ -83,10 +103,15 @@ def warnings(made: MeshPlan) -> list[str]:
     offered = {offer.flow for offer in made.offers}
     found += [
         f"flow.{index} sends nothing: it begins after the end; set start_s or a later duration_s"
-        for index in range(len(model.flow))
-        if index not in offered
+        for index, flow in enumerate(model.flow)
+        if index not in offered and not (made.cluster and _names_nodes(flow))
     ]
     return found
+
+
+def _names_nodes(flow: Any) -> bool:
+    """True for a flow that may have no part in a cluster."""
+    return not {flow.from_, flow.to} <= set(RESERVED)
 
 
 def _outside(made: MeshPlan) -> list[str]:
