@@ -34,16 +34,16 @@ MUST_HOLD = (
     ("bars", "latency, 99 %"),
     ("bars", "overrun at 1 m/s"),
     ("bars", "state of a node"),
-    ("bars", "loses one in five"),
+    ("bars", "own rule loses"),
     ("stretch", "discovery list"),
     ("stretch", "alternate that cannot loop"),
     ("failures", "alternates, then a search"),
     ("lossy", "search"),
     ("lossy", "graph"),
-    ("alarms", "next hop tables"),
+    ("alarms", "frames sent up to three times"),
     ("alarms", ": all alarms"),
-    ("scale", "sufficient for small networks"),
-    ("scale", "go further"),
+    ("scale", "tables leave half of the channel"),
+    ("scale", "take less of the channel"),
     ("versions", "alternates alone"),
     ("versions", "with the search"),
 )
@@ -52,15 +52,17 @@ MUST_FAIL = (
     ("recall", "(each)"),
     ("recall", "at once"),
     ("recall", "respond to every request"),
+    ("recall", "not the best"),
     ("stretch", "discovery tree"),
     ("stretch", "discovery each"),
-    ("failures", "will replace it automatically"),
-    ("failures", "malfunctioned"),
+    ("failures", "nobody is dead"),
+    ("failures", "packets after the first"),
+    ("failures", "the first packet arrives"),
     ("failures", "RSSI"),
     ("failures", "help every rule"),
-    ("lossy", "updates its routing table"),
-    ("alarms", "own rule"),
-    ("alarms", "by the document's rule"),
+    ("lossy", "to the letter, while nobody dies"),
+    ("alarms", "nobody dead, to the letter"),
+    ("alarms", "unknown dead, to the letter"),
     ("gateway", "outlives the gateway"),
 )
 
@@ -177,10 +179,10 @@ def test_kinds_of_alternates(way, other, kind):
     assert stretch._kind(far, 0, 3, way, other) == kind
 
 
-def test_where_a_line_is_half():
-    assert scale.half_full([10, 100], np.array([0.05, 5.0])) == (pytest.approx(31.6, 0.01), True)
-    n, reached = scale.half_full([10, 20], np.array([0.0625, 0.125]))
-    assert (n, reached) == (pytest.approx(80), False)
+def test_nothing_is_said_of_sizes_that_were_not_run():
+    tried = [scale.Size(n, share, [0], 1.0) for n, share in ((10, 0.1), (30, 0.5), (70, 0.6))]
+    assert scale._reached(tried) == "half is passed between N = 30 and 70"
+    assert scale._reached(tried[:2]) == "less than half up to N = 30, the most that was run"
 
 
 def test_state_grows_with_the_class_only():
