@@ -27,7 +27,7 @@ ROUND = {"recall": [1.0], "airtime_s": [1.0], "tables_s": [1.0], "with_tables": 
          "requests": [[9, 10.0, 2]], "responses": [[9, 10.0, 2]]}  # fmt: skip
 FIRST_ONES = {"nodes": [100], "other": [0], "first": [100], "best": [100]}
 SENT = {"first": [[1000, 1000]], "later": [[1000, 1000]], "duplicates": [0], "looped": [0],
-        "first_lost": [[0, 0, 0, 0]], "later_lost": [[0, 0, 0, 0]]}  # fmt: skip
+        "first_lost": [[0] * 5], "later_lost": [[0] * 5]}  # fmt: skip
 CROSSED = {
     "joined": [True, True, False], "came": [True, True, False], "ms": [9.0, 9.0, None],
     "flood_ms": [5.0, 5.0, None], "by_flood": [0, 0, 0], "hops": [4, 4, None],
@@ -43,7 +43,7 @@ BASE = {
     "lossy": {"sent": [[100, 100]], "came": [[100, 100]], "wrong": [0.0], "again": [3]},
     "alarms": CROSSED,
     "gateway": TAKEN,
-    "scale": {"busy_s": [1.0], "with_tables": [None], "tables_s": [1.0]},
+    "scale": {"busy_s": [1.0], "with_tables": [None], "tables_s": [1.0], "unknown": [None]},
     "versions": {"sent": [10_000], "came": [10_000], "looped": [0], "waits_s": [2.0]},
 }  # fmt: skip
 
@@ -75,6 +75,7 @@ def half_full_at(radio, scheme, n):
             "busy_s": [radio.period_s / 2 * (of / n) ** 1.5],
             "with_tables": [of if scheme != "table-free" else None],
             "tables_s": [1.0],
+            "unknown": [0],
         }
         for of in scale.SOME
     }

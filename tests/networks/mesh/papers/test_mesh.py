@@ -180,7 +180,7 @@ def test_kinds_of_alternates(way, other, kind):
 
 
 def test_nothing_is_said_of_sizes_that_were_not_run():
-    tried = [scale.Size(n, share, [0], 1.0) for n, share in ((10, 0.1), (30, 0.5), (70, 0.6))]
+    tried = [scale.Size(n, share, [0], 0, 1.0) for n, share in ((10, 0.1), (30, 0.5), (70, 0.6))]
     assert scale._reached(tried) == "half is passed between N = 30 and 70"
     assert scale._reached(tried[:2]) == "less than half up to N = 30, the most that was run"
 

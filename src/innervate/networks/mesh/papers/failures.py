@@ -130,7 +130,7 @@ def _reliable(ax: Axes, got: Measured) -> None:
     rules = RULES[1:]
     for j, (which, hatch) in enumerate((("first", ""), ("later", "////"))):
         shares = [100 * lost(got, rule, which, end=True) for rule in rules]
-        x = np.arange(len(rules)) + 0.38 * (j - 0.5)
+        x = np.arange(len(rules)) + 0.42 * (j - 0.5)
         ax.bar(x, shares, 0.36, color=style.SERIES[1 : len(rules) + 1], hatch=hatch,
                edgecolor="white", lw=0, label=which)  # fmt: skip
         for at, share in zip(x, shares, strict=True):

@@ -144,9 +144,8 @@ def draw(got: Measured) -> Figure:
         ax.set(ylim=(-4, 104), xlabel="offered so long after the death (s)", title=title)
     axes[0].set_ylabel("delivered (%)")
     axes[1].set_yticklabels([])
-    drawing.legend(figure, axes[0], ncols=4)
     _times(axes[2], got)
-    drawing.legend(figure, axes[2], "lower right", ncols=2)
+    drawing.legend(figure, (axes[2], axes[0]), ncols=3)
     return figure
 
 

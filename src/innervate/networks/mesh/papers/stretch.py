@@ -110,14 +110,14 @@ def draw(got: Measured) -> Figure:
     some = degrees(got.quick)
     for i, reading in enumerate(READINGS):
         y = [mean(got, reading, degree) for degree in some]
-        left.plot(some, y, label=f"discovery: {reading}", **drawing.look(i))
+        left.plot(some, y, label=reading, **drawing.look(i))
     left.axhline(1, color=style.INK, lw=0.6)
     left.set(xlabel="mean degree", ylabel="hops / shortest way", xticks=some,
-             title="a  stretch of the tables' ways")  # fmt: skip
+             title="a  stretch of the tables' ways, by discovery")  # fmt: skip
     left.set_ylim(bottom=0.95)
     _kinds(right, got)
-    drawing.legend(figure, left, ncols=1)
-    drawing.legend(figure, right, "lower right", ncols=2)
+    drawing.legend(figure, left, ncols=3)
+    drawing.legend(figure, right, "lower right", ncols=4)
     return figure
 
 
