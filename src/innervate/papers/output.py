@@ -36,7 +36,6 @@ a{color:var(--accent)}
 table.claims{width:100%}
 .claims td{white-space:normal;overflow-wrap:anywhere}
 .claims td:first-child{white-space:normal;min-width:8.5em}
-.whose{color:var(--soft);font-weight:400;margin:0 0 .2em}
 .readings dt{font-weight:600;margin-top:.6em}
 .readings dd{margin:0 0 0 0}
 .readings :target,section:target h2{background:var(--panel)}
@@ -316,7 +315,7 @@ def _table(rows: Sequence[Claim], readings: Mapping[str, str]) -> str:
         said = (row.verdict, row.claim, row.measurement, row.reason)
         verdict, claim, *others = (linked(text, readings) for text in said)
         if row.source:
-            claim = page.element("p", row.whose, "whose") + claim
+            claim = page.element("p", row.whose, "over") + claim
         colour = "bad" if row.verdict == FAILS else "good"
         cells.append([f'<b class="{colour}">{verdict}</b>', claim, *others])
     return page.table(("verdict", "claim", "measured", "why"), cells, "claims")

@@ -19,8 +19,10 @@ from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS, Measured
+from innervate.plot import style
 from tests.fixtures.papers import read
-from tests.plot.labels import covered
+from tests.networks.mesh.papers.test_edges import results
+from tests.plot.labels import covered, legends_over_panels, over_panels
 from tests.plot.self_contained import check_paper
 
 VERDICT = re.compile(r"holds|does not hold|holds with reading A\d+(, A\d+)*")
@@ -80,6 +82,19 @@ def test_a_figure_is_drawn(mesh_made, name):
 @pytest.mark.parametrize("name", FIGURES)
 def test_no_labels_overlap(mesh_made, name):
     assert covered(mesh_made.folder, name) == []
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_no_legend_lies_over_a_panel(mesh_made, name):
+    assert legends_over_panels(mesh_made.folder, name) == []
+
+
+def test_a_legend_in_a_panel_is_noticed():
+    figure, (ax,) = style.panels(2, 2)
+    ax.plot([0, 1], label="a line")
+    ax.legend()
+    figure.draw_without_rendering()
+    assert over_panels(figure) == ["a line"]
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -177,6 +192,24 @@ def test_kinds_of_alternates(way, other, kind):
     # A square 0-1-3-2 with a tail 4 at 0: from 0 to 3 over 1 or 2; 4 would only come back.
     far = [[0, 1, 1, 2, 1], [1, 0, 2, 1, 2], [1, 2, 0, 1, 2], [2, 1, 1, 0, 3], [1, 2, 2, 3, 0]]
     assert stretch._kind(far, 0, 3, way, other) == kind
+
+
+def test_sizes_at_which_nodes_got_no_table_are_drawn_hollow_and_told_in_the_table():
+    whole = results("scale")
+    tried = scale.point(scale.RADIOS[0], "tables", 30, True)
+    whole[tried.key] |= {"with_tables": [28], "unknown": [1], "tables_s": [None]}
+    got = Measured(whole, True)
+    fast, _ = scale.draw(got).axes
+    (hollow,) = (line for line in fast.lines if line.get_markerfacecolor() == "white")
+    assert hollow.get_xdata() == [30]
+    assert hollow.get_label() == "tables, not all got theirs"
+    (line,) = (line for line in fast.lines if line.get_label() == "tables")
+    assert 30 not in line.get_xdata()
+    (sheet,) = scale.sheets(got)
+    assert [row[:3] + row[-1:] for row in sheet.rows if "failed" in row[-1]] == [
+        ("250k", "tables", "30", "failed: nodes in 1 of 1 networks got no table, 2 of 30")
+    ]
+    assert {row[-1] for row in sheet.rows if row[1] == "table-free"} == {"there are no tables"}
 
 
 def test_nothing_is_said_of_sizes_that_were_not_run():
