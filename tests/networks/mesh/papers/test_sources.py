@@ -84,9 +84,8 @@ def test_page_and_tables_say_it_in_the_same_words(mesh_made):
                    for kind in ("html", "csv"))  # fmt: skip
     all_rows = [row for claims in mesh_made.claims.values() for row in claims]
     for row in all_rows:
-        assert (
-            f'<p class="over">{output.clean(row.whose)}</p>\n{output.clean(row.claim[:20])}'
-            in (re.sub(r"<a [^>]+>([A-Z]\d+)</a>", r"\1", page))
+        assert f'<p class="over">{output.clean(row.whose)}</p>\n{output.clean(row.claim[:20])}' in (
+            re.sub(r"<a [^>]+>([A-Z]\d+)</a>", r"\1", page)
         )
     assert output.clean(summary(all_rows)) in page
     assert table.splitlines()[0].endswith(",reason,source")
