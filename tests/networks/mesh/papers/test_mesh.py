@@ -212,6 +212,14 @@ def test_sizes_at_which_nodes_got_no_table_are_drawn_hollow_and_told_in_the_tabl
     assert {row[-1] for row in sheet.rows if row[1] == "table-free"} == {"there are no tables"}
 
 
+def test_a_stretch_of_tables_that_do_not_connect_all_is_drawn_hollow():
+    whole = results("stretch")
+    whole[stretch.point("tree", 8, True).key]["broken"] = [2]
+    left, _ = stretch.draw(Measured(whole, True)).axes
+    hollow = [line for line in left.lines if line.get_markerfacecolor() == "white"]
+    assert [line.get_markevery() for line in hollow] == [[1], [], []]
+
+
 def test_nothing_is_said_of_sizes_that_were_not_run():
     tried = [scale.Size(n, share, [0], 0, 1.0) for n, share in ((10, 0.1), (30, 0.5), (70, 0.6))]
     assert scale._reached(tried) == "half is passed between N = 30 and 70"

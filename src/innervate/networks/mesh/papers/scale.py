@@ -171,7 +171,7 @@ def _curve(ax: Axes, tried: list[Size], scheme: str, look: dict[str, Any]) -> No
     """Whole rounds on a line; what was not a whole round hollow, beside it."""
     for is_whole, label in ((True, scheme), (False, f"{scheme}, not all got theirs")):
         some = [size for size in tried if size.is_whole == is_whole]
-        how = look if is_whole else look | {"ls": "", "mfc": "white"}
+        how = look if is_whole else look | drawing.HOLLOW
         if some:
             ax.plot([size.nodes for size in some], [100 * size.share for size in some],
                     label=label, **how)  # fmt: skip
