@@ -161,8 +161,9 @@ SLOWER_IN_THE_MEDIAN = [
 EDGES = [
     *[("recall", f"({one})", [links(one, recall=[0.98])], [[links(one, recall=[0.9799])]])
       for one in recall.READINGS],
-    ("recall", "hardly matters", [(recall.first_ones(QUICK), {"first": [95]})],
-     [[(recall.first_ones(QUICK), {"first": [94]})]]),
+    ("recall", "hardly matters", [links("tree", recall=[0.981]), links("list", recall=[0.5])],
+     [[links("tree", recall=[0.979])],
+      [(recall.other_uplink(QUICK, "list"), {"recall": [0.979]})]]),
     ("recall", "at once, or within", [links("list", 1, recall=[0.98])],
      [[links("list", 1, recall=[0.9799])]]),
     ("recall", "^to respond to every", [links("each", airtime_s=[1.499])],
