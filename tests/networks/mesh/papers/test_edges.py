@@ -230,7 +230,7 @@ EDGES = [
        [filling(radio, "graph", 99.9), filling(radio, "table-free", 99.9),
         [at_size(radio, "graph", 70, with_tables=[69])]])
       for radio in scale.RADIOS],
-    ("scale", "^at every size", [at_size(FAST, "tables", 70, tables_s=[None])],
+    ("scale", "^at every size", [at_size(FAST, "tables", 70, unknown=[3])],
      [[at_size(radio, scheme, n, with_tables=[n - 1])]
       for radio in scale.RADIOS for scheme in ("tables", "graph") for n in scale.SOME]),
     *[("versions", f", {words};", [moving(f"{rule}, at once", came=[8991]),

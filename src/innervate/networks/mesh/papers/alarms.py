@@ -233,24 +233,22 @@ def _within(
         f"{scheme.name}, {dead} dead: {came} of {len(over)}, {in_words(runs['ms'], 'ms', 1)}, "
         f"overrun {in_words(over, 'm', 3)}"
     )
-    why = "" if good else _late(runs["ms"], scheme)
+    why = "" if good else _late(runs["ms"])
     if sentence is None:
         return ours("beyond", claim, measured, verdict(good), why)
     readings = ["A3", "A4"] if scheme is ROUTED else []
     return said(sentence, claim, measured, verdict(good, *readings), why)
 
 
-def _late(ms: Any, scheme: Scheme) -> str:
-    """How late those are that are, and where that is from."""
-    slow = np.sort(ms[(ms > MS) & np.isfinite(ms)])
+def _late(ms: Any) -> str:
+    """How late those are that are."""
+    slow = ms[(ms > MS) & np.isfinite(ms)]
     words = f"{len(slow)} of {len(ms)} took more than {MS} ms"
-    if len(slow):
-        words += f", the soonest of them {slow[0]:.0f} ms"
-    if scheme is not DOCUMENT or not len(slow):
+    if not len(slow):
         return words
     return (
-        f"{words}; an alarm that is not acknowledged goes out again after 250 ms at the soonest, "
-        f"or with the next beacon, 1 s; {np.count_nonzero(slow >= 1000)} took 1 s or more"
+        f"{words}, half of them {np.median(slow):.0f} or more; an alarm that is not acknowledged "
+        f"is raised again with each beacon, 1 s: {np.count_nonzero(slow >= 1000)} took so long"
     )
 
 
@@ -269,7 +267,7 @@ def _flood(got: Measured) -> Claim:
         f"alone {in_words(first, 'ms', 1)}, {sum(np.isfinite(first))} of {len(first)} came; the "
         f"flood won {int(runs['by_flood'].sum())} times",
         verdict(late < late_alone and half <= half_alone),
-        "a flood needs no table and no ack; the routed copy is what is acknowledged",
+        "a flood needs no table and no ack; it goes out first, and the routed copy after it",
     )
 
 

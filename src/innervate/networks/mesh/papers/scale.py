@@ -134,7 +134,7 @@ class Size(NamedTuple):
     @property
     def took(self) -> str:
         """When all had theirs, in words."""
-        return "never all" if np.isnan(self.took_s) else f"all after {self.took_s:.0f} s"
+        return f"all after {self.took_s:.0f} s" if self.is_whole else "not all"
 
 
 def sizes(got: Measured, radio: Radio, scheme: str) -> list[Size]:
@@ -256,14 +256,12 @@ def _complete(got: Measured) -> Claim:
             tried, name = sizes(got, radio, scheme), f"{radio.profile} {scheme}"
             failed += [f"{name}, N = {size.nodes}: {size.short}"
                        for size in tried if not size.is_whole]  # fmt: skip
-            words += [f"{name}, N = {tried[-1].nodes}: {tried[-1].took}"]
+            words += [f"{name}, N = {tried[-1].nodes}: {tried[-1].took}"] * tried[-1].is_whole
             lost += sum(size.unknown for size in tried)
     return ours(
         "beyond",
         "at every size that was tried everyone gets its table in the end",
         joined([*failed, *words], "; "),
         verdict(not failed),
-        f"to {lost} of the nodes the gateway knew no way; why the others got none is not known"
-        if failed
-        else "",
+        f"to {lost} of them the gateway knew no way; else it is not known why" if failed else "",
     )

@@ -150,8 +150,8 @@ def judge(got: Measured) -> Claims:
         fine = value < 1.02 and apart == 0
         why = (
             "A1: the gateway computes ways in the graph that it found, and recall says how much "
-            f"that is; {bare} of the {apart} pairs have an end that got no table, for which A2 "
-            "matters, see there"
+            f"that is; {bare} of the {apart} pairs have an end that got no table, which A2 has a "
+            "part in: see what a round finds"
         )
         yield said(
             SHORTEST,
