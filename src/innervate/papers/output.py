@@ -109,7 +109,8 @@ def as_tables(heading: Heading, one: Experiment, made: Made, origin: Mapping[str
     """The tables of an experiment and its claims as Markdown, for a page of the documentation."""
     kept = ("seeds", "settings", "with")
     claims = [
-        (row.claim, row.measurement, row.verdict, row.reason) for row in made.claims[one.name]
+        (f"{row.whose}: {row.claim}" if row.source else row.claim, *astuple(row)[2:5])
+        for row in made.claims[one.name]
     ]
     sheets = [
         *made.tables(one.name),

@@ -247,8 +247,9 @@ def _late(ms: Any) -> str:
     if not len(slow):
         return words
     return (
-        f"{words}, half of them {np.median(slow):.0f} or more; an alarm that is not acknowledged "
-        f"is raised again with each beacon, 1 s: {np.count_nonzero(slow >= 1000)} took so long"
+        f"{words}, half of them {np.median(slow):.0f} ms or more; an alarm that is not "
+        "acknowledged is raised again with each beacon, 1 s: "
+        f"{np.count_nonzero(slow >= 1000)} took so long"
     )
 
 

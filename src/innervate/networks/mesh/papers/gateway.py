@@ -154,7 +154,7 @@ def _times(ax: Axes, got: Measured) -> None:
         drawing.cumulated(ax, takeovers(got, setting), color=style.SERIES[i],
                           ls=style.DASHES[i % 4], label=setting.name)  # fmt: skip
     ax.axvline(SOONEST, color=style.INK, lw=0.8, ls=":", label="asked for")
-    ax.set(xlim=(18, 44), ylim=(0, 104), title="c  new tables",
+    ax.set(xlim=(14, 44), ylim=(0, 104), title="c  new tables",
            xlabel="last new table after the death (s)", ylabel="networks (%)")  # fmt: skip
 
 

@@ -213,7 +213,7 @@ def _small(got: Measured, radio: Radio) -> Claim:
         SMALL,
         f"tables leave half of the channel at {radio.profile} with {SMALL_MOST} nodes, if every "
         "round changes every table (our bar)",
-        f"{words}, {small.took}; {_reached(tried)}",
+        f"{words}, {small.took}, where a period is {radio.period_s:g} s; {_reached(tried)}",
         verdict(small.share <= HALF and small.is_whole),
         "an unchanged table is not sent, so that this is the most that a round takes",
     )
@@ -263,5 +263,5 @@ def _complete(got: Measured) -> Claim:
         "at every size that was tried everyone gets its table in the end",
         joined([*failed, *words], "; "),
         verdict(not failed),
-        f"to {lost} of them the gateway knew no way; else it is not known why" if failed else "",
+        f"to {lost} of them the gateway knew no way; why else is not known" if failed else "",
     )
