@@ -1,7 +1,6 @@
 """Declarations of the mesh: every field once, as (name, length, low, high, unit, meaning).
 
-Arrays over nodes are as long as a capacity class has nodes (32, 64 or 254): `node(n)` and `gate(n)`
-give the declarations of a class. Columns as in the skin's.
+Arrays over nodes are as long as a capacity class has nodes: `node(n)`, `gate(n)` are of that class.
 """
 
 from innervate.networks.mesh.protocol.constants import (
