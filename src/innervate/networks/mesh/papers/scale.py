@@ -215,7 +215,7 @@ def _small(got: Measured, radio: Radio) -> Claim:
         "round changes every table (our bar)",
         f"{words}, {small.took}, where a period is {radio.period_s:g} s; {_reached(tried)}",
         verdict(small.share <= HALF and small.is_whole),
-        "an unchanged table is not sent, so that this is the most that a round takes",
+        "an unchanged table is not sent, which takes less",
     )
 
 
