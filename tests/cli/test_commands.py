@@ -226,7 +226,7 @@ def test_papers_runs_and_counts_verdicts(sh, monkeypatch):
     options = {"quick": True, "only": ["fig5", "loop"], "redraw": False}
     assert seen == [("skin", Path("figures"), options)]
     first, *rest, last = sh.out.splitlines()
-    assert first == "3 claims: 2 hold, 1 of them with a reading of ours; 1 does not."
+    assert first == "3 claims: 1 hold, 1 hold with a reading of ours, 1 do not hold."
     assert [line.split(":")[0].strip() for line in rest] == ["Fig. 9", "measured", "because"]
     assert last == f"Look at them in a browser: {Path('figures/papers-skin.html')}"
 

@@ -5,8 +5,18 @@ from types import SimpleNamespace
 import pytest
 
 import innervate
+from innervate.cli.papers import verdict_lines
 from innervate.papers import output
-from innervate.papers.experiment import FAILS, HOLDS, Claim, Experiment, Sheet, reading
+from innervate.papers.experiment import (
+    FAILS,
+    HOLDS,
+    OURS,
+    Claim,
+    Experiment,
+    Sheet,
+    quoted,
+    reading,
+)
 
 CLAIMS = [
     Claim("3", "as many | as said", "4 of 4", HOLDS),
@@ -85,6 +95,31 @@ def test_the_table_for_programs_has_a_head_and_a_row_a_claim():
         "figure,claim,measurement,verdict,reason\n"
         "3,as many | as said,4 of 4,holds,\n"
         '3,never *more*,"5\nof 6",does not hold,"A1: so\nit is"\n'
+    )
+
+
+def test_whose_claim_it_is_stands_everywhere_in_the_same_words(tmp_path):
+    rows = [
+        Claim("2", "in all", "4 of 4", HOLDS, "", quoted("2", "as it is")),
+        Claim("2", "in some", "0 of 4", FAILS, "so", OURS),
+    ]
+    assert [row.whose for row in rows] == ['the document, 2: "as it is"', "ours, 2"]
+    counted = (
+        "1 claims of the document: 1 hold, 0 hold with a reading of ours, 0 do not hold. "
+        "1 of ours: 0 hold, 0 hold with a reading of ours, 1 do not hold."
+    )
+    (tmp_path / "fig3.svg").write_text("<svg/>")
+    page = output.write(tmp_path, HEADING, [FIGURE], output.Made({"fig3": rows}), 2.0)
+    found = page.read_text(encoding="utf-8")
+    assert f"<p>{counted}</p>" in found
+    assert '<p class="over">the document, 2: "as it is"</p>\nin all' in found
+    assert '<a href="#fig3">ours, 2</a>: in some' in found
+    assert verdict_lines(page.with_suffix(".csv")) == [
+        counted, "  ours, 2: in some", "      measured: 0 of 4", "      because: so",
+    ]  # fmt: skip
+    assert output.columns(rows)[-1] == "source"
+    assert "| 2 | in some | 0 of 4 | does not hold | so | ours |" in output.as_markdown(
+        HEADING, rows, ORIGIN
     )
 
 

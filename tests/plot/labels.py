@@ -1,10 +1,11 @@
-"""Texts of a figure that cover each other."""
+"""Texts of a figure that cover each other, and legends that cover panels."""
 
 import json
 from contextlib import contextmanager
 from unittest.mock import patch
 
 from matplotlib.axes import Axes
+from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from innervate.plot import style
@@ -33,6 +34,18 @@ def overlapping(figure):
     ]
 
 
+def over_panels(figure):
+    """Legends that lie over the panel of some axes, by their first name."""
+    renderer = figure.canvas.get_renderer()
+    panels = [ax.get_window_extent(renderer) for ax in figure.findobj(Axes)]
+    legends = [(one, one.get_window_extent(renderer)) for one in figure.findobj(Legend)]
+    return [
+        legend.get_texts()[0].get_text()
+        for legend, box in legends
+        if any(shared(box, panel) > 0 for panel in panels)
+    ]
+
+
 def outside(ax):
     """Labels of ticks beyond the axes' limits, which are not drawn."""
     for axis in (ax.xaxis, ax.yaxis):
@@ -51,14 +64,14 @@ def shared(a, b):
 
 @contextmanager
 def noted(folder):
-    """Keep of each figure that is saved meanwhile what overlaps in it, as it was saved."""
+    """Keep of each figure that is saved meanwhile what lies over what in it, as it was saved."""
     found, save = {}, style.save
 
     def saved(figure, where, name):
         paths = save(figure, where, name)
         layout = figure.get_layout_engine()
         figure.set_layout_engine(None)  # it was laid out to be saved
-        found[name] = overlapping(figure)
+        found[name] = overlapping(figure), over_panels(figure)
         figure.set_layout_engine(layout)
         return paths
 
@@ -69,4 +82,9 @@ def noted(folder):
 
 def covered(folder, name):
     """Pairs of texts that covered each other in a figure when it was saved."""
-    return json.loads((folder / NOTED).read_text())[name]
+    return json.loads((folder / NOTED).read_text())[name][0]
+
+
+def legends_over_panels(folder, name):
+    """Legends that lay over a panel in a figure when it was saved."""
+    return json.loads((folder / NOTED).read_text())[name][1]

@@ -46,17 +46,15 @@ def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) ->
 
 def verdict_lines(table: Path) -> list[str]:
     """What the table says: how many claims hold, and which do not."""
+    from innervate.papers.experiment import FAILS, Claim, summary  # draws: not before it is wanted
+
     with table.open(encoding="utf-8", newline="") as file:
-        claims = list(csv.DictReader(file))
-    failed = [claim for claim in claims if claim["verdict"].startswith("does not")]
-    read = sum(" reading " in claim["verdict"] for claim in claims)
-    lines = [
-        f"{len(claims)} claims: {len(claims) - len(failed)} hold, {read} of them with a reading "
-        f"of ours; {len(failed)} {'does' if len(failed) == 1 else 'do'} not."
-    ]
-    for claim in failed:
-        lines.append(f"  {claim['figure']}: {claim['claim']}")
-        lines.append(f"      measured: {claim['measurement']}")
-        if claim["reason"]:
-            lines.append(f"      because: {claim['reason']}")
+        claims = [Claim(**row) for row in csv.DictReader(file)]
+    lines = [summary(claims)]
+    for claim in claims:
+        if claim.verdict == FAILS:
+            lines.append(f"  {claim.whose}: {claim.claim}")
+            lines.append(f"      measured: {claim.measurement}")
+            if claim.reason:
+                lines.append(f"      because: {claim.reason}")
     return lines

@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 
 from innervate.plot import style
 
+HOLLOW: dict[str, Any] = {"ls": "", "mfc": "white"}  # markers of what is less than it should be
+
 
 def look(i: int, dash: int | None = None) -> dict[str, Any]:
     """Colour, dash and marker of the i-th series; with the dash of another one."""

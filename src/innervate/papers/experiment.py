@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 HOLDS = "holds"
 FAILS = "does not hold"
+OURS = "ours"
 
 # Results of points by their keys: whatever JSON can hold.
 Results = Mapping[str, Any]
@@ -93,6 +94,8 @@ class Claim:
             those of the skin's errata (E), of the radio's questions and findings (Q, F), of the
             mesh's ambiguities (A).
         reason: why; empty where it simply holds.
+        source: whose sentence it is: OURS, or the document's words (`quoted`); empty in a book
+            that does not tell them apart.
     """
 
     figure: str
@@ -100,9 +103,40 @@ class Claim:
     measurement: str
     verdict: str
     reason: str = ""
+    source: str = ""
+
+    @property
+    def whose(self) -> str:
+        """Where it stands, in the words of page, tables and terminal."""
+        if self.source == OURS:
+            return f"{OURS}, {self.figure}"
+        return self.source or self.figure
 
 
 Claims = Iterator[Claim]
+
+
+def quoted(section: str, words: str) -> str:
+    """The source of a claim that is the document's: its section, and its own words."""
+    return f'the document, {section}: "{words}"'
+
+
+def summary(claims: Sequence[Claim]) -> str:
+    """How many claims came out how, the document's and ours apart where they are told apart."""
+    mine = [claim for claim in claims if claim.source == OURS]
+    quoting = [claim for claim in claims if claim.source not in ("", OURS)]
+    if not mine and not quoting:
+        return f"{len(claims)} claims: {_counts(claims)}."
+    return (
+        f"{len(quoting)} claims of the document: {_counts(quoting)}. "
+        f"{len(mine)} of ours: {_counts(mine)}."
+    )
+
+
+def _counts(claims: Sequence[Claim]) -> str:
+    plain, fails = (sum(claim.verdict == way for claim in claims) for way in (HOLDS, FAILS))
+    read = len(claims) - plain - fails
+    return f"{plain} hold, {read} hold with a reading of ours, {fails} do not hold"
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,8 +153,8 @@ class Experiment:
     """A figure: its points, its drawing, its rows of the table.
 
     All take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
-    CAPTION, `points(quick)`, and `draw` and `judge`, which take what was measured. Only what
-    compares has tables of its own (`sheets`), and compiles what it runs by itself (`warm_up`).
+    CAPTION, `points(quick)`, and `draw`, `judge` and perhaps `sheets`, tables of its own, which
+    take what was measured. Only what compares compiles what it runs by itself (`warm_up`).
     """
 
     name: str
@@ -143,8 +177,11 @@ class Experiment:
         def judge(results: Results, quick: bool) -> list[Claim]:
             return list(module.judge(Measured(results, quick)))
 
-        name = module.__name__.rpartition(".")[2]
-        return cls(name, module.TITLE, module.CAPTION, module.points, draw, judge)
+        def sheets(results: Results, quick: bool) -> list[Sheet]:
+            return list(module.sheets(Measured(results, quick))) if has_sheets else []
+
+        name, has_sheets = module.__name__.rpartition(".")[2], hasattr(module, "sheets")
+        return cls(name, module.TITLE, module.CAPTION, module.points, draw, judge, sheets)
 
 
 @dataclass(frozen=True, slots=True)

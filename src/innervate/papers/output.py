@@ -15,7 +15,7 @@ from pathlib import Path
 
 import innervate
 from innervate.papers.errors import PapersError
-from innervate.papers.experiment import FAILS, HOLDS, Claim, Experiment, Sheet
+from innervate.papers.experiment import FAILS, Claim, Experiment, Sheet, summary
 from innervate.plot import page
 from innervate.plot.svg import clean
 from innervate.trace.provenance import checkout
@@ -109,7 +109,8 @@ def as_tables(heading: Heading, one: Experiment, made: Made, origin: Mapping[str
     """The tables of an experiment and its claims as Markdown, for a page of the documentation."""
     kept = ("seeds", "settings", "with")
     claims = [
-        (row.claim, row.measurement, row.verdict, row.reason) for row in made.claims[one.name]
+        (f"{row.whose}: {row.claim}" if row.source else row.claim, *astuple(row)[2:5])
+        for row in made.claims[one.name]
     ]
     sheets = [
         *made.tables(one.name),
@@ -165,19 +166,25 @@ def as_csv(rows: Sequence[Claim]) -> str:
     """The table for other programs."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([field.name for field in fields(Claim)])
-    writer.writerows(astuple(row) for row in rows)
+    writer.writerow(columns(rows))
+    writer.writerows(astuple(row)[: len(columns(rows))] for row in rows)
     return text.getvalue()
+
+
+def columns(rows: Sequence[Claim]) -> list[str]:
+    """Names of a table's columns: without whose claims they are in a book that does not say."""
+    names = [field.name for field in fields(Claim)]
+    return names if any(row.source for row in rows) else names[:-1]
 
 
 def as_markdown(heading: Heading, rows: Sequence[Claim], origin: Mapping[str, str]) -> str:
     """The table for people, with where it comes from."""
-    names = [field.name for field in fields(Claim)]
+    names = columns(rows)
     lines = [
         *(f"# {heading.title}", "", summary(rows), ""),
         "| " + " | ".join(names) + " |",
         "|" + "---|" * len(names),
-        *("| " + " | ".join(_cell(value) for value in astuple(row)) + " |" for row in rows),
+        *(f"| {' | '.join(map(_cell, astuple(row)[: len(names)]))} |" for row in rows),
         "",
         f"    {heading.command}",
         "",
@@ -188,17 +195,6 @@ def as_markdown(heading: Heading, rows: Sequence[Claim], origin: Mapping[str, st
 
 def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("*", "\\*").replace("\n", " ")
-
-
-def summary(rows: Sequence[Claim]) -> str:
-    """How many claims came out how."""
-    plain = sum(row.verdict == HOLDS for row in rows)
-    fails = sum(row.verdict == FAILS for row in rows)
-    read = len(rows) - plain - fails
-    return (
-        f"{len(rows)} claims: {plain} hold, {read} hold with a reading of ours, "
-        f"{fails} do not hold."
-    )
 
 
 def as_page(
@@ -258,7 +254,7 @@ def failing_first(rows: Sequence[Claim]) -> list[Claim]:
 def _failed(sections: Sections, readings: Mapping[str, str]) -> str:
     """What does not hold, each with a link to its figure."""
     items = [
-        f'<li><a href="#{clean(experiment.name)}">{clean(row.figure)}</a>: '
+        f'<li><a href="#{clean(experiment.name)}">{clean(row.whose)}</a>: '
         f"{linked(row.claim, readings)}</li>"
         for experiment, rows in sections
         for row in rows
@@ -318,9 +314,11 @@ def _table(rows: Sequence[Claim], readings: Mapping[str, str]) -> str:
     cells = []
     for row in failing_first(rows):
         said = (row.verdict, row.claim, row.measurement, row.reason)
-        verdict, *others = (linked(text, readings) for text in said)
+        verdict, claim, *others = (linked(text, readings) for text in said)
+        if row.source:
+            claim = page.element("p", row.whose, "over") + claim
         colour = "bad" if row.verdict == FAILS else "good"
-        cells.append([f'<b class="{colour}">{verdict}</b>', *others])
+        cells.append([f'<b class="{colour}">{verdict}</b>', claim, *others])
     return page.table(("verdict", "claim", "measured", "why"), cells, "claims")
 
 

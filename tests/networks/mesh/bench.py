@@ -9,7 +9,7 @@ from innervate.dialect.rng import seeded
 from innervate.kernel.records import Words
 from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
-from innervate.networks.mesh.protocol.constants import ACK, MESSAGE, SENT
+from innervate.networks.mesh.protocol.constants import ACK, LIST, MESSAGE, SENT
 from innervate.networks.mesh.protocol.frames import copy_frame
 
 WIDTH = 32
@@ -20,7 +20,7 @@ DEFAULTS = dict(
     nodes=0, row=3, places=32, width=WIDTH, mtu=127, mode=0, discovery=3, failover=3,
     avoid_origin=0, retry=1, reliable=1, activation=0, told=0, transmissions=3, ack_us=4000,
     hop_acks=1, ack_adapt=0, hop_frames=0, gather=0, queue=8, kept=8,
-    suspect_us=10_000_000, min_rssi=-93, jitter_us=100_000, copies=2, flood_us=12_500,
+    suspect_us=10_000_000, min_rssi=-93, faint=-92, jitter_us=100_000, copies=2, flood_us=12_500,
     listen_us=300_000, spread_us=400_000, collect_us=1_500_000, tick_us=1_000_000, period=10,
     period_max=60, dead=25, dead_step=5, guard_us=0, standby=0, jobs=4, job_us=500_000, job_tries=3,
     e2e_us=250_000, e2e_adapt=0, e2e_tries=5, forget=30,
@@ -41,6 +41,8 @@ class Bench:
 
     def __init__(self, count, links, gateway=0, standbys=(), robots=(), **settings):
         self.params = Params()
+        if settings.get("discovery", LIST) != LIST:  # as in scenarios that say nothing of it
+            settings.setdefault("faint", -128)
         for name, value in {**DEFAULTS, "nodes": count, **settings}.items():
             setattr(self.params, name, value)
         self.nodes = [Node() for _ in range(count)]

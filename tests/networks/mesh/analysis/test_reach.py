@@ -20,8 +20,8 @@ from innervate.sim.field.states import ALIVE, DEAD
 FREE = 255
 COUNT, WIDTH = 5, 5
 PARAMS = {
-    "min_rssi": -85, "mode": TABLES, "width": WIDTH, "failover": ALTERNATE, "discovery": LIST,
-    "transmissions": 1, "e2e_tries": 0, "reliable": 1, "hop_acks": 0,
+    "min_rssi": -85, "faint": -84, "mode": TABLES, "width": WIDTH, "failover": ALTERNATE,
+    "discovery": LIST, "transmissions": 1, "e2e_tries": 0, "reliable": 1, "hop_acks": 0,
 }  # fmt: skip
 STRONG, WEAK = 4 * -85, 4 * -85 - 1  # the neighbours' table has quarters of a dBm
 
@@ -133,11 +133,11 @@ def test_last_come_neighbours_that_are_nearer_the_best_first(change, named):
 @pytest.mark.parametrize(
     ("parent", "named"), [(1, [1, 2, 3]), (3, [3, 2, 1]), (FREE, [2, 3, 1]), (0, [2, 3, 1])]
 )
-def test_but_where_rounds_make_a_tree_the_parent_is_ahead_of_them(parent, named):
+def test_but_where_the_first_is_followed_the_parent_is_ahead_of_them(parent, named):
     one = node(parent=parent, **UPLINKS)
-    assert choices(one, discovery=LIST - 1)[0] == named
+    assert choices(one, faint=-85)[0] == named
     deep = node(parent=parent, **UPLINKS | {"depth": 1})
-    assert choices(deep, discovery=LIST - 1)[0] == [2]  # a parent no nearer is none
+    assert choices(deep, faint=-85)[0] == [2]  # a parent no nearer is none
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import pytest
 from innervate import scenario
 from innervate.live.errors import LiveError
 from innervate.networks.mesh.live.parameters import OURS, fence_parameters, mesh_parameters
+from innervate.networks.mesh.protocol.constants import TREE
 from innervate.networks.mesh.protocol.fields import POINTS
 
 # [mesh 5] and docs/live.md: waits for acks follow the round trips; a machine has room for more
@@ -27,6 +28,14 @@ def test_a_number_is_that_of_the_simulated_network(name):
         assert ours == simulated(standby=[1])[name]
     else:
         assert ours == LIVE.get(name, simulated()[name])
+
+
+@pytest.mark.parametrize(("changes", "faint"), [
+    ({}, -92), ({"discovery": TREE}, -128), ({"min_rssi": -80}, -79), ({"min_rssi": 127}, 127),
+    ({"discovery": TREE, "faint": -92}, -92), ({"faint": -128}, -128),
+])  # fmt: skip
+def test_the_first_uplink_or_the_best_as_in_a_scenario_that_does_not_say(changes, faint):
+    assert mesh_parameters(3, changes)["faint"] == faint
 
 
 @pytest.mark.parametrize(

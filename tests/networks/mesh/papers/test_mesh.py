@@ -19,8 +19,10 @@ from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS, Measured
+from innervate.plot import style
 from tests.fixtures.papers import read
-from tests.plot.labels import covered
+from tests.networks.mesh.papers.test_edges import results
+from tests.plot.labels import covered, legends_over_panels, over_panels
 from tests.plot.self_contained import check_paper
 
 VERDICT = re.compile(r"holds|does not hold|holds with reading A\d+(, A\d+)*")
@@ -34,16 +36,16 @@ MUST_HOLD = (
     ("bars", "latency, 99 %"),
     ("bars", "overrun at 1 m/s"),
     ("bars", "state of a node"),
-    ("bars", "loses one in five"),
+    ("bars", "own rule loses"),
     ("stretch", "discovery list"),
     ("stretch", "alternate that cannot loop"),
     ("failures", "alternates, then a search"),
     ("lossy", "search"),
     ("lossy", "graph"),
-    ("alarms", "next hop tables"),
+    ("alarms", "frames sent up to three times"),
     ("alarms", ": all alarms"),
-    ("scale", "sufficient for small networks"),
-    ("scale", "go further"),
+    ("scale", "tables leave half of the channel"),
+    ("scale", "take less of the channel"),
     ("versions", "alternates alone"),
     ("versions", "with the search"),
 )
@@ -52,15 +54,17 @@ MUST_FAIL = (
     ("recall", "(each)"),
     ("recall", "at once"),
     ("recall", "respond to every request"),
+    ("recall", "the first or the best"),
     ("stretch", "discovery tree"),
     ("stretch", "discovery each"),
-    ("failures", "will replace it automatically"),
-    ("failures", "malfunctioned"),
+    ("failures", "nobody is dead"),
+    ("failures", "packets after the first"),
+    ("failures", "the first packet arrives"),
     ("failures", "RSSI"),
     ("failures", "help every rule"),
-    ("lossy", "updates its routing table"),
-    ("alarms", "own rule"),
-    ("alarms", "by the document's rule"),
+    ("lossy", "to the letter, while nobody dies"),
+    ("alarms", "nobody dead, to the letter"),
+    ("alarms", "unknown dead, to the letter"),
     ("gateway", "outlives the gateway"),
 )
 
@@ -78,6 +82,19 @@ def test_a_figure_is_drawn(mesh_made, name):
 @pytest.mark.parametrize("name", FIGURES)
 def test_no_labels_overlap(mesh_made, name):
     assert covered(mesh_made.folder, name) == []
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_no_legend_lies_over_a_panel(mesh_made, name):
+    assert legends_over_panels(mesh_made.folder, name) == []
+
+
+def test_a_legend_in_a_panel_is_noticed():
+    figure, (ax,) = style.panels(2, 2)
+    ax.plot([0, 1], label="a line")
+    ax.legend()
+    figure.draw_without_rendering()
+    assert over_panels(figure) == ["a line"]
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -177,10 +194,36 @@ def test_kinds_of_alternates(way, other, kind):
     assert stretch._kind(far, 0, 3, way, other) == kind
 
 
-def test_where_a_line_is_half():
-    assert scale.half_full([10, 100], np.array([0.05, 5.0])) == (pytest.approx(31.6, 0.01), True)
-    n, reached = scale.half_full([10, 20], np.array([0.0625, 0.125]))
-    assert (n, reached) == (pytest.approx(80), False)
+def test_sizes_at_which_nodes_got_no_table_are_drawn_hollow_and_told_in_the_table():
+    whole = results("scale")
+    tried = scale.point(scale.RADIOS[0], "tables", 30, True)
+    whole[tried.key] |= {"with_tables": [28], "unknown": [1], "tables_s": [None]}
+    got = Measured(whole, True)
+    fast, _ = scale.draw(got).axes
+    (hollow,) = (line for line in fast.lines if line.get_markerfacecolor() == "white")
+    assert hollow.get_xdata() == [30]
+    assert hollow.get_label() == "tables, not all got theirs"
+    (line,) = (line for line in fast.lines if line.get_label() == "tables")
+    assert 30 not in line.get_xdata()
+    (sheet,) = scale.sheets(got)
+    assert [row[:3] + row[-1:] for row in sheet.rows if "failed" in row[-1]] == [
+        ("250k", "tables", "30", "failed: nodes in 1 of 1 networks got no table, 2 of 30")
+    ]
+    assert {row[-1] for row in sheet.rows if row[1] == "table-free"} == {"there are no tables"}
+
+
+def test_a_stretch_of_tables_that_do_not_connect_all_is_drawn_hollow():
+    whole = results("stretch")
+    whole[stretch.point("tree", 8, True).key]["broken"] = [2]
+    left, _ = stretch.draw(Measured(whole, True)).axes
+    hollow = [line for line in left.lines if line.get_markerfacecolor() == "white"]
+    assert [line.get_markevery() for line in hollow] == [[1], [], []]
+
+
+def test_nothing_is_said_of_sizes_that_were_not_run():
+    tried = [scale.Size(n, share, [0], 0, 1.0) for n, share in ((10, 0.1), (30, 0.5), (70, 0.6))]
+    assert scale._reached(tried) == "half is passed between N = 30 and 70"
+    assert scale._reached(tried[:2]) == "less than half up to N = 30, the most that was run"
 
 
 def test_state_grows_with_the_class_only():

@@ -118,6 +118,17 @@ def test_links_that_are_given() -> None:
     assert p.positions_cm == []
 
 
+@pytest.mark.parametrize(("discovery", "usual"), [("list", "best"), ("tree", "first"),
+                                                  ("each", "first")])  # fmt: skip
+def test_first_or_best_can_be_had_with_every_discovery(discovery: str, usual: str) -> None:
+    said = f"[protocol]\ndiscovery = '{discovery}'\n"
+    found = {uplink: made(f"nodes = 5\n{said}uplink = '{uplink}'") for uplink in ("first", "best")}
+    assert (found["first"].params["faint"], found["best"].params["faint"]) == (-128, -92)
+    assert made(f"nodes = 5\n{said}").params == found[usual].params
+    loud = made(f"nodes = 5\n{said}uplink = 'best'\nmin_rssi_dbm = 127")
+    assert loud.params["faint"] == 127
+
+
 @pytest.mark.parametrize("profile", ["250k", "38k4", "ip", "ideal"])
 @pytest.mark.parametrize("nodes", [2, 15, 16, 32, 33, 64, 65])
 def test_parameters(profile: str, nodes: int) -> None:

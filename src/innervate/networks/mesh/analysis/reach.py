@@ -19,7 +19,6 @@ import numpy as np
 from innervate.analysis.ways import NOWHERE, Flags, Numbers, follow, reach
 from innervate.networks.mesh.protocol.constants import (
     ALTERNATE,
-    LIST,
     PATH_MAX,
     SEARCH,
     TABLE_FREE,
@@ -237,7 +236,7 @@ def _uplinks(nodes: Any, params: Any, near: Numbers, suspect: Flags) -> list[Num
     up = (near != FREE) & (depth != UNHEARD) & (depth < nodes["depth"][:, None]) & ~suspect
     weak = nodes["round_rssi"] < params["min_rssi"]
     cost = np.where(up, weak * 1_000_000 + depth * 1_000 - nodes["round_rssi"], FAR)
-    if params["discovery"] != LIST:
+    if params["faint"] <= params["min_rssi"]:
         cost = np.where(up & (near == nodes["parent"][:, None]), -FAR, cost)
     order = np.argsort(cost, axis=1, kind="stable")
     sorted_ = np.take_along_axis(np.where(up, near, NOWHERE), order, axis=1)

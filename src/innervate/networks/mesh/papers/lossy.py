@@ -9,12 +9,14 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground, distances
+from innervate.networks.mesh.papers.document import RELIABLE, ours, said
 from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
+from innervate.networks.mesh.protocol.constants import REPORT_TABLE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.sim.tables import get
@@ -60,7 +62,14 @@ def measure(of: MeshTestbed, loss: int, seed: int) -> dict[str, Any]:
     found = messages(result)
     bins = (found.offered_us // 1_000_000 - FROM_S) // BIN_S
     came = np.bincount(bins[found.state == DELIVERED], minlength=int(bins.max()) + 1)
-    return {"sent": np.bincount(bins).tolist(), "came": came.tolist(), "wrong": _wrong(result)}
+    return {"sent": np.bincount(bins).tolist(), "came": came.tolist(), "wrong": _wrong(result),
+            "again": _again(result)}  # fmt: skip
+
+
+def _again(result: Any) -> int:
+    """Tables that came into force after the first ones."""
+    late = (result.rows["code"] == REPORT_TABLE) & (result.rows["time"] >= FROM_S * 1_000_000)
+    return int(np.count_nonzero(late))
 
 
 def _soften(plan: Any, loss: int) -> None:
@@ -138,26 +147,26 @@ def draw(got: Measured) -> Figure:
 
 def judge(got: Measured) -> Claims:
     """Claims on tables under loss: one transmission, three of them, our rules."""
-    for rule, claim in (
-        (DOCUMENT, '"If A does not get an ack from B for this packet, then A updates its routing '
-         'table to no longer list B": the tables stay right while nobody dies'),
-        (THREE, "the same after three transmissions without an ack"),
-    ):  # fmt: skip
+    bar = f"at {FIVE} % 0.95 of the messages in the last {BIN_S} s, 0.95 of the entries right"
+    for rule in (DOCUMENT, THREE):
         share, still = (wrong(got, rule, loss) for loss in (FIVE, 0))
         late = over_time(got, rule, FIVE)[-1]
-        yield Claim(
-            "2.2",
-            claim,
+        again = np.mean(got[point(rule, FIVE, got.quick)]["again"])
+        row = (
             f"{FIVE} % of the frames lost, after 60 s: {percent(share)} of the entries lead away "
             f"or nowhere, {percent(late)} of the messages come; without loss but for collisions "
             f"{percent(still)} wrong, {percent(delivered(got, rule, 0), 1)} come",
             verdict(share < 0.05 and late > 0.95),
-            "A3, A5: every loss is a death; the gateway does not send a table again that has not "
-            "changed for it, so what is wrong stays wrong",
+            "A3, A5: a frame that is lost is taken for a death, and rewrites a table that was "
+            f"right; in that time {again:.0f} tables came anew to 30 nodes",
         )
+        if rule is DOCUMENT:
+            yield said(RELIABLE, f"to the letter, while nobody dies (our bar: {bar})", *row)
+        else:
+            yield ours("2.2", "the same after three transmissions without an ack", *row)
     for rule in (PLAIN_SEARCH, PLAIN_GRAPH):
         shares = {k: delivered(got, rule, k) for k in losses(got.quick)}
-        yield Claim(
+        yield ours(
             "beyond",
             f"{rule.name}: suspicion for 10 s instead, the table stays as it is; all "
             f"messages come at {FIVE} % (0.99), without end-to-end acks",

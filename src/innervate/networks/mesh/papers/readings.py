@@ -7,7 +7,7 @@ READINGS = sentences(
 A1: Who hears a discovery answers once, with a list of all neighbours it heard; answering once
 along the tree finds too few links, answering each request too many times.
 A2: The next hop to the gateway is the best of the neighbours that are nearer, not the first that
-was heard.
+was heard; tree and each of A1 come with the first if nothing is said, a choice of ours: uplink.
 A3: "Does not get an ack" means after three transmissions.
 A4: The packet that was not acknowledged is sent another way, not lost.
 A5: A neighbour that does not answer is suspected for 10 s; tables are not rewritten.

@@ -9,10 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
+from innervate.networks.mesh.papers.document import SHORTEST, ours, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.topology.placement import good_links, neighbours
@@ -20,8 +21,8 @@ from innervate.topology.placement import good_links, neighbours
 TITLE = "2.1: shortest ways, and other ones"
 CAPTION = (
     "30 nodes after one round. a: hops by the tables over hops of the shortest way, over all links "
-    "loud enough to be reported, mean of all pairs that the tables connect. b: what kind of "
-    "neighbour an entry's alternate is."
+    "loud enough to be reported, mean of all pairs that the tables connect; hollow: they do not "
+    "connect all. b: what kind of neighbour an entry's alternate is."
 )
 READINGS = ("tree", "each", "list")
 KINDS = ("around the next hop, too", "free of loops", "last resort", "none")
@@ -54,7 +55,8 @@ def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
     near = neighbours(plan.nodes, known)
     far = [distances(near, node) for node in nodes]
     next_, alt = ([row_of(result, node, name) for node in nodes] for name in ("next", "alt"))
-    stretches, broken = [], 0
+    bare = [all(way == NONE for way in row) for row in next_]
+    stretches, apart, out = [], 0, 0
     kinds = [0] * len(KINDS)
     for a in nodes:
         for b in nodes:
@@ -64,11 +66,13 @@ def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:
             if hops:
                 stretches.append(hops / far[a][b])
             else:
-                broken += 1
+                apart += 1
+                out += bare[a] or bare[b]
             if next_[a][b] != NONE:
                 kinds[_kind(far, a, b, next_[a][b], alt[a][b])] += 1
     return {"stretch": float(np.mean(stretches)), "p99": float(np.percentile(stretches, 99)),
-            "broken": broken, "pairs": broken + len(stretches), "kinds": kinds}  # fmt: skip
+            "broken": apart, "bare": out, "pairs": apart + len(stretches),
+            "kinds": kinds}  # fmt: skip
 
 
 def _hops(next_: list[list[int]], here: int, dest: int) -> int:
@@ -94,6 +98,11 @@ def mean(got: Measured, reading: str, degree: int) -> float:
     return float(np.mean(got[point(reading, degree, got.quick)]["stretch"]))
 
 
+def broken(got: Measured, reading: str, degree: int) -> int:
+    """Pairs that the tables do not connect, in all networks."""
+    return int(sum(got[point(reading, degree, got.quick)]["broken"]))
+
+
 def shares(got: Measured, reading: str, degree: int) -> Any:
     """Of all entries with a next hop, the share of each kind of alternate."""
     total = np.sum(got[point(reading, degree, got.quick)]["kinds"], axis=0)
@@ -106,12 +115,16 @@ def draw(got: Measured) -> Figure:
     some = degrees(got.quick)
     for i, reading in enumerate(READINGS):
         y = [mean(got, reading, degree) for degree in some]
-        left.plot(some, y, label=f"discovery: {reading}", **drawing.look(i))
+        left.plot(some, y, label=reading, **drawing.look(i))
+        apart = [k for k, degree in enumerate(some) if broken(got, reading, degree)]
+        left.plot(some, y, markevery=apart, **drawing.look(i) | drawing.HOLLOW)
     left.axhline(1, color=style.INK, lw=0.6)
-    left.set(xlabel="mean degree", ylabel="hops / shortest way", ylim=(0.95, 2.3),
-             title="a  stretch of the tables' ways")  # fmt: skip
-    left.legend(loc="upper left")
+    left.set(xlabel="mean degree", ylabel="hops / shortest way", xticks=some,
+             title="a  stretch of the tables' ways, by discovery")  # fmt: skip
+    left.set_ylim(bottom=0.95)
     _kinds(right, got)
+    drawing.legend(figure, left, ncols=3)
+    drawing.legend(figure, right, "lower right", ncols=4)
     return figure
 
 
@@ -124,9 +137,8 @@ def _kinds(ax: Axes, got: Measured) -> None:
         ax.bar(x, part, 0.8, bottom=below, color=colour, label=name)
         below += part
     ax.set_xticks(x, [str(degree) for _, degree in bars])
-    ax.set(ylim=(0, 140), yticks=range(0, 101, 20), title="b  alternates")
+    ax.set(ylim=(0, 104), title="b  alternates")
     ax.set(xlabel="mean degree; left: discovery tree, right: list", ylabel="entries of tables (%)")
-    ax.legend(loc="upper center", ncols=2)
 
 
 def judge(got: Measured) -> Claims:
@@ -134,21 +146,26 @@ def judge(got: Measured) -> Claims:
     some = degrees(got.quick)
     for reading in READINGS:
         runs, value = got[point(reading, 8, got.quick)], mean(got, reading, 8)
-        broken, pairs = (sum(runs[name]) for name in ("broken", "pairs"))
-        fine = value < 1.02 and broken == 0
-        yield Claim(
-            "2.1",
-            '"next hop tables, which contain the next hop calculating according to the shortest '
-            f'path to destination by hop count", discovery {reading}',
+        apart, bare, pairs = (sum(runs[name]) for name in ("broken", "bare", "pairs"))
+        fine = value < 1.02 and apart == 0
+        why = (
+            "A1: the gateway computes ways in the graph that it found, and recall says how much "
+            f"that is; {bare} of the {apart} pairs have an end that got no table, which A2 has a "
+            "part in: see what a round finds"
+        )
+        yield said(
+            SHORTEST,
+            f"discovery {reading}: tables lead the shortest way (our bar: 1.02 times in the mean, "
+            "and all pairs have one)",
             f"mean stretch {value:.3f}, 99 % {np.mean(runs['p99']):.2f}; "
-            f"{broken} of {pairs} pairs without a way; degrees {joined(some)}: "
+            f"{apart} of {pairs} pairs without a way; degrees {joined(some)}: "
             + joined(f"{mean(got, reading, degree):.2f}" for degree in some),
             verdict(fine, *(["A1"] if reading == "list" else [])),
-            "" if fine else "A1: shortest in the graph that was found, which is not the network",
+            "" if fine else why,
         )
     found = {degree: shares(got, "list", degree) for degree in some}
     tree = shares(got, "tree", 8)
-    yield Claim(
+    yield ours(
         "beyond",
         "nearly every entry has an alternate that cannot loop (0.9 at degree 8)",
         joined(

@@ -353,7 +353,8 @@ Constants and settings
 | `width`, `row`, `places`, `nodes`              | sizes of a capacity class, and of this network  |
 | `told`, `hop_acks`                             | the layer below says SENT; hops acknowledge, or |
 |                                                | SENT says so                                    |
-| `min_rssi`                                     | weaker links are not reported                   |
+| `min_rssi`, `faint`                            | weaker links are not reported; A2: first or     |
+|                                                | best uplink                                     |
 | `reliable`, `standby`, `job_tries`             | messages are kept; there is a standby; tries of |
 |                                                | a table                                         |
 | `monitor`, `flood`, `instances`                | A14; when alarms are flooded, and how often     |

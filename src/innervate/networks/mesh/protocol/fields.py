@@ -1,7 +1,6 @@
 """Declarations of the mesh: every field once, as (name, length, low, high, unit, meaning).
 
-Arrays over nodes are as long as a capacity class has nodes (32, 64 or 254): `node(n)` and `gate(n)`
-give the declarations of a class. Columns as in the skin's.
+Arrays over nodes are as long as a capacity class has nodes: `node(n)`, `gate(n)` are of that class.
 """
 
 from innervate.networks.mesh.protocol.constants import (
@@ -364,6 +363,7 @@ PARAMS = (
     ("kept", 0, WAITING, PLACES_MAX, "messages", "kept until acknowledged end to end"),
     ("suspect_us", 0, 1, 268435455, "us", "a neighbour that does not answer is avoided"),
     ("min_rssi", 0, -128, 127, "dBm", "weaker links are not reported"),
+    ("faint", 0, -128, 127, "dBm", "a first request below it waits for better; <= min_rssi: stays"),
     ("jitter_us", 0, 0, 16777215, "us", "requests are passed on within"),
     ("copies", 0, 1, 15, "copies", "of a request"),
     ("flood_us", 0, 0, 16777215, "us", "floods are passed on within"),

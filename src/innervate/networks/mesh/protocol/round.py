@@ -11,7 +11,6 @@ from innervate.networks.mesh.protocol.constants import (
     EACH,
     HEADER_BYTES,
     JOBS,
-    LIST,
     PATH_MAX,
     PRIORITY,
     REPORT_GATEWAY,
@@ -111,7 +110,7 @@ def on_request(node, params, now, frame, k, out):
     if node.leading:
         return
     if node.depth == UNHEARD:
-        if frame.rssi < params.min_rssi + 1 and params.discovery == LIST:
+        if frame.rssi < params.faint:
             await_better(node, params, now, frame, out)
         else:
             node.parent = frame.link_src

@@ -1,6 +1,6 @@
 """Towards the gateway without tables: over those who advertised less depth [mesh 4 UPWARD]."""
 
-from innervate.networks.mesh.protocol.constants import LIST, NOBODY
+from innervate.networks.mesh.protocol.constants import NOBODY
 from innervate.networks.mesh.protocol.duplicates import is_skipped
 from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT, UNHEARD
 
@@ -35,7 +35,7 @@ def uplink(node, params, i):
         if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
             who = node.neighbour[k]
             if not is_skipped(node, node.q_origin[i], node.q_seq[i], who):
-                if params.discovery != LIST and who == node.parent:
+                if params.faint <= params.min_rssi and who == node.parent:
                     return who
                 if best < 0 or is_better(node, params, k, best):
                     best = k

@@ -20,6 +20,7 @@ from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
 DISCOVERY = {"list": w.LIST, "tree": w.TREE, "each": w.EACH}
 FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "search": w.SEARCH,
             "graph": w.SEARCH}  # fmt: skip
+FAINTEST_DBM, LOUDEST_DBM = -128, 127
 STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
 FORGET_S = 30.0
 FORGET_TICKS_MAX = 255
@@ -29,7 +30,7 @@ NO_FENCE: dict[str, Any] = {
     "fence": 0,
 }  # fmt: skip
 # Keys of [protocol] whose parameter is called something else.
-KEYS = {"tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
+KEYS = {"faint": "min_rssi_dbm", "tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
         "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
 # Parameters, keys of [protocol] and parts of a profile that are called the same.
 OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "ack_adapt", "e2e_adapt",
@@ -81,6 +82,7 @@ def parameters(
     chosen = _Chosen(settings, profile.beacon)
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
+    min_rssi = chosen.value("min_rssi_dbm", min_rssi_dbm)
     params: dict[str, Any] = {
         "nodes": nodes,
         "row": words(width),
@@ -92,7 +94,8 @@ def parameters(
         "queue": QUEUE,
         "kept": WAITING,
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
-        "min_rssi": chosen.value("min_rssi_dbm", min_rssi_dbm),
+        "min_rssi": min_rssi,
+        "faint": min(min_rssi + 1, LOUDEST_DBM) if _takes_best(settings) else FAINTEST_DBM,
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
         "standby": 0,
@@ -106,6 +109,13 @@ def parameters(
     }
     _check(params)
     return params
+
+
+def _takes_best(settings: Any) -> bool:
+    """Whether the next hop to the gateway is the best [A2]; as a rule with what was heard [A1]."""
+    if settings.uplink is None:
+        return bool(settings.discovery == "list")
+    return bool(settings.uplink == "best")
 
 
 def _routing(settings: Any) -> dict[str, int]:

@@ -21,6 +21,7 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
     """[protocol] of a mesh: discovery, failover, retransmission, timers."""
 
     discovery: Literal["list", "tree", "each"] = "list"
+    uplink: Literal["best", "first"] | None = None
     failover: Literal["search", "alternate", "rssi", "random", "graph"] = "search"
     avoid: Literal["sender", "origin"] = "sender"
     tables: bool = True
