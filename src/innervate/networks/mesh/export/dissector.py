@@ -16,7 +16,7 @@ FLAGS = (
     (const.SOURCE_ROUTE, "source route"),
     (const.DETOURED, "detoured"),
     (const.PRIORITY, "priority"),
-    (const.FIRST, "first after boot"),
+    (const.FIRST, "first after boot, or over a faint link"),
     (const.PARITY, "parity of the retry"),
 )
 PIECE = 64  # stands for what no packet's type is: data that is a piece of a message

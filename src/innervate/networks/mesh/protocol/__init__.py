@@ -12,7 +12,7 @@ who hears whom, computes routes and hands them out; whoever does not answer is g
 *Discovery* [mesh 4]. Once a period the gateway floods a request. A node passes it on after a random
 wait, notes whom it heard, and responds once (A1), up the neighbours that advertised less depth
 (A2). A link counts if both directions were reported within three rounds, or a response has crossed
-it.
+it that no faint link brought (`WEAK`; decision 0052).
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
 recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in parts that are
@@ -148,8 +148,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | new round  | `REQUEST`, `PRIORITY`           | `join`: `is_hushed`              | HUSHED         |
 | HUSHED     | `ROUND`                         | `step`                           | NOTHING        |
 | IDLE       | `TICK`, the period is over      | `start_round`                    | COLLECTING     |
-| COLLECTING | `RESPONSE`                      | `on_response`: `note_path`,      |                |
-|            |                                 | `note_list`                      |                |
+| COLLECTING | `RESPONSE`                      | `on_response`: `note_list`,      |                |
+|            |                                 | unless `WEAK` `note_path`        |                |
 | COLLECTING | `ROUND`                         | `collect`: `build_graph`,        | IDLE           |
 |            |                                 | `give_jobs`, `pump`              |                |
 | CURRENT    | a changed table                 | `give_job`                       | TO_SEND        |
@@ -226,7 +226,7 @@ Frames
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
 |                 |                              | flag `PRIORITY`: nobody responds; more copies   |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
-|                 |                              | loud                                            |
+|                 |                              | loud; flag `WEAK`: came over a faint link       |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
 |                 |                              | alternate, recipients)                          |
 | `TABLE_ACK = 4` | up                           | epoch, version, parts that are there            |
@@ -242,9 +242,9 @@ Frames
 | `ACK = 16`      | to the hop before            | no common header: `ACK_BYTES = 9`               |
 
 Flags: `ACK_WANTED = 1`, `END_TO_END = 2`, `FLOOD = 4`, to one recipient `ORDERED = 4`,
-`SOURCE_ROUTE = 8`, `DETOURED = 16`, `PRIORITY = 32`, `FIRST = 64`, `PARITY = 128` (turns over with
-each retransmission). Addresses: `ALL = 255`, `MONITOR = 254`, `IDS = 254`, `NOBODY = -1`. Bit by
-bit: docs/wire.md.
+`SOURCE_ROUTE = 8`, `DETOURED = 16`, `PRIORITY = 32`, `FIRST = 64`, of a response `WEAK = 64`,
+`PARITY = 128` (turns over with each retransmission). Addresses: `ALL = 255`, `MONITOR = 254`,
+`IDS = 254`, `NOBODY = -1`. Bit by bit: docs/wire.md.
 
 Inputs and reports
 ==================
@@ -343,6 +343,8 @@ Constants and settings
 |                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
 | `COPIES_MORE = 4`                              | decision 0049: of the request of who takes over |
+| `FAINT_DB = 2`                                 | decision 0052: so much below `min_rssi` a link  |
+|                                                | is faint                                        |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
 | `TIME = 1073741823`, `TICKS_MAX = 32767`       | clocks wrap at 2^30; longest suspicion          |

@@ -23,6 +23,7 @@ SOURCE_ROUTE = 8  # the payload begins with the rest of the route: its length, t
 DETOURED = 16  # graph forwarding: the payload ends with the failed nodes, then their number
 PRIORITY = 32
 FIRST = 64  # first packet since its origin switched on
+WEAK = 64  # of a RESPONSE: it came over a link that is too faint to rely on
 PARITY = 128  # turns over with every end-to-end retry
 
 # Addresses.

@@ -13,9 +13,10 @@ from innervate.networks.mesh.protocol.constants import (
     REQUEST,
     ROUND,
     TABLE_FREE,
+    WEAK,
     WHOLE_GRAPH,
 )
-from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, signed8
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.protocol.paths import (
@@ -35,6 +36,7 @@ from innervate.networks.mesh.protocol.search import is_edge
 IDLE = 0
 COLLECTING = 1
 JITTER_UNIT_US = 10_000
+FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
 COPIES_MORE = 4  # of the request of who takes over: the channel is full of what looks for the dead
 
 
@@ -121,6 +123,11 @@ def start_round(node, gate, params, now, out):
     kick(node, params, now, out)
 
 
+def is_faint(params, frame):
+    """1 if a link that a response came by is too faint to rely on."""
+    return frame.flags & WEAK != 0 or frame.rssi < params.min_rssi - FAINT_DB
+
+
 def on_response(node, gate, params, frame, out):
     """A discovery response has reached us."""
     if frame.length < 4 or frame.body[0] != node.epoch:
@@ -129,9 +136,13 @@ def on_response(node, gate, params, frame, out):
         return
     if frame.table_ver == 0:
         note_lost_table(gate, frame.origin)
-    note_path(gate, params, frame, node.number)
-    if trusts_lists(params):
+    loudest = params.min_rssi - 1
+    if frame.length > 5:
         note_list(gate, params, frame, 4, frame.body[3] & 15)
+        loudest = signed8(frame.body[5])
+    # A faint way counts for who hears nobody well, and tells of one that it hears as faintly.
+    if loudest < params.min_rssi or not is_faint(params, frame):
+        note_path(gate, params, frame, node.number)
 
 
 def collect(node, gate, params, now, out):

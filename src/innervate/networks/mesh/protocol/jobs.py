@@ -176,12 +176,10 @@ def queue_part(node, gate, params, now, s, index, out):
     add8(node, i, far + 1)
     at = node.number
     add8(node, i, at)
-    first = NONE
     for hop in range(far):
         at = route_step(node, gate, params, at, s, hop)
         add8(node, i, at)
-        if hop == 0:
-            first = at
+    first = node.q_body[i * node.q_room + 2]
     add8(node, i, node.epoch)
     add16(node, i, gate.version)
     add8(node, i, index << 4 | gate.job_count[s])
@@ -208,14 +206,13 @@ def route_step(node, gate, params, at, s, hop):
 def on_ack(node, gate, params, now, frame, out):
     """A node says which parts it has."""
     s = frame.origin
-    if frame.length < 5 or frame.body[0] != node.epoch or s >= params.nodes:
+    if frame.length < 5 or frame.body[0] != node.epoch:
         return
     if get16(frame, 1) != gate.version or gate.job[s] == CURRENT:
         return
     gate.job_parts[s] = gate.job_parts[s] | get16(frame, 3)
-    if gate.job_count[s] and gate.job_parts[s] & all_parts(gate.job_count[s]) == all_parts(
-        gate.job_count[s]
-    ):
+    whole = all_parts(gate.job_count[s])
+    if whole and gate.job_parts[s] & whole == whole:
         gate.job[s] = CURRENT
         gate.mark_a[s] = gate.job_a[s]
         gate.mark_b[s] = gate.job_b[s]

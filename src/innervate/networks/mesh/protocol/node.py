@@ -36,7 +36,6 @@ from innervate.networks.mesh.protocol.constants import (
     GRAPH,
     HANDED_UP,
     HEADER_BYTES,
-    JOBS,
     MESSAGE,
     POSITION,
     REPORT_UNKEYED,
@@ -47,9 +46,9 @@ from innervate.networks.mesh.protocol.constants import (
     SAMPLE,
     SENT,
     TABLE,
-    TABLE_ACK,
     TICK,
     TX,
+    WEAK,
 )
 from innervate.networks.mesh.protocol.duplicates import (
     age,
@@ -59,7 +58,14 @@ from innervate.networks.mesh.protocol.duplicates import (
     retry_unreachable,
 )
 from innervate.networks.mesh.protocol.frames import clear_queue, get16, is_routed, is_sound
-from innervate.networks.mesh.protocol.gateway import collect, lead, on_response, reset, tick
+from innervate.networks.mesh.protocol.gateway import (
+    collect,
+    is_faint,
+    lead,
+    on_response,
+    reset,
+    tick,
+)
 from innervate.networks.mesh.protocol.hop import learn_late, learn_trip, widen
 from innervate.networks.mesh.protocol.jobs import on_ack, retry_jobs
 from innervate.networks.mesh.protocol.messages import (
@@ -271,10 +277,12 @@ def on_upward(node, gate, params, now, frame, out):
     if not node.leading:
         i = take_over(node, now, CONTROL, frame, out)
         if i >= 0:
+            if is_faint(params, frame):
+                node.q_flags[i] = node.q_flags[i] | WEAK
             send_up(node, params, now, i, out)
     elif frame.kind == RESPONSE:
         on_response(node, gate, params, frame, out)
-    elif frame.kind == TABLE_ACK:
+    else:
         on_ack(node, gate, params, now, frame, out)
 
 
@@ -294,7 +302,7 @@ def on_input(node, gate, params, now, kind, item, out):
 
 
 def on_timer(node, gate, params, now, timer, out):
-    """One of six waits is over."""
+    """One of six waits is over; the last of them is JOBS."""
     if timer == TX:
         send_all(node, params, now, out)
     elif timer == ACK_WAIT:
@@ -308,11 +316,10 @@ def on_timer(node, gate, params, now, timer, out):
         on_tick(node, gate, params, now, out)
     elif timer == RETRY:
         on_retry(node, params, now, out)
-    elif timer == JOBS:
-        if node.leading:
-            retry_jobs(node, gate, params, now, out)
-        elif node.rank >= 0:
-            guard(node, gate, params, now, out)
+    elif node.leading:
+        retry_jobs(node, gate, params, now, out)
+    elif node.rank >= 0:
+        guard(node, gate, params, now, out)
 
 
 def on_tick(node, gate, params, now, out):

@@ -239,14 +239,12 @@ def mark_table(gate, params, start):
 
 def note_path(gate, params, frame, me):
     """What a packet that climbed with acknowledgements proves: links both ways."""
+    b = me
     for k in range(frame.path_len):
-        a = frame.path[k]
-        b = me
-        if k + 1 < frame.path_len:
-            b = frame.path[k + 1]
-        if a < params.nodes and b < params.nodes and a != b:
-            note_heard(gate, params, a, b)
-            note_heard(gate, params, b, a)
+        a = frame.path[frame.path_len - 1 - k]
+        note_heard(gate, params, a, b)
+        note_heard(gate, params, b, a)
+        b = a
 
 
 def note_list(gate, params, frame, at, count):
