@@ -229,8 +229,17 @@ def of_a_pool(play, *arguments):
 def test_who_comes_alone_gets_through_and_all_others_collide():
     alone = of_a_pool(chance.pool, ALWAYS[1], 10, 50, 10)
     assert alone.end.tolist() == [60 * k + 50 for k in range(8)]
-    together = of_a_pool(chance.pool, ALWAYS[2], 10, 50, 10)
-    assert together.counts[[DONE, COLLISIONS]].tolist() == [0, 8 * chance.STEPS_PER_PACKET]
+    for play, *given in ((chance.pool, ALWAYS[2], 10, 50, 10),
+                         (chance.persist, ALWAYS[2], ALWAYS[0], draws.UNIT, 10, 50)):  # fmt: skip
+        together = of_a_pool(play, *given)
+        assert together.counts[[DONE, COLLISIONS]].tolist() == [0, 8 * chance.STEPS_PER_PACKET]
+
+
+def test_of_a_finite_population_whoever_has_a_packet_sends_it():
+    recorder = new_recorder(POISSON, 3, 1, draws.generator(1, "three"))
+    recorder.arrivals[:] = recorder.offer[:] = [900, 7, 300]
+    chance.attempt(recorder, draws.UNIT, 10, 50, 10)
+    assert (recorder.station[0], recorder.offered[0], recorder.end[0]) == (1, 7, 60)
 
 
 def test_who_waits_sends_in_the_next_slot_that_the_draw_allows():
