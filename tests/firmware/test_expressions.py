@@ -13,7 +13,7 @@ from innervate.firmware.errors import Refused
 from innervate.firmware.packed import Packed
 from innervate.live.board import Role
 
-DRAWN, WRITTEN, CALLS = 100, 40, 60
+DRAWN, WRITTEN, CALLS = 90, 50, 60
 NUMBER = (-(1 << 31), (1 << 31) - 1, "number", "")
 STATE = (
     ("a", 0, -40, 40, "number", ""), ("b", 0, -40, 40, "number", ""),
@@ -151,7 +151,9 @@ HAND = (
     "1 if (state.p if state.q else state.a > 0) else 5", "max(state.a, state.b, state.n, 3)",
     "min(state.a, max(state.b, -3), 7)", "abs(state.a - state.b)", "state.list[state.n & 3] - 2",
     "state.r[state.n & 1]", "(state.p and state.q or state.a > 2)", "(state.a > 2) == state.p",
-    "state.n // 6",
+    "state.n // 6", "state.a * (state.n // 4)", "state.n // 4 * state.a", "state.n % 4 * 3",
+    "state.a * (state.n % 8)", "state.n * 3 // 4", "state.a * (state.b * 3)",
+    "state.n // (FOUR // 2)", "state.n - state.n // 4", "(state.n - 1) // 2",
 )  # fmt: skip
 
 
