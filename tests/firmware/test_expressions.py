@@ -115,11 +115,23 @@ def passes(state, now):
     return first * 10 + second
 
 
+def total(values, count):
+    """Doc."""
+    found = 0
+    for i in range(count):
+        found += values[i]
+    return found
+
+
+def twins(state, now):
+    """Doc."""
+    return total(state.list, 4) * 10 + total(state.r, 2)
+
+
 def unused(state, now):
     """Doc."""
     for _ in range(3):
         state.half = state.half & 63
-    pass
     return 0
 
 
@@ -136,7 +148,7 @@ def either(state, now):
         return found + 100
 '''
 NAMES = ("early", "last", "counted", "set_inside", "grows", "while_", "narrow", "passes",
-         "unused", "either")  # fmt: skip
+         "twins", "unused", "either")  # fmt: skip
 HAND = (
     "state.a - (state.b - state.n)", "state.a - state.b - state.n", "state.a - -state.b",
     "state.n // 4 // 2", "state.n // (state.m // 8 + 1)", "state.n % state.m % 3",
@@ -273,6 +285,7 @@ REFUSED = {
     "state.r[0] = state.a - counts(state)": ORDER,
     "state.r[0] = counts(state) * counts(state)": ORDER,
     "state.r[0] = max(counts(state), 3, state.a)": ORDER,
+    "state.r[0] = sets(state) + sets(state)": ORDER,
     "state.r[0] = state.a < counts(state)": ORDER,
     "state.r[0] = 1 < sets(state) < 3": "a chain of comparisons with a call that changes things",
     "state.r[0] = now or timer": "`or` of what is not 0 or 1 is not in the dialect",
@@ -332,6 +345,43 @@ def test_what_c_could_not_say_alike_is_refused_with_why(tmp_path, monkeypatch, b
 @pytest.mark.parametrize("body", TAKEN)
 def test_what_c_can_say_alike_is_taken(tmp_path, monkeypatch, body):
     assert "own_on_timer" in of_body(tmp_path, monkeypatch, body).source("own.h")
+
+
+LOOKS = '''"""Doc."""
+
+from {other} import on_input
+
+
+def on_frame(state, params, now, port, frame, out):
+    """Doc."""
+    state.a = look(frame) + on_input(state)
+
+
+def look(record):
+    """Doc."""
+    return record.x
+'''
+
+
+def test_what_is_made_for_two_kinds_of_records_is_called_after_them(tmp_path, monkeypatch):
+    text = LOOKS.replace("from {other} import on_input\n\n\n", "").replace(" + on_input(state)", "")
+    text += '\n\ndef on_input(state, params, now, kind, item, out):\n    """Doc."""\n'
+    role = role_of(tmp_path, monkeypatch, "own_kinds", text + "    state.b = look(item)\n")
+    source = Library(role._replace(item=FRAME[:1]), {}).source("own.h")
+    assert "own_look_frame(const own_frame_t *record)" in source
+    assert "own_look_item(const own_item_t *record)" in source
+    assert "own_look_item(item);" in source
+
+
+def test_handlers_are_those_of_the_module_itself(tmp_path, monkeypatch):
+    """What it calls may have such a name, too."""
+    (tmp_path / "own_other.py").write_text(
+        '"""Doc."""\n\n\ndef on_input(state):\n    """Doc."""\n    return state.a\n'
+    )
+    role = role_of(tmp_path, monkeypatch, "own_calls", LOOKS.format(other="own_other"))
+    made = Library(role, {})
+    assert [one.name for one in made.program.handlers] == ["on_frame"]
+    assert "static int32_t own_on_input(const own_state_t *state)" in made.source("own.h")
 
 
 def test_functions_that_call_themselves_and_handlers_of_other_arguments_are_refused(
