@@ -32,6 +32,18 @@ def through(state):
     return 1
 
 
+def bump(values, at):
+    """Doc."""
+    values[at] = values[at] + 1
+    return values[at]
+
+
+def bumps(state):
+    """Doc."""
+    values = state.list
+    return bump(values, 0)
+
+
 def nothing(state):
     """Doc."""
     state.a = 1
@@ -65,6 +77,11 @@ REFUSED = {
     "state.r[0] = max(counts(state), 3, state.a)": ORDER,
     "state.r[0] = sets(state) + sets(state)": ORDER,
     "state.r[0] = through(state) + state.list[0]": ORDER,
+    "state.r[0] = bump(state.list, 0) + state.list[0]": ORDER,
+    "state.r[0] = state.list[0] + bump(state.list, 0)": ORDER,
+    "values = state.list\nstate.r[0] = bump(values, 0) + state.list[0]": ORDER,
+    "values = state.list\nstate.r[0] = bump(state.list, 0) + values[0]": ORDER,
+    "state.r[0] = bumps(state) + state.list[0]": ORDER,
     "state.r[0] = state.a < counts(state)": ORDER,
     "state.r[0] = 1 < sets(state) < 3": "a chain of comparisons with a call that changes things",
     "state.r[0] = now or timer": "`or` of what is not 0 or 1 is not in the dialect",
@@ -104,7 +121,8 @@ TAKEN = (
     "state.a = both(state)", "state.r[0] = counts(state) + state.b", "sets(state)",
     "state.r[0] = sets(state) + looks(state)", "state.a = 2147483647", "state.a = -2147483647",
     "state.r[0] = 1 < looks(state) < 3", "state.r[0] = state.p or now < 3 or timer",
-    "state.r[0] = state.a + looks(state)",
+    "state.r[0] = state.a + looks(state)", "state.r[0] = bump(state.list, 0) + state.a",
+    "state.r[0] = bumps(state) + looks(state)",
 )  # fmt: skip
 
 
