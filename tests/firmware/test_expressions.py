@@ -12,7 +12,7 @@ from innervate.firmware.emit import Library
 from innervate.firmware.packed import Packed
 from innervate.live.board import Role
 
-DRAWN, WRITTEN, CALLS = 90, 50, 60
+DRAWN, WRITTEN, CALLS = 90, 50, 400
 NUMBER = (-(1 << 31), (1 << 31) - 1, "number", "")
 STATE = (
     ("a", 0, -40, 40, "number", ""), ("b", 0, -40, 40, "number", ""),
@@ -114,6 +114,14 @@ def passes(state, now):
     return first * 10 + second
 
 
+def asked_once(state, now):
+    """Doc."""
+    found = 0
+    for i in range(bump(state.list, 1)):
+        found += i + 1
+    return found * 10 + state.list[1]
+
+
 def total(values, count):
     """Doc."""
     found = 0
@@ -141,13 +149,13 @@ def either(state, now):
     else:
         found = state.b
     if found < 0:
-        if state.q:
+        if state.n > 20:
             return found - 100
     else:
         return found + 100
 '''
 NAMES = ("early", "last", "counted", "set_inside", "grows", "while_", "narrow", "passes",
-         "twins", "unused", "either")  # fmt: skip
+         "asked_once", "twins", "unused", "either")  # fmt: skip
 HAND = (
     "state.a - (state.b - state.n)", "state.a - state.b - state.n", "state.a - -state.b",
     "state.n // 4 // 2", "state.n // (state.m // 8 + 1)", "state.n % state.m % 3",

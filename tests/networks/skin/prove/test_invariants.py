@@ -101,6 +101,8 @@ FEASIBLE = [
     ({"dist": [2, 3, 7, INFINITY]}, {}, "I6"), ({"dist": [2, 3, 7, INFINITY], "pf": [0, 0, ONE, 0]},
                                                 {}, ""),
     ({"pf": [ONE, 0, 0, 0]}, {}, "I7"), ({"pf": [ONE - 1, 0, 0, 0]}, {}, ""),
+    (LOST | {"pf": [ONE, 0, 0, 0]}, {}, ""),
+    ({"dist": [INFINITY, 3, INFINITY, INFINITY]}, {0: (0, 0, 0, 0)}, "I6"),
     # What is heard counts though its port is broken.
     ({"pf": [0, ONE, 0, 0], "dist": [2, 2, INFINITY, INFINITY]}, {}, "I4"),
     ({"pf": [0, ONE, 0, 0], "heard": [1, 0, 0, 0], "dist": [2, 2, INFINITY, INFINITY]}, {}, ""),
@@ -115,7 +117,9 @@ def test_what_breaks_an_invariant_of_feasible(cell, ghosts, names):
 @pytest.mark.parametrize(("cell", "names"), [
     ({}, ""), ({"soon": 1}, ""), ({"sq_own": 4}, "I3"), ({"sq": [4, 5, 0, 0]}, "I3"),
     ({"fd_dist": 4}, "I3"), ({"fd_sq": 4}, "I3"),
-    ({"fd_sq": 4, "dist": [INFINITY - 1, 3, INFINITY, INFINITY]}, ""), (LOST | {"sq_own": 9}, ""),
+    ({"fd_sq": 4, "dist": [INFINITY - 1, 3, INFINITY, INFINITY]}, ""),
+    ({"fd_sq": 4, "dist": [INFINITY, 3, INFINITY, INFINITY]}, ""),
+    ({"fd_sq": 4, "dist": [INFINITY - 2, 3, INFINITY, INFINITY]}, "I3"), (LOST | {"sq_own": 9}, ""),
 ])  # fmt: skip
 def test_what_a_cell_with_triggered_updates_would_announce_is_not_nearer(cell, names):
     """What is announced is a hop farther than the parent; as far as can be is no way at all."""
