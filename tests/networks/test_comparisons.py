@@ -5,6 +5,7 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
+from innervate.network import networks
 from innervate.networks.babel import comparison as babel
 from innervate.networks.babel.measures import measures
 from innervate.networks.babel.protocol.constants import REPORT_DROP, REPORT_LINK, REPORT_ROUTE
@@ -120,3 +121,18 @@ def test_what_a_run_of_babel_measures():
 @pytest.mark.parametrize(("rank", "far"), [(256, 0.0), (384, 0.5), (768, 2.0), (INFINITE, -1.0)])
 def test_how_far_a_node_of_rpl_is_from_the_root(rank, far):
     assert depth(Of(rank=rank), Of(step=256)) == far
+
+
+@pytest.mark.parametrize("mark", ["key_kind", "link_type"])
+def test_no_two_networks_have_the_same_mark(mark):
+    marks = [getattr(one, mark) for one in networks().values() if getattr(one, mark)]
+    assert len(marks) >= 5
+    assert len(set(marks)) == len(marks)
+
+
+def test_rpl_and_flooding_lie_over_a_channel_that_is_sensed_and_rpl_shows_how_far_a_node_is():
+    nets = networks()
+    assert [nets[name].over for name in ("rpl", "flooding", "babel")] == ["csma", "csma", ""]
+    assert [nets[name].medium for name in ("rpl", "flooding", "babel")] == [
+        "field", "field", "cables"]  # fmt: skip
+    assert list(nets["rpl"].shows) == ["distance to the root"]
