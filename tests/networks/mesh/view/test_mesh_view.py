@@ -11,7 +11,7 @@ from innervate.networks.mesh.scenario.profiles import GOOD_CDB
 from innervate.networks.mesh.view import view as room
 from innervate.networks.mesh.view.view import MeshView
 from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
-from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
+from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, HELD, OFF, ON_AIR
 from innervate.web.engine import engine_of
 from innervate.web.errors import Refused
 from innervate.web.history import LOG, History
@@ -115,6 +115,9 @@ def test_airtime_is_the_share_of_the_time_since_the_last_point(view):
     assert view.arrays(False)["load"].tolist() == [0, 0.09, 0, 0.03, 0]  # three tenths of it
     noted(view, (), (), until_us=200_000)
     assert view.points()["airtime"] == 0.0
+    noted(view, (), [{"time": 200_000, "end": 220_000, "node": 1}], until_us=240_000)
+    assert view.points()["airtime"] == 50.0
+    view.memory.load = np.array([0, 0.063, 0, 0.021, 0])
     assert view.memory.load.tolist() == pytest.approx([0, 0.063, 0, 0.021, 0])
 
 
@@ -343,3 +346,26 @@ def test_on_a_channel_there_are_no_links_to_cut(view):
     assert view.can == ("cut", "heal", "kill", "revive")
     team = scenario.plan(scenario.load("mesh-team"))
     assert MeshView(engine_of(team), History()).can == ("kill", "revive")
+
+
+def test_a_fault_that_hurts_nobody_is_got_over_as_it_is_told(view):
+    view.engine.given = [MeshFault(500, CUT, 1, 2, 0, 0)]
+    view.engine.now_us = 501
+    have_ways(view, **WELL)
+    assert [text for _, text, _ in noted(view, until_us=501)] == ["link n1 - n2 cut"]
+    assert view.memory.recovery.recovered_ms == 0.0
+
+
+def test_what_came_later_is_forgotten_where_one_goes_back(view):
+    later = {"time": 900, "end": 950, "node": 1, "kind": c.DATA, "link_dst": 2}
+    early = later | {"time": 90, "end": 95}
+    noted(view, (), [early, later], until_us=1000)
+    view.engine.now_us = 500
+    view.forget(view.remember())
+    (kept,) = view.recorder._parts["sent"]
+    assert kept["time"].tolist() == [90]
+
+
+def test_frames_that_wait_are_not_on_the_air(view):
+    view.engine.world.air["state"][:2] = (HELD, COMMITTED)
+    assert view.arrays(True)["flights"] == []
