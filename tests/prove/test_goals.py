@@ -9,6 +9,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, SEND
 from innervate.prove import execute
 from innervate.prove.check import check
+from innervate.prove.errors import ProveError
 from innervate.prove.steps import RANGES, ROOM, SENT, Goal, Stage, own_goals, room, sent
 
 STATE = (("a", 0, -5, 200, "x", "one"), ("list", 4, 0, 9, "x", "four"))
@@ -130,6 +131,28 @@ def in_a_choice(s, n, m, out):
 def in_the_other(s, n, m, out):
     return 0 if n >= m else s.list[n]
 
+def fill(out):
+    report(out, 1, 2, 3)
+    report(out, 1, 2, 3)
+
+def by_calls(s, n, m, out):
+    if n > 1:
+        fill(out)
+    else:
+        fill(out)
+    report(out, 1, 2, 3)
+
+def undeclared(s, n, m, out):
+    s.b = 1
+
+def behind_returns(s, n, m, out):
+    if m > 2:
+        if n > 3:
+            return 0
+    elif n > 3:
+        return 0
+    return s.list[n]
+
 def behind_break(s, n, m, out):
     for i in range(8):
         if i == m:
@@ -186,8 +209,14 @@ def test_a_goal_holds_up_to_its_edge_and_not_beyond(name, goal, holds, beyond):
         assert any(one.startswith(goal) for one in refuted(name, ends)), ends
 
 
-def test_what_fills_an_outbox_on_two_ways_needs_room_for_one():
-    assert refuted("one_of_two", (0, 3)) == set()
+@pytest.mark.parametrize("name", ["one_of_two", "by_calls"])
+def test_what_fills_an_outbox_on_two_ways_needs_room_for_one(name):
+    assert refuted(name, (0, 3)) == set()
+
+
+def test_a_field_that_is_not_declared_is_told():
+    with pytest.raises(ProveError, match="s declares no field b"):
+        played("undeclared", (0, 3))
 
 
 GUARDED = ("in_an_if", "in_a_call", "behind_and", "behind_or", "in_a_choice", "in_the_other",
@@ -199,6 +228,10 @@ def test_what_is_not_come_to_need_not_hold(name):
     assert refuted(name, (0, 9), m=(0, 4)) == set()
     (bad,) = refuted(name, (0, 9), m=(0, 5))
     assert bad.startswith(INDEX)
+
+
+def test_what_has_returned_goes_on_nowhere():
+    assert refuted("behind_returns", (0, 9)) == set()
 
 
 def test_every_field_that_leaves_its_range_is_told():
