@@ -131,6 +131,10 @@ def in_a_choice(s, n, m, out):
 def in_the_other(s, n, m, out):
     return 0 if n >= m else s.list[n]
 
+def sends_some(s, n, m, out):
+    if n < 4:
+        send(out, n, 0, 0)
+
 def fill(out):
     report(out, 1, 2, 3)
     report(out, 1, 2, 3)
@@ -207,6 +211,36 @@ def test_a_goal_holds_up_to_its_edge_and_not_beyond(name, goal, holds, beyond):
     assert refuted(name, holds) == set()
     for ends in beyond:
         assert any(one.startswith(goal) for one in refuted(name, ends)), ends
+
+
+def test_what_is_not_sent_may_be_anything():
+    assert refuted("sends_some", (0, 9)) == set()
+
+
+def test_a_clock_shows_any_time():
+    clock = Stage(KNOWN, FRAME, ROOM_MOST).clock()
+    assert (clock.low, clock.high) == (0, MASK30)
+
+
+def test_a_branch_is_taken_by_whichever_machine_comes_there():
+    step, other = played("in_an_if", (0, 9)), played("in_an_if", (0, 9)).machine
+    alone = step.all_ways()
+    other.ways[("elsewhere", 1, True)] = []
+    step.others = (other,)
+    assert {way: len(guards) for way, guards in step.all_ways().items()} == {
+        ("elsewhere", 1, True): 0, **{way: 2 * len(guards) for way, guards in alone.items()}
+    }  # fmt: skip
+
+
+def test_of_goals_that_do_not_hold_the_first_is_told_if_one_is_enough():
+    step = played("adds", (0, 9))
+    step.goals = [Goal("holds", step.terms.true), Goal("not", step.terms.false),
+                  Goal("nor this", step.terms.false)]  # fmt: skip
+    for singly in (False, True):
+        step.singly = singly
+        assert [bad.goal for bad in check(step, first_only=True).refuted] == ["not"]
+        assert [bad.goal for bad in check(step).refuted] == ["not", "nor this"]
+    assert check(step).wall_s > 0
 
 
 @pytest.mark.parametrize("name", ["one_of_two", "by_calls"])
