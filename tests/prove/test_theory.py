@@ -90,6 +90,8 @@ def test_a_theory_is_told_how_far_it_is_and_may_be_stopped():
     assert told == [("name: in_an_if", 0, 2), ("name: in_an_if", 1, 2)]
     stopped = prove(claim, lambda what, number, of: number == 1)
     assert (stopped.ended, len(stopped.checked), stopped.is_as_expected) == ("stopped", 1, False)
+    early = prove(theory(never, step()), lambda what, number, of: number == 1)
+    assert (early.unreached, early.named) == ([], [])  # what comes later may take it
 
 
 def test_the_first_that_is_refuted_ends_it_where_one_is_enough():
