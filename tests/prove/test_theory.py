@@ -123,6 +123,7 @@ def test_branches_that_nothing_takes_are_named_by_function_line_and_way(
     assert (len(found.named), len(found.unreached)) == (named, 1 - named)
     example = prove(theory(never, is_example=True))
     assert (example.named, example.unreached) == ([], [])
+    assert example.checked[0].reached == set()  # nobody asks
 
 
 def test_a_step_is_touched_by_a_mistake_whose_function_was_asked_for_since():
