@@ -19,6 +19,7 @@ from innervate.networks.mesh.plot.map import (
     pin,
     robot_places,
     roles,
+    symbol,
 )
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR
@@ -57,7 +58,7 @@ def result_of(**changes):
 
 def crossing(crossed_us=15_000_000):
     return Crossing(robot=5, crossed_us=crossed_us, back_us=NEVER, raised_us=crossed_us + 9,
-                    raised_by=5, accepted_us=crossed_us + 99, row=0, hops=2, flooded=False,
+                    raised_by=5, accepted_us=crossed_us + 900_000, row=0, hops=2, flooded=False,
                     warned_us=NEVER, overrun_m=0.1, open=False)  # fmt: skip
 
 
@@ -95,7 +96,7 @@ def test_the_ground_of_a_map(parse):
 
 def test_the_way_of_an_alarm_and_who_flooded_it(parse):
     result = result_of()
-    way = [hop(5, 4), hop(4, ALL, True), hop(3, MONITOR, False)]
+    way = [hop(5, ALL, True), hop(4, 3), hop(3, MONITOR)]
     sent = [*way, hop(1, ALL, True), hop(0, 1)]
     sheet = Sheet(result.plan)
     drawing = field_map(result, sheet, "map", (), Alarmed(sent, way, 10_000_000))
@@ -104,7 +105,7 @@ def test_the_way_of_an_alarm_and_who_flooded_it(parse):
     places = robot_places(result.plan, sheet, way[0].start_us)
     assert places[5] != sheet.node(5)  # it has walked
     gap = sheet.dot + 3
-    ends = [(5, 4), (4, 3), (3, 3)]  # who heard a flood is who sent next; last the monitor
+    ends = [(5, 4), (4, 3), (3, 3)]  # who heard a flood is who sent next, or the monitor
     assert [one.get("d") for one in found["way"]] == [
         svg.arrow(places[a], places[b], gap) for a, b in ends
     ]  # fmt: skip
@@ -118,6 +119,28 @@ def test_crossings_are_numbered_up_to_a_most(parse, texts):
     assert [one.get("d") for one in found["warn"]] == [pin(sheet.of_cm(place)) for place in at]
     assert len(shapes(parse, field_map(result, sheet, "map", some))["warn"]) == CROSSINGS_MAX
     assert "1" in texts(field_map(result, sheet, "map", some[:1]))
+
+
+def test_where_nobody_knows_places_no_crossing_has_one(parse):
+    result, sheet = result_of(), Sheet(plan_of())
+    sheet.metres = False
+    found = shapes(parse, field_map(result, sheet, "map", [crossing()]))
+    assert not {"warn", "walk", "fence"} & set(found)
+
+
+@pytest.mark.parametrize(("role", "size", "ringed"), [
+    ("gateway", 6.5, 0), ("standby", 8, 0), ("gateway and monitor", 6.5, 1), ("robot", 7.5, 0),
+])  # fmt: skip
+def test_shapes_of_nodes(parse, role, size, ringed):
+    drawing = svg.Drawing(100, 100, "one")
+    symbol(drawing, (50, 50), 5.0, role, on=True)
+    found = shapes(parse, drawing)
+    corners = {"standby": [(0, -size), (size, 0), (0, size), (-size, 0)],
+               "robot": [(0, -size), (size, size), (-size, size)]}.get(
+        role, [(-size, -size), (size, -size), (size, size), (-size, size)])  # fmt: skip
+    (shape,) = found["robot" if role == "robot" else "leader"]
+    assert shape.get("d") == svg.polygon(50, 50, corners)
+    assert len(found.get("ringed", [])) == ringed
 
 
 @pytest.mark.parametrize(("most", "named"), [(6, True), (5, False)])
