@@ -1,10 +1,11 @@
 """What is said of a mesh's run, by summaries that are written here."""
 
+import re
 from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.networks.mesh.plot import words
+from innervate.networks.mesh.plot import node_report, words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PLAN = Of(names=["mast", "n1", "n2"])
@@ -89,3 +90,17 @@ def test_who_became_gateway_last():
 ])  # fmt: skip
 def test_what_came_twice(doubled, looped, said):
     assert words._trouble({"duplicates": doubled, "looped": looped}) == said
+
+
+@pytest.mark.parametrize(("count", "folded"), [(40, False), (41, True)])
+def test_nodes_one_by_one_and_many_folded(monkeypatch, count, folded):
+    one = Of(node=0, on=False, neighbours=2, depth=None, version=0, control_bytes=1, forwarded=1,
+             share=0.5, suspected=0)  # fmt: skip
+    top = Of(**vars(one) | {"depth": 0, "on": True, "version": 3})
+    monkeypatch.setattr(node_report, "nodes", lambda _: [one, *[top] * (count - 1)])
+    monkeypatch.setattr(node_report, "roles", lambda _: {0: "robot"})
+    made = node_report.section_of(Of(plan=PLAN))
+    cells = re.findall("<td[^>]*>([^<]*)</td>", made)
+    assert (cells[1], cells[3:5]) == ("robot, off", ["unknown", "none"])
+    assert (cells[10], cells[12:14]) == ("robot", ["0", "3"])
+    assert (f"All {count} nodes" in made) == folded

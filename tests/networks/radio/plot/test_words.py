@@ -52,6 +52,7 @@ def test_what_became_of_packets_of_robots_that_were_off():
         "Not counted: 1 packet of robots that were off or had left at the end.",
         "1 packet waited while its robot was off; delays leave them out.",
     ]
+    assert "while its robot" in words.off_words({"abandoned": 2, "waited_off": 1})[1]
     assert words.off_words({"abandoned": 0, "waited_off": 2}) == [
         "2 packets waited while their robots were off; delays leave them out."
     ]
@@ -138,6 +139,24 @@ def test_of_too_many_that_send_the_first_have_lanes(monkeypatch):
     monkeypatch.setattr(scene, "LANES_MAX", 2)
     on_air = Of(node=np.array([7, 200, 3, 7, 9]))
     assert scene._lanes(result_of(300), on_air, np.arange(5)) == (7, 200)
+
+
+@pytest.mark.parametrize(("served", "last"), [
+    ([(0, 900, 1_900, 1_850), (0, 900, 3_000, 2_950), (1, 1_500, 2_500, 2_450)], 2_450),
+    ([(0, 900, 1_900, 1_850), (1, 1_501, 2_500, 2_450)], 1_850),  # offered after it
+    ([(0, 900, 1_000, 950), (1, 900, 1_001, 990)], 1_500),
+    ([(0, 900, 60_000, 59_000)], 1_000 + 40 * 500), ([], 1_000 + 40 * 500),
+])  # fmt: skip
+def test_a_resolution_ends_as_all_who_waited_are_served(monkeypatch, served, last):
+    """The first of three groups that collides is on the air from 1000 to 1500 us."""
+    monkeypatch.setattr(scene, "PACKETS_MAX", 40)
+    monkeypatch.setattr(scene, "air", lambda _: Of(start=np.array([1])))
+    struck = Of(collision=np.array([False, True, True]), start=np.array([0, 1_000, 7_000]),
+                end=np.array([500, 1_500, 8_000]))  # fmt: skip
+    monkeypatch.setattr(scene, "groups", lambda *_: struck)
+    monkeypatch.setattr(scene, "successes", lambda _: packets(*served))
+    edge = max(round(scene.MARGIN * (last - 1_000)), 100)
+    assert scene.resolution(result_of()) == (1_000 - edge, last + edge, 1_000)
 
 
 def test_what_is_noted_of_a_stretch():
