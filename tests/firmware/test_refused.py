@@ -44,6 +44,16 @@ def bumps(state):
     return bump(values, 0)
 
 
+def counted(state):
+    """Doc."""
+    return counts(state)
+
+
+def looked(state):
+    """Doc."""
+    return looks(state)
+
+
 def nothing(state):
     """Doc."""
     state.a = 1
@@ -72,6 +82,8 @@ REFUSED = {
     "state.r[0] = counts(state) + looks(state)": ORDER,
     "state.r[0] = looks(state) + counts(state)": ORDER,
     "state.r[0] = counts(state) + state.a": ORDER,
+    "state.r[0] = counted(state) + state.a": ORDER,
+    "state.r[0] = looked(state) + counted(state)": ORDER,
     "state.r[0] = state.a - counts(state)": ORDER,
     "state.r[0] = counts(state) * counts(state)": ORDER,
     "state.r[0] = max(counts(state), 3, state.a)": ORDER,
