@@ -1,5 +1,8 @@
 """What pages are shown of a radio team, by tables that are written here; nothing is run."""
 
+from collections import namedtuple
+from types import SimpleNamespace as Of
+
 import numpy as np
 import pytest
 
@@ -140,7 +143,7 @@ def test_switches_and_what_is_refused(view):
     made = view.fault(Revive(1))
     assert (made.action, made.node, view.takes(made)) == (JOIN, 1, False)
     for command, words in ((Kill(1), "is off already"), (Revive(0), "this station is on"),
-                           (Kill(5), "station"), (Cut(0), "no links to cut")):  # fmt: skip
+                           (Kill(5), "no station 5"), (Cut(0), "no links to cut")):  # fmt: skip
         with pytest.raises(Refused, match=words):
             view.fault(command)
 
@@ -157,6 +160,9 @@ def test_a_headline_is_of_what_is_known_now(view, monkeypatch, now_us, complete,
     view.headline()
     assert [one.ended for one in seen] == [ended] * 2
     assert [one.stations_wrong for one in seen] == [(), (1, 3)]
+
+
+FACTS = namedtuple("Facts", "wrong bounds stations_wrong")((), {}, ())
 
 
 class Said(live.RadioState):
@@ -186,3 +192,27 @@ def test_for_how_long_nothing_was_delivered_is_noted():
     view._still.note = lambda now_us, words: (now_us, list(words))
     view.note(state, 77, told)
     assert state.still_ms == (77, [told[0]])
+
+
+def test_running_stations_are_judged_by_what_those_that_are_on_say(monkeypatch):
+    seen = []
+    monkeypatch.setattr(live, "of_stations", lambda *given: given)
+    monkeypatch.setattr(live, "headline", seen.append)
+    state = Said({"timing": "exact"}, None, {"timing": "exact"})
+    state.map.places = [Of(node=node) for node in (4, 5, 6)]
+    state.told, state.still_ms = {4: state.words[0], 6: state.words[2]}, 7.0
+    state.judge()
+    assert seen == [({0: state.words[0], 2: state.words[2]}, 3, (1,), 7.0, "exact")]
+    assert live.RadioState.is_off_when_cut  # over the air nobody is half cut off
+
+
+def test_a_headline_knows_of_faults_that_were_given_by_hand(view, monkeypatch):
+    def facts(*_, faults, ended):
+        return FACTS._replace(wrong=(faults, ended))
+
+    seen = []
+    monkeypatch.setattr("innervate.networks.radio.view.view.headline", seen.append)
+    monkeypatch.setattr("innervate.networks.radio.view.view.facts", facts)
+    view.engine.given = ["one"]
+    view.headline()
+    assert seen[0].wrong == (["one"], False)
