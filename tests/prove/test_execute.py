@@ -57,7 +57,7 @@ def works(s, n):
     s.list[0] = min(s.list[1], n, 2)
     s.list[2] = max(n - 3, s.list[3] - 6, 0)
     s.list[1] = abs(n - 2)
-    s.list[3] = (0 < n <= 3) + (False or n == 4) + (True and n != 2)
+    s.list[3] = (1 < n <= 3) + (False or n == 4) + (True and n != 2)
     if n == 0 and s.list[3] > 0 and later(s, n):
         s.list[3] = 9
     return -s.a + ~n * 2 - (3 if n > 2 else s.a & n)
