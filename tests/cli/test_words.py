@@ -10,6 +10,7 @@ import pytest
 
 from innervate.cli import doctor, live, live_status, live_table
 from innervate.cli.capturing import EVENT, Recorder
+from innervate.cli.options import SweepOptions
 from innervate.export import pcapng
 from innervate.export.reading import Capture
 from innervate.live import status
@@ -52,6 +53,28 @@ def test_a_path_is_told_with_what_it_lost(change, end):
     heard = "never" if "heard_s" in change else "1.3 s ago"
     line = f"  port 0: udp b:1, heard {heard}, unsent: full 2, unplugged 1{end}"
     assert live_status.lines(told)[2] == line
+
+
+def test_all_that_is_asked_of_a_sweep_reaches_it():
+    asked = SweepOptions(
+        vary=["a=1"],
+        set_=["b=2"],
+        repeat=3,
+        seed=4,
+        until=["c.ci=5%"],
+        batch=6,
+        paired=["a"],
+        workers=7,
+        engine="threads",
+        dask="tcp://x:1",
+        retry=True,
+    )
+    assert asked.planned == {"vary": ["a=1"], "overrides": ["b=2"], "repeat": 3, "seed": 4,
+                             "until": ["c.ci=5%"], "batch": 6, "paired": ["a"]}  # fmt: skip
+    assert asked.how == {"workers": 7, "kind": "threads", "dask": "tcp://x:1", "retry": True}
+    nothing = {"vary": [], "overrides": [], "until": [], "paired": []}
+    assert SweepOptions().planned == nothing | dict.fromkeys(("repeat", "seed", "batch"))
+    assert not SweepOptions().how["retry"]
 
 
 def points(*states):

@@ -132,6 +132,27 @@ def test_what_is_due_at_once_when_an_engine_stops_never_fires():
     assert stack.fired == []
 
 
+def test_what_was_armed_before_something_sooner_does_not_fire_in_an_engine_that_stopped():
+    async def stopped(stack, engine):
+        for timer, wait_us in ((0, 9_000), (1, 4_000)):
+            stack.arm(timer, wait_us)
+            engine.call(lambda _: None, clock_us())
+        engine.stop()
+
+    stack, _ = run(stopped)
+    assert stack.fired == []
+
+
+def test_what_is_due_at_once_fires_each_time():
+    def again(stack, engine):
+        stack.then = lambda timer: stack.arm(1 - timer, 0) if len(stack.fired) < 4 else None
+        stack.arm(0, 0)
+        engine.call(lambda _: None, clock_us())
+
+    stack, _ = run(again)
+    assert [timer for _, timer in stack.fired] == [0, 1, 0, 1]
+
+
 def test_what_stops_an_engine_while_it_fires_leaves_nothing_armed():
     def stopping(stack, engine):
         def then(timer):

@@ -78,6 +78,7 @@ BROKEN = {
     flooding.node_keeps_a_packet_once: [
         (PLACES, {}, True),
         (PLACES, {"waits": [1] + [0] * 6 + [1]}, False),
+        (PLACES, {"waits": [0] * 6 + [1, 1]}, False),
         (PLACES, {"waits": [1] + [0] * 6 + [1], "origin": [5] + [4] * 7}, True),
         (PLACES, {"waits": [1] + [0] * 6 + [1], "packet": [9] + [8] * 7}, True),
     ],

@@ -9,6 +9,7 @@ from innervate.dialect.plain import Outbox as PlainOutbox
 from innervate.dialect.plain import make
 from innervate.prove.check import check, reached, unreached
 from innervate.prove.errors import ProveError
+from innervate.prove.express import greatest, least
 from innervate.prove.solve import Formulas, Question
 from innervate.prove.steps import Goal, Stage, own_goals
 
@@ -51,6 +52,38 @@ def never(s, n):
 
 def changes(s, n):
     return n > 2 and early(s, n) == 3
+
+def works(s, n):
+    s.list[0] = min(s.list[1], n, 2)
+    s.list[2] = max(n - 3, s.list[3] - 6, 0)
+    s.list[1] = abs(n - 2)
+    s.list[3] = (1 < n <= 3) + (False or n == 4) + (True and n != 2)
+    if n == 0 and s.list[3] > 0 and later(s, n):
+        s.list[3] = 9
+    return -s.a + ~n * 2 - (3 if n > 2 else s.a & n)
+
+def later(s, n):
+    s.list[0] = 7
+    return n == 0
+
+def nested(s, n):
+    total = 0
+    for i in range(4):
+        if i == n:
+            break
+        for j in range(3):
+            if j == 1:
+                continue
+            if j > n + s.a:
+                break
+            total = total + j + 1
+        if total > 5:
+            continue
+        total = total + 10
+    return total
+
+def strange(s, n):
+    return n is 3
 """
 
 
@@ -74,7 +107,7 @@ def plainly(name, values, n):
     return known[name](state, n), [state.a, *state.list]
 
 
-@pytest.mark.parametrize("name", ["least", "early", "changes"])
+@pytest.mark.parametrize("name", ["least", "early", "changes", "works", "nested"])
 @pytest.mark.parametrize("n", range(5))
 def test_a_function_does_what_it_does_in_python(name, n):
     stage, s = stage_of()
@@ -90,6 +123,27 @@ def test_a_function_does_what_it_does_in_python(name, n):
         result, left = plainly(name, values, n)
         assert question.value(terms.as_number(step.result)) == result
         assert [question.value(step.after[key]) for key, _, _ in s.places()] == left
+
+
+def test_the_least_and_the_greatest_of_some_lie_in_a_range_of_their_own():
+    terms = stage_of()[0].terms
+    a, b = terms.unknown("a", -3, 9), terms.unknown("b", 2, 5)
+    for made, ends in ((least(terms, a, b), (-3, 5)), (greatest(terms, a, b), (2, 9))):
+        assert (made.low, made.high) == ends
+
+
+def test_what_is_not_of_the_dialect_is_an_error():
+    stage, s = stage_of()
+    with pytest.raises(ProveError, match=r"strange \(m.py:\d+\): no such comparison"):
+        stage.play("strange", "strange", [s, stage.number(3)], [])
+
+
+def test_both_ways_of_a_choice_are_noted():
+    stage, s = stage_of()
+    step = stage.play("early", "early", [s, stage.terms.unknown("n", 0, 4)], [])
+    line = next(number for number, text in enumerate(SOURCE.splitlines(), 1) if "7 if" in text)
+    assert {(taken, len(guards)) for (_, at, taken), guards in step.all_ways().items()
+            if at == line} == {(True, 1), (False, 1)}  # fmt: skip
 
 
 def test_an_index_that_may_leave_its_array_is_refuted():

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from innervate.prove import execute
 from innervate.prove.answers import Answers
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
@@ -62,10 +63,63 @@ def writes(s, n):
 
 def hides(s, n):
     return writes(s, n)
+
+def hasnt(s, n):
+    for k in range(4):
+        if s.list[k] == n:
+            return 0
+    return 1
+
+def asks_two(s, n):
+    return has(s, n) + hasnt(s, n)
+
+def asks_others(s, n):
+    return has(s, n) + has(s, n + 1)
+
+def wraps(s, n):
+    return has(s, n)
+
+def changed_within(s, n):
+    first = wraps(s, n)
+    s.list[0] = 3
+    return first + wraps(s, n)
+
+def as_it_is(s, n):
+    return n
+
+def far(s, n):
+    near = as_it_is(s, n)
+    return as_it_is(s, n + 20)
+
+def report(out, code, a, b):
+    pass
+
+def draw(s, count):
+    pass
+
+def chances(s, n):
+    return draw(s, 3)
+
+def hopes(s, n):
+    return chances(s, n)
+
+def from_one(s, n):
+    for i in range(1, 40):
+        s.a = s.a + 1
+
+def acts(s, n):
+    for i in range(40):
+        report(s, 1, 2, 3)
+
+def behind(s, n):
+    for i in range(40):
+        s.a = s.a + 1
+    return s.list[s.b]
 """
 NODES = {node.name: node for node in ast.parse(SOURCE).body}
 KNOWN = {
-    name: SimpleNamespace(name=name, node=node, module="m", path="m.py", constants={},
+    name: SimpleNamespace(name=name, node=node, path="m.py", constants={},
+                          module={"report": execute.OUTBOX, "draw": execute.RANDOM}.get(name, "m"),
                           calls={one: one for one in NODES})
     for name, node in NODES.items()
 }  # fmt: skip
@@ -81,17 +135,17 @@ def run(name, machine_of, n=9):
     return Step(name, machine, stage.records, before, after, [*machine.facts], result=result)
 
 
-def looped(name, most=80):
-    """A loop of 40 passes, of which `a` may be anything up to `most` at the head."""
+def looped(name, most=80, least=0, more=40):
+    """A loop of 40 passes, of which `a` and `more` may be anything in these ranges at the head."""
 
     def machine_of(stage):
         made = Induction(KNOWN, stage.terms, Outbox(FIELDS, 4))
         made.looped = name
 
         def vary(state):
-            state.store[stage.records["s"], "a", None] = stage.terms.unknown("a then", 0, most)
+            state.store[stage.records["s"], "a", None] = stage.terms.unknown("a then", least, most)
             if "more" in state.names:
-                state.names["more"] = stage.terms.unknown("more then", 0, 40)
+                state.names["more"] = stage.terms.unknown("more then", 0, more)
 
         made.vary = vary
         return made
@@ -128,13 +182,26 @@ def test_what_a_pass_does_not_keep_is_refuted():
     assert claim(looped("rises"), 3) == ["each", "last"]
 
 
-def test_values_beyond_what_is_taken_for_any_are_refuted():
-    assert claim(looped("rises", most=70), 2) == ["fits"]
+@pytest.mark.parametrize("ends", [{"most": 70}, {"least": 1}, {"more": 39}])
+def test_values_beyond_what_is_taken_for_any_are_refuted(ends):
+    assert claim(looped("rises", **ends), 2) == ["fits"]
+
+
+def test_what_follows_a_loop_is_come_to_behind_its_last_pass():
+    step = looped("behind")
+    (demand,) = [one for one in step.machine.demands if "index" in one.what]
+    assert demand.guard is step.terms.negated(step.machine.passes.is_pass)
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("also", "a pass changes"), ("ends", "ends the loop"), ("unknown", "how many passes")],
+    [
+        ("also", "a pass changes"),
+        ("ends", "ends the loop"),
+        ("unknown", "how many passes"),
+        ("from_one", "how many passes"),
+        ("acts", "a pass acts"),
+    ],
 )
 def test_a_loop_that_cannot_be_taken_so_is_an_error(name, words):
     with pytest.raises(ProveError, match=words):
@@ -153,6 +220,21 @@ def test_the_same_question_has_the_same_answer_while_nothing_that_is_read_change
     assert (check(step).refuted == []) == alike
 
 
+@pytest.mark.parametrize(("name", "of"), [
+    ("asks_two", ["has", "hasnt"]), ("asks_others", ["has"]), ("changed_within", ["wraps"]),
+])  # fmt: skip
+def test_another_question_may_have_another_answer(name, of):
+    step = asked(name, of)
+    t = step.terms
+    step.goals = [Goal("alike", t.negated(t.same(step.result, t.number(1))))]
+    assert len(check(step).refuted) == 1
+
+
+def test_an_answers_range_is_that_of_its_question():
+    step = asked("far", ["as_it_is"])
+    assert (step.result.low, step.result.high) == (20, 29)
+
+
 def test_an_answer_may_be_any_and_no_other():
     step = asked("asks", ["has"])
     t = step.terms
@@ -162,5 +244,6 @@ def test_an_answer_may_be_any_and_no_other():
 
 
 def test_who_does_more_than_to_look_something_up_is_an_error():
-    with pytest.raises(ProveError, match="writes does more"):
-        asked("hides", ["writes"])
+    for name, of in (("hides", "writes"), ("hopes", "chances")):
+        with pytest.raises(ProveError, match=f"{of} does more"):
+            asked(name, [of])

@@ -1,5 +1,6 @@
 """A proof is noted by all that it rests on: whatever is changed, it is done again."""
 
+import os
 from importlib import metadata
 from pathlib import Path
 
@@ -93,3 +94,23 @@ def test_every_file_of_a_proof_has_a_part_in_its_name():
     assert {"check.py", "solve.py", "feasible.py", "fields.py", "outbox.py"} <= {
         path.name for path in named
     }
+
+
+def test_notes_that_were_made_first_are_forgotten_first(tmp_path):
+    assert kept.NOTES_MAX >= 50
+    most = 2 * kept.NOTES_MAX  # a note, and its lock
+    for age in range(most + 1):
+        path = tmp_path / f"{age}"
+        path.touch()
+        os.utime(path, (1000 - age, 1000 - age))
+    kept._write(tmp_path / "new")
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {"new", *(f"{age}" for age in range(most - 1))}
+
+
+def test_where_a_part_ends_has_a_part_in_the_name(monkeypatch):
+    names = set()
+    for parts in ((b"ab", b"c"), (b"a", b"bc"), (b"abc",), (b"abc", b"")):
+        monkeypatch.setattr(kept, "_parts", lambda *_, parts=parts: parts)
+        names.add(kept.name_of("", {}, []))
+    assert len(names) == 4

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from innervate.prove.solve import Formulas, Question
+from innervate.prove.solve import Formulas, Question, width_of
 from innervate.prove.terms import KNOWN, Terms
 
 NUMBERS = (-70_000, -129, -1, 0, 1, 2, 31, 255, 65_535, 1 << 20)
@@ -60,3 +60,35 @@ def test_ranges_decide_what_they_can():
     c = terms.less(a, terms.number(5))
     assert terms.any(c, terms.negated(c)) is terms.true
     assert terms.pick(c, terms.pick(c, a, b), b) is terms.pick(c, a, b)
+
+
+@pytest.mark.parametrize(("low", "high"), [
+    (1, 4), (-3, 3), (0, 5), (2, 9), (-4, 3), (0, 7), (-1, 0), (-8, -5), (1, 2),
+])  # fmt: skip
+def test_an_unknown_is_all_of_its_range_and_nothing_else(low, high):
+    terms = Terms()
+    x = terms.unknown("x", low, high)
+    question = Question(Formulas(), [])
+    is_other = [terms.negated(terms.same(x, terms.number(k))) for k in range(low, high + 1)]
+    assert question.values(*is_other) is None
+    for k in range(low, high + 1):
+        assert question.values(terms.same(x, terms.number(k))) == {"x": k}
+
+
+@pytest.mark.parametrize(("low", "high", "width"), [
+    (0, 0, 1), (0, 1, 2), (0, 7, 4), (0, 8, 5), (-1, 0, 1), (-4, 3, 3), (-5, 3, 4), (-4, 4, 4),
+])  # fmt: skip
+def test_a_number_has_as_many_bits_as_its_range_wants(low, high, width):
+    assert width_of(low, high) == width
+
+
+def test_which_of_some_truths_hold_is_told_in_their_order():
+    terms = Terms()
+    x = terms.unknown("x", 0, 9)
+    less = [terms.less(x, terms.number(k)) for k in (3, 5, 7, 9)]
+    question = Question(Formulas(), [terms.same(x, terms.number(5))])
+    assert question.values() == {"x": 5}
+    assert question.which(less) == [False, False, True, True]
+    assert [question.which([one]) for one in less] == [[False], [False], [True], [True]]
+    assert question.which([]) == []
+    assert question.which(less[:2]) == [False, False]

@@ -1,7 +1,7 @@
 """What is handed out, in which batches, and when a point is done, by an engine that notes it."""
 
 import json
-from concurrent.futures import Future
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future
 
 import pytest
 
@@ -234,3 +234,41 @@ def test_suspects_run_one_at_a_time_before_all_others(conducted):
     made._running.clear()
     assert made._hand_out()
     assert len(engine.batches) == 2 + len(made._running) > 2
+
+
+class Dying(Noting):
+    """Nothing that is handed out is done: whoever asks is told of one worker's death."""
+
+    died = (BrokenExecutor,)
+    renewed = 0
+
+    def submit(self, work, base, jobs):
+        super().submit(work, base, jobs)
+        return Future()
+
+    def renew(self):
+        self.renewed += 1
+
+    def wait(self, running, return_when=None):
+        """The first is lost at once, all others while one waits for all."""
+        ended = list(running)[: 1 if return_when == FIRST_COMPLETED else None]
+        for future in ended:
+            future.set_exception(BrokenExecutor())
+        return set(ended), set(running) - set(ended)
+
+
+@pytest.mark.parametrize(("together", "lost"), [(True, 4), (False, 1)])
+def test_who_falls_with_a_worker_is_run_again_and_the_clock_is_not_begun(
+    conducted, monkeypatch, together, lost
+):
+    engine = Dying()
+    engine.falls_together = together
+    monkeypatch.setattr(scheduler, "wait", engine.wait)
+    made = conducted(engine, repeat=4)
+    made._begin(made.states[0])
+    assert made._hand_out()
+    assert engine.sizes() == [1] * 4
+    made._collect()
+    assert sorted(job.repeat for job in made._suspects) == list(range(lost))
+    assert (len(made._running), engine.renewed) == (4 - lost, 1)
+    assert (made.ran, made._first_ran) == (0, None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 
 from innervate.firmware.facts import Facts
-from innervate.firmware.program import BUILTINS, OUT, Made, Program
+from innervate.firmware.program import BUILTINS, OUT, Made, Program, array_of
 from innervate.firmware.records import Field, name_of
 
 BINARY = {
@@ -60,8 +60,7 @@ class Expressions:
         return name, ATOM
 
     def _Constant(self, node: ast.Constant) -> tuple[str, int]:
-        value = int(node.value)  # type: ignore[arg-type]
-        return str(value), ATOM if value >= 0 else UNARY
+        return str(int(node.value)), ATOM  # type: ignore[arg-type]
 
     def _Attribute(self, node: ast.Attribute) -> tuple[str, int]:
         return f"{self.text(node.value, ATOM)}->{name_of(node.attr)}", ATOM
@@ -188,18 +187,24 @@ class Expressions:
                     what = "one part changes what another reads: give it a line of its own"
                     raise self.made.refuse(node, what)
 
-    def _calls(self, node: ast.AST) -> list[Made]:
-        found = (self.made.calls.get(n) for n in ast.walk(node) if isinstance(n, ast.Call))
-        return [made for made in found if made is not None]
+    def _calls(self, node: ast.AST) -> dict[ast.Call, Made]:
+        calls = self.made.calls
+        return {n: calls[n] for n in ast.walk(node) if isinstance(n, ast.Call) and n in calls}
 
     def _reads(self, node: ast.AST) -> set[str]:
         """Names of fields that an expression looks at."""
-        own = {inner.attr for inner in ast.walk(node) if isinstance(inner, ast.Attribute)}
-        return own.union(*(made.reads for made in self._calls(node)))
+        parts = (inner for inner in ast.walk(node) if isinstance(inner, ast.Attribute | ast.Name))
+        own = set[str]().union(*(array_of(self.made, part) for part in parts))
+        return own.union(*(made.reads for made in self._calls(node).values()))
 
     def _writes(self, node: ast.AST) -> set[str]:
-        """Names of fields that an expression changes."""
-        return set[str]().union(*(made.writes for made in self._calls(node)))
+        """Names of fields that an expression changes, by itself or where it passes an array."""
+        found: set[str] = set()
+        for call, made in self._calls(node).items():
+            found |= made.writes
+            for name, argument in zip(made.arguments, call.args, strict=True):
+                found |= array_of(self.made, argument) if name in made.changed else set()
+        return found
 
     def place(self, node: ast.expr) -> Field | None:
         """The field that an assignment goes to; None for a variable."""

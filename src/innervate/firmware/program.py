@@ -156,6 +156,16 @@ def _passed(kind: Type) -> Type:
     return Type("array", Field(kind.field.type, kind.field.type, 0, low, high, "", ""))
 
 
+def array_of(made: Made, node: ast.expr) -> set[str]:
+    """The name of the field that an argument is, if it is an array of a record."""
+    if isinstance(node, ast.Attribute):
+        return {node.attr}
+    field = (
+        made.types[node.id].field if isinstance(node, ast.Name) and node.id in made.types else None
+    )
+    return set() if field is None else {field.name}
+
+
 def _leave_out(function: ast.FunctionDef, noted: Set[str]) -> None:
     """Take out assignments to fields that only a simulation fills in."""
     for node in ast.walk(function):
@@ -366,12 +376,10 @@ class _Reader:
         made.calls[node] = callee
         for parameter, argument in zip(callee.arguments, node.args, strict=True):
             returned = callee.returns.is_pointer and callee.types[parameter].what == "out"
-            if isinstance(argument, ast.Attribute):  # an array
-                made.reads.add(argument.attr)
+            made.reads |= array_of(made, argument)
             if parameter in callee.changed or returned:
                 made.changed.add(self.root(argument))
-                if isinstance(argument, ast.Attribute):
-                    made.writes.add(argument.attr)
+                made.writes |= array_of(made, argument)
         made.reads |= callee.reads
         made.writes |= callee.writes
         return callee.returns

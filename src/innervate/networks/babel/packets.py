@@ -121,7 +121,7 @@ class Packets:
         until = centiseconds(frame.hello) if frame.hello else 0
         found = pack(">BBHHH", HELLO_TLV, 6, 0, frame.hello_no, until)
         if frame.rxcost:
-            found += self._ihu(frame.rxcost, min(IHU_HELLOS * until, INTERVAL_MAX))
+            found += self._ihu(frame.rxcost, IHU_HELLOS * until)
         return found + self._update(frame) if frame.has_update else found
 
     def _ihu(self, rxcost: int, until: int) -> bytes:

@@ -161,7 +161,7 @@ class Parser:
             self._prefixes[encoding] = prefix
         if flags & ROUTER_ID_FLAG and prefix:
             self._router_id = prefix[-8:].rjust(8, b"\0")
-        is_all = encoding == WILDCARD and metric == INFINITY and not omitted
+        is_all = encoding == WILDCARD and metric == INFINITY
         is_ours = bits == 128 and prefix == self.prefix
         size = 10 + (bits + 7) // 8 - omitted
         if not until or not (is_all or is_ours) or not is_whole(value, size):

@@ -22,7 +22,7 @@ def node_without_a_parent_is_at_infinity(node, params, now):
 
 def node_moves_down_no_further_than_allowed(node, params, now):
     """a rank is above L + MaxRankIncrease"""
-    if node.rank == INFINITE or node.lowest == INFINITE or params.increase == 0:
+    if node.rank == INFINITE or params.increase == 0:
         return True
     return node.rank <= node.lowest + params.increase
 

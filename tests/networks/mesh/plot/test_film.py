@@ -1,6 +1,7 @@
 """A film of a crossing, from rows that are written here: when what is seen, and what is said."""
 
 import re
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,8 +10,9 @@ import pytest
 from innervate import scenario
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import NEVER
-from innervate.networks.mesh.plot import film
+from innervate.networks.mesh.plot import film, report
 from innervate.networks.mesh.plot.sheet import Sheet
+from innervate.networks.mesh.protocol import constants
 from innervate.networks.mesh.protocol.constants import ACK, ALARM, ALL, DATA, FLOOD
 from innervate.web.engine import engine_of
 
@@ -111,6 +113,38 @@ def test_copies_of_the_alarm_are_arrows_that_stay_and_waves(parse):
     assert len(found["wave"]) == 1
     assert {float(node.get("opacity")) for kind in ("way", "way failed") for _, node in found[kind]
             } == {film.STAYS}  # fmt: skip
+
+
+def test_alarms_of_before_are_others_and_a_copy_to_the_monitor_is_a_wave(parse):
+    before = (-8_000, -7_000, 1, 0, ALARM, 0, 1, 1)
+    assert times(seen(parse, [*ROWS, before]), "other")[-1] == [-8.0, -6.4]
+    found = seen(parse, [*ROWS, (50_000, 51_000, 1, constants.MONITOR, ALARM, 0, 1, 1)])
+    assert times(found, "flooder") == [[30.0], [50.0]]
+
+
+@pytest.mark.parametrize(
+    ("accepted", "marks"),
+    [(100_000, ["crossed", "raised", "monitor knows"]), (NEVER, ["crossed", "raised"])],
+)
+def test_words_of_moments_do_not_meet(parse, accepted, marks):
+    at = accepted if accepted == NEVER else CROSSED + accepted
+    result = result_of()
+    made = parse(film.film(result, crossing(accepted_us=at), Sheet(result.plan)))
+    found = [(float(node.get("x")), node.text) for node in made.iter()
+             if node.text in {"crossed", "raised", "monitor knows"}]  # fmt: skip
+    assert [text for _, text in found] == marks
+    assert all(a + 6 * len(text) < b for (a, text), (b, _) in pairwise(found))
+
+
+@pytest.mark.parametrize(("some", "shown"), [
+    ([], None), ([{"raised_us": NEVER, "accepted_us": NEVER}], None),
+    ([{}, {"accepted_us": NEVER}, {"accepted_us": NEVER, "raised_us": CROSSED}], 1),
+    ([{"accepted_us": NEVER, "open": True}, {}], 1),
+    ([{}, {"accepted_us": CROSSED + 99_000, "raised_us": CROSSED}, {}], 1),
+])  # fmt: skip
+def test_shown_is_the_first_that_nobody_heard_of_or_the_slowest(some, shown):
+    made = [crossing(**more) for more in some]
+    assert report.shown_crossing(made) is (None if shown is None else made[shown])
 
 
 def test_the_robot_and_the_monitor_are_marked_from_their_moments_on(parse):

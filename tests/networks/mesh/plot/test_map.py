@@ -1,9 +1,29 @@
-"""Who gets the alarms, by what a scenario says."""
+"""Who gets the alarms, by what a scenario says; and what a map shows of a field."""
+
+from types import SimpleNamespace
 
 import pytest
 
 from innervate import scenario
-from innervate.networks.mesh.plot.map import monitor_of
+from innervate.networks.mesh.analysis.alarms import Crossing
+from innervate.networks.mesh.analysis.fence import position_cm
+from innervate.networks.mesh.analysis.messages import NEVER
+from innervate.networks.mesh.analysis.way import Hop
+from innervate.networks.mesh.plot import map as mesh_map
+from innervate.networks.mesh.plot.map import (
+    CROSSINGS_MAX,
+    Alarmed,
+    field_map,
+    legend,
+    monitor_of,
+    pin,
+    robot_places,
+    roles,
+    symbol,
+)
+from innervate.networks.mesh.plot.sheet import Sheet
+from innervate.networks.mesh.protocol.constants import ALL, MONITOR
+from innervate.plot import svg
 
 NODES = "".join(f"[[node]]\nx_m = {10 * i}\ny_m = 0\n" for i in range(5))
 
@@ -15,3 +35,133 @@ NODES = "".join(f"[[node]]\nx_m = {10 * i}\ny_m = 0\n" for i in range(5))
 def test_alarms_come_to_the_monitor_or_else_to_the_first_gateway(said, monitor):
     text = f"kind = 'mesh'\n{said}radio.reach_m = 30\n{NODES}"
     assert monitor_of(scenario.plan(scenario.loads(text))) == monitor
+
+
+FIELD = {
+    "kind": "mesh", "duration_s": 30.0, "radio": {"reach_m": 40}, "gateway": 0,
+    "standby": [1, 2], "monitor": "n3",
+    "node": [{"name": f"n{i}", "x_m": 25.0 * i, "y_m": 0.0} for i in range(6)],
+    "robot": [{"node": 5, "waypoints": [[125, 0], [125, 100]], "speed_mps": 2.0}],
+    "fence": {"polygon": [[-5, -20], [140, -20], [140, 20], [-5, 20]],
+              "holes": [[[10, 5], [20, 5], [20, 15]]]},
+    "event": [{"at_s": 9.0, "action": "kill", "node": 2}],
+}  # fmt: skip
+
+
+def plan_of(**changes):
+    return scenario.plan(scenario.from_dict({**FIELD, **changes}))
+
+
+def result_of(**changes):
+    return SimpleNamespace(plan=plan_of(**changes), ended_us=30_000_000)
+
+
+def crossing(crossed_us=15_000_000):
+    return Crossing(robot=5, crossed_us=crossed_us, back_us=NEVER, raised_us=crossed_us + 9,
+                    raised_by=5, accepted_us=crossed_us + 900_000, row=0, hops=2, flooded=False,
+                    warned_us=NEVER, overrun_m=0.1, open=False)  # fmt: skip
+
+
+def hop(node, to, flooded=False, at_us=10_000_000):
+    return Hop(at_us, at_us + 1000, node, to, flooded, 1, 1)
+
+
+def shapes(parse, drawing):
+    found = {}
+    for node in parse(drawing).iter():
+        found.setdefault(node.get("class"), []).append(node)
+    return found
+
+
+def test_what_nodes_are_besides_relays():
+    assert roles(plan_of()) == {0: "gateway", 1: "standby", 2: "standby", 3: "monitor", 4: "",
+                                5: "robot"}  # fmt: skip
+    assert roles(plan_of(monitor=0))[0] == "gateway and monitor"
+    bare = plan_of(robot=[], fence=None, monitor="n3")
+    assert roles(bare)[3] == ""  # nobody raises an alarm
+
+
+def test_the_ground_of_a_map(parse):
+    result = result_of()
+    found = shapes(parse, field_map(result, Sheet(result.plan), "map"))
+    # n2 is dead at the end: its two links are gone; a robot's are not drawn.
+    assert (len(found["mesh"]), len(found["mesh gone"])) == (2, 2)
+    assert (len(found["fence"]), len(found["zone"]), len(found["walk"])) == (2, 1, 1)
+    assert (len(found["leader"]), len(found["off"]), len(found["struck"])) == (2, 1, 1)
+    assert (len(found["relay"]), len(found["robot"]), len(found["ringed"])) == (2, 1, 1)
+    assert found["zone"][0].get("d").count("z") == 2
+    early = field_map(result, Sheet(result.plan), "map", (), Alarmed(at_us=8_999_999))
+    assert "struck" not in shapes(parse, early)
+
+
+def test_the_way_of_an_alarm_and_who_flooded_it(parse):
+    result = result_of()
+    way = [hop(5, ALL, True), hop(4, 3), hop(3, MONITOR)]
+    sent = [*way, hop(1, ALL, True), hop(0, 1)]
+    sheet = Sheet(result.plan)
+    drawing = field_map(result, sheet, "map", (), Alarmed(sent, way, 10_000_000))
+    found = shapes(parse, drawing)
+    assert len(found["flooder"]) == 2
+    places = robot_places(result.plan, sheet, way[0].start_us)
+    assert places[5] != sheet.node(5)  # it has walked
+    gap = sheet.dot + 3
+    ends = [(5, 4), (4, 3), (3, 3)]  # who heard a flood is who sent next, or the monitor
+    assert [one.get("d") for one in found["way"]] == [
+        svg.arrow(places[a], places[b], gap) for a, b in ends
+    ]  # fmt: skip
+
+
+def test_crossings_are_numbered_up_to_a_most(parse, texts):
+    result, sheet = result_of(), Sheet(plan_of())
+    some = [crossing(10_100_000 + k * 100_000) for k in range(CROSSINGS_MAX + 3)]
+    found = shapes(parse, field_map(result, sheet, "map", some[:2]))
+    at = [position_cm(result.plan.walks[0], one.crossed_us) for one in some[:2]]
+    assert [one.get("d") for one in found["warn"]] == [pin(sheet.of_cm(place)) for place in at]
+    assert len(shapes(parse, field_map(result, sheet, "map", some))["warn"]) == CROSSINGS_MAX
+    assert "1" in texts(field_map(result, sheet, "map", some[:1]))
+
+
+def test_where_nobody_knows_places_no_crossing_has_one(parse):
+    result, sheet = result_of(), Sheet(plan_of())
+    sheet.metres = False
+    found = shapes(parse, field_map(result, sheet, "map", [crossing()]))
+    assert not {"warn", "walk", "fence"} & set(found)
+
+
+@pytest.mark.parametrize(("role", "size", "ringed"), [
+    ("gateway", 6.5, 0), ("standby", 8, 0), ("gateway and monitor", 6.5, 1), ("robot", 7.5, 0),
+])  # fmt: skip
+def test_shapes_of_nodes(parse, role, size, ringed):
+    drawing = svg.Drawing(100, 100, "one")
+    symbol(drawing, (50, 50), 5.0, role, on=True)
+    found = shapes(parse, drawing)
+    corners = {"standby": [(0, -size), (size, 0), (0, size), (-size, 0)],
+               "robot": [(0, -size), (size, size), (-size, size)]}.get(
+        role, [(-size, -size), (size, -size), (size, size), (-size, size)])  # fmt: skip
+    (shape,) = found["robot" if role == "robot" else "leader"]
+    assert shape.get("d") == svg.polygon(50, 50, corners)
+    assert len(found.get("ringed", [])) == ringed
+
+
+@pytest.mark.parametrize(("most", "named"), [(6, True), (5, False)])
+def test_of_many_nodes_those_with_a_part_are_named(texts, monkeypatch, most, named):
+    monkeypatch.setattr(mesh_map, "NAMED_MAX", most)
+    result = result_of()
+    said = texts(field_map(result, Sheet(result.plan), "map"))
+    assert {"n0 gateway", "n2 standby", "n3 monitor", "n5 robot"} <= set(said)
+    assert ("n4" in said) == named
+
+
+def words(*given):
+    return [what for _, what in legend(*given)]
+
+
+def test_a_legend_has_what_the_map_shows():
+    usual = ["gateway", "standby", "monitor", "robot", "good link between nodes that stay"]
+    assert words(result_of(), [], []) == [*usual, "switched off", "fence", "way of a robot"]
+    calm = result_of(event=[])
+    assert words(calm, [crossing()], []) == [*usual, "fence", "way of a robot", "crossing"]
+    assert words(calm, [], [hop(5, 4)])[-1] == "how the alarm came"
+    assert words(calm, [], [hop(5, ALL, True)])[-1] == "flooded it"
+    bare = result_of(robot=[], fence=None, standby=[], event=[])
+    assert words(bare, [], []) == ["gateway", "good link between nodes that stay"]

@@ -2,6 +2,7 @@
 
 import math
 from itertools import combinations, pairwise
+from types import SimpleNamespace
 
 import pytest
 
@@ -85,6 +86,14 @@ def test_hops_apart_nodes_without_places_are_apart_on_the_drawing():
     assert max(steps) < 150
 
 
+def test_two_nodes_lie_side_by_side_and_parts_of_a_mesh_apart():
+    two = scenario.plan(scenario.loads("kind = 'mesh'\nnodes = 2\n[[link]]\na = 0\nb = 1\n"))
+    assert laid_out(two).tolist() == [[0, 0], [100, 0]]
+    places = laid_out(SimpleNamespace(nodes=4, good=[(0, 1), (2, 3)]))
+    within = max(math.dist(places[0], places[1]), math.dist(places[2], places[3]))
+    assert min(math.dist(places[a], places[b]) for a in (0, 1) for b in (2, 3)) > 1.5 * within
+
+
 @pytest.mark.parametrize(("end", "gap", "short"), [
     ((30, 40), 5, ((3, 4), (27, 36))), ((-30, -40), 5, ((-3, -4), (-27, -36))),
     ((3, 4), 5, ((1.2, 1.6), (1.8, 2.4))), ((0, 0), 5, ((0, 0), (0, 0))),
@@ -127,6 +136,18 @@ def test_a_name_takes_the_first_place_that_is_free(strong):
         taken.append(box(*put, "node 1", strong))
     assert len(taken) >= 4
     assert free(taken, strong) == []
+
+
+@pytest.mark.parametrize(("strong", "x", "anchor"), [
+    (False, 122, "start"), (False, 123, "end"), (True, 112, "start"), (True, 113, "end"),
+])  # fmt: skip
+def test_strong_letters_take_more_room(strong, x, anchor):
+    assert Labels(200, 200).put((x, 100), "a" * 10, 10, strong)[1] == anchor
+
+
+@pytest.mark.parametrize(("y", "anchor"), [(192, "start"), (193, "middle")])
+def test_names_stay_above_the_lower_edge(y, anchor):
+    assert Labels(200, 200).put((100, y), "a", 10)[1] == anchor
 
 
 @pytest.mark.parametrize(("words", "centre", "anchor"), [

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate import scenario
+from innervate.networks.mesh.view import live
 from innervate.networks.mesh.view.live import MeshLiveView, MeshMap, MeshState
 from innervate.web.live import Live
 from innervate.web.live_poll import Poller
@@ -107,3 +108,80 @@ def test_robots_are_where_they_say_from_the_corner_of_the_fence_with_y_down():
     known = SimpleNamespace(origin_m=(10.0, 40.0))
     told = {0: node(0), 1: robot([250, 104], "inside"), 2: robot(None, "inside")}
     assert MeshLiveView().moved(told, known) == {1: (12.5, 38.96)}
+
+
+def hears(*nodes):
+    return [{"node": node, "ports": [node + 4, node + 5]} for node in nodes]
+
+
+def test_links_are_between_those_who_hear_each_other_by_their_paths():
+    told = {5: node(0, role="gateway", neighbours=hears(1, 9, 0)), 6: node(1, neighbours=hears(2)),
+            8: node(2, neighbours=hears(1))}  # fmt: skip
+    where = MeshMap(told)
+    found = {(link.a.node, link.b.node): (link.paths_a, link.paths_b) for link in where.links}
+    assert found == {(5, 6): ((5, 6), ()), (6, 8): ((6, 7), (5, 6))}
+
+
+def ways(told, lost=()):
+    """What is found of a map of all, of whom some do not answer."""
+    return MeshState(MeshMap(told), {at: one for at, one in told.items() if at not in lost})
+
+
+CHAIN = {0: node(0, role="gateway", neighbours=hears(1)), 1: node(1, neighbours=hears(0, 2)),
+         2: node(2, neighbours=hears(1), onward=[1]),
+         3: node(3, neighbours=[], onward=[1])}  # fmt: skip
+
+
+def test_who_reaches_its_gateway_who_is_astray_and_who_is_cut_off():
+    state = ways(CHAIN)
+    assert state.look() == (1, 0, 2)  # n3 hears nobody
+    shown = state.more()
+    assert (shown["parent"].tolist(), shown["depth"].tolist()) == ([-1, 0, 1, 1], [0, 1, 2, -1])
+    assert shown["apart"] == 1
+    assert ways(CHAIN, lost=[1]).look() == (2, 0, 0)  # who is off has no way to lose
+    assert ways(CHAIN, lost=[3]).look() == (0, 0, 2)
+    standby = {**CHAIN, 1: node(1, role="standby", neighbours=hears(0, 2))}
+    assert ways(standby).look() == (1, 0, 2)
+
+
+def test_what_nodes_say_of_their_ways(monkeypatch):
+    monkeypatch.setattr(live, "ways", lambda *given: given)
+    told = {**CHAIN, 1: node(1, role="standby", neighbours=hears(0, 2, 9), gives_back=False),
+            2: node(2, neighbours=hears(1), onward=[1, 0, 9])}  # fmt: skip
+    state = MeshState.__new__(MeshState)
+    state.map, state.told = MeshMap(told), {at: told[at] for at in (0, 1, 2)}
+    state.live = lambda: "links that carry frames"
+    known, links, on, off, leads = state._find_ways()
+    assert links == "links that carry frames"
+    assert (on.tolist(), off.tolist()) == ([True] * 3 + [False], [False] * 3 + [True])
+    assert leads.tolist() == [True, False, False, False]
+    assert known.gateway.tolist() == [0, 0, 0, -1]
+    assert known.named.tolist() == [[-1, -1], [0, -1], [1, 0], [-1, -1]]
+    assert known.neighbours.astype(int).tolist() == [
+        [0, 1, 0, 0], [1, 1, 1, 0], [0, 1, 0, 0], [0, 0, 0, 0]]  # fmt: skip
+    assert not known.goes_back  # of one alone it is known that it does not
+    del told[1]["gives_back"]
+    assert state._find_ways()[0].goes_back
+
+
+@pytest.mark.parametrize(("said", "shown"), [
+    ({}, "node"), ({"robot": {}}, "robot"), ({"robot": {}, "role": "gateway"}, "gateway"),
+    ({"role": "standby"}, "standby"),
+])  # fmt: skip
+def test_a_robot_is_shown_as_one_unless_it_is_more(said, shown):
+    assert MeshLiveView().role(node(1) | said) == shown
+
+
+def test_an_alarm_of_another_witness_is_told_too():
+    one = alarm("cross", 2, 1.0)
+    told = {0: node(0, role="gateway", alarms=[one, one, one | {"reporter": 4}])}
+    assert len(MeshLiveView().news(told, lambda i: f"n{i}")) == 2
+
+
+def test_nodes_are_drawn_where_their_scenario_has_them_and_bear_its_names():
+    plan = scenario.plan(scenario.loads(YARD.replace('name = "rover"', 'name = "n1"').replace(
+        'node = "rover"', 'node = "n1"')))  # fmt: skip
+    drawn = MeshLiveView().drawn(plan)
+    assert drawn.labels == {"n0": "mast"}
+    assert drawn.origin_m == (10.0, -5.0)
+    assert drawn.places == {"n0": (0, 0), "n1": (20, -20)}

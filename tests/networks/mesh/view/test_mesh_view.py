@@ -3,16 +3,19 @@
 import numpy as np
 import pytest
 
+from innervate import scenario
+from innervate.networks.mesh.analysis.reach import Ways
 from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB
 from innervate.networks.mesh.view import view as room
 from innervate.networks.mesh.view.view import MeshView
-from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
-from innervate.sim.field.states import ALIVE, DEAD, ON_AIR
+from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
+from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, HELD, OFF, ON_AIR
 from innervate.web.engine import engine_of
+from innervate.web.errors import Refused
 from innervate.web.history import LOG, History
-from innervate.web.messages import Cut, Kill, Revive
+from innervate.web.messages import Cut, Heal, Kill, Revive
 from tests.web.runs import plan_of
 
 CHAIN = {
@@ -112,6 +115,9 @@ def test_airtime_is_the_share_of_the_time_since_the_last_point(view):
     assert view.arrays(False)["load"].tolist() == [0, 0.09, 0, 0.03, 0]  # three tenths of it
     noted(view, (), (), until_us=200_000)
     assert view.points()["airtime"] == 0.0
+    noted(view, (), [{"time": 200_000, "end": 220_000, "node": 1}], until_us=240_000)
+    assert view.points()["airtime"] == 50.0
+    view.memory.load = np.array([0, 0.063, 0, 0.021, 0])
     assert view.memory.load.tolist() == pytest.approx([0, 0.063, 0, 0.021, 0])
 
 
@@ -136,7 +142,7 @@ def test_who_misses_what_was_taken_away_has_detected_it(view, action, suspect, d
 
 
 @pytest.mark.parametrize(("action", "takes"), [(CUT, True), (KILL, True), (RESTORE, False),
-                                               (REVIVE, False)])  # fmt: skip
+                                               (REVIVE, False), (QUIET, False)])  # fmt: skip
 def test_what_takes_something_away_begins_a_recovery(view, action, takes):
     assert (fault(view, action, 2, 3) is not None) == takes
 
@@ -225,3 +231,141 @@ def test_buttons_make_faults_of_what_they_are_on(view):
     assert view.event(made) == {"node": 3}
     radios(view, n3=DEAD)
     assert view.fault(Revive(3)).action == REVIVE
+
+
+def have_ways(view, **who):
+    """From now on these nodes, and no others, are what they are called."""
+    none = np.full(5, -1)
+    flags = {name: np.isin(np.arange(5), list(who.get(name, ()))) for name in Ways._fields[2:]}
+    view._found = view.engine.now_us, Ways(none, none, **flags)
+
+
+WELL = {"leads": [0], "on": range(5)}
+
+
+@pytest.mark.parametrize(
+    ("now_us", "ways", "nobody", "recovered_ms", "said"),
+    [
+        (50_001, WELL, False, 0.0, []),  # nobody was without a way for a moment
+        (50_000, WELL, False, 0.0, []),
+        (50_002, WELL, False, 0.002, ["all nodes have a way to the gateway again after 0 ms"]),
+        (173_400, WELL, False, 123.4, ["all nodes have a way to the gateway again after 123 ms"]),
+        (173_400, WELL | {"astray": [3]}, False, None, []),
+        (173_400, WELL | {"leads": []}, False, None, []),  # who is on could be served
+        (173_400, WELL | {"on": [0]}, True, None, []),  # nobody else is left
+        (173_400, WELL | {"cut_off": [1, 2, 3, 4]}, True, None, []),
+        (173_400, WELL | {"cut_off": [3, 4]}, False, 123.4, 1),
+    ],
+)
+def test_a_recovery_is_over_when_all_that_can_be_served_are(
+    view, now_us, ways, nobody, recovered_ms, said
+):
+    recovery = fault(view, KILL, 2)
+    view.engine.now_us = now_us
+    have_ways(view, **ways)
+    before = view.history.newest
+    view.check()
+    assert (recovery.nobody, recovery.recovered_ms) == (nobody, recovered_ms)
+    assert recovery.shown()["apart"] == len(ways.get("cut_off", ()))
+    told = [item.what["text"] for item in view.history.after(LOG, before, view.history.newest, 9)]
+    assert told == said if isinstance(said, list) else len(told) == said
+    have_ways(view, astray=[1], cut_off=[1, 2, 3, 4])
+    if recovered_ms is not None:  # what is over is not looked at again
+        view.check()
+        assert recovery.shown()["apart"] == len(ways.get("cut_off", ()))
+
+
+def test_without_a_fault_there_is_nothing_to_get_over(view):
+    have_ways(view, **WELL)
+    view.check()
+    assert view.memory.recovery is None
+    assert MeshView.check_us == 10_000
+
+
+def test_who_has_no_way_is_counted_and_ways_are_found_anew_at_another_time(view):
+    view.engine.now_us = 7
+    have_ways(view, astray=[1, 2], cut_off=[4])
+    shown = view.arrays(False)
+    assert (shown["unconnected"], shown["apart"]) == (3, 1)
+    assert view.points()["unconnected"] == 3.0
+    assert view._ways() is view._found[1]
+    known = view._found[1]
+    view.engine.now_us = 8
+    assert view._ways() is not known
+    have_ways(view, astray=[1])
+    view.forget(view.remember())
+    assert view.points()["unconnected"] != 1.0
+
+
+def test_a_load_of_more_than_all_the_time_is_shown_as_all_of_it(view):
+    view.memory.load = np.array([0.2, 1.0, 1.7, 0.12345, 0])
+    assert view.arrays(False)["load"].tolist() == [0.2, 1, 1, 0.123, 0]
+
+
+def test_what_every_gateway_knows_of_robots_is_shown_where_they_are_the_monitor(view):
+    nodes = view.engine.world.nodes
+    view.plan.params["monitor"] = c.MONITOR
+    nodes["raised"][1][4] = 1
+    for leads, raised in (([0], 0), ([0, 1], 1), ([1], 1), ([], 0)):
+        have_ways(view, leads=leads)
+        assert view.arrays(False)["alarm"].tolist() == [0, 0, 0, 0, raised]
+
+
+def test_of_frames_on_the_air_so_many_are_shown(view, monkeypatch):
+    monkeypatch.setattr(room, "FLIGHTS_MAX", 3)
+    view.engine.world.air["state"][:3] = ON_AIR
+    for place in range(3):
+        view.engine.world.air["node"][place] = 1
+        view.engine.world.frames["link_dst"][place] = c.ALL
+    assert len(view.arrays(True)["flights"]) == 3
+
+
+@pytest.mark.parametrize(("command", "state", "cut", "words"), [
+    (Cut, ALIVE, 1, "this link is cut already"), (Heal, ALIVE, 0, "this link is not cut"),
+    (Kill, DEAD, 0, "this node is not on"), (Kill, OFF, 0, "this node is not on"),
+    (Revive, ALIVE, 0, "this node is on"), (Revive, OFF, 0, "this node starts by itself"),
+])  # fmt: skip
+def test_what_is_so_already_is_refused(view, command, state, cut, words):
+    radios(view, n1=state, n2=state)
+    view.engine.world.cut[1 * 5 + 2] = cut
+    where = view.field.pairs.index((1, 2)) if command in (Cut, Heal) else 2
+    with pytest.raises(Refused, match=words):
+        view.fault(command(where))
+
+
+def test_who_is_absent_by_plan_may_be_switched_on(view):
+    radios(view, n2=OFF)
+    view.plan.absent[2] = 1
+    assert view.fault(Revive(2)).action == REVIVE
+    view.engine.world.cut[1 * 5 + 2] = 1
+    made = view.fault(Heal(view.field.pairs.index((1, 2))))
+    assert (made.action, view.event(made)) == (RESTORE, {"link": [1, 2]})
+
+
+def test_on_a_channel_there_are_no_links_to_cut(view):
+    assert view.can == ("cut", "heal", "kill", "revive")
+    team = scenario.plan(scenario.load("mesh-team"))
+    assert MeshView(engine_of(team), History()).can == ("kill", "revive")
+
+
+def test_a_fault_that_hurts_nobody_is_got_over_as_it_is_told(view):
+    view.engine.given = [MeshFault(500, CUT, 1, 2, 0, 0)]
+    view.engine.now_us = 501
+    have_ways(view, **WELL)
+    assert [text for _, text, _ in noted(view, until_us=501)] == ["link n1 - n2 cut"]
+    assert view.memory.recovery.recovered_ms == 0.0
+
+
+def test_what_came_later_is_forgotten_where_one_goes_back(view):
+    later = {"time": 900, "end": 950, "node": 1, "kind": c.DATA, "link_dst": 2}
+    early = later | {"time": 90, "end": 95}
+    noted(view, (), [early, later], until_us=1000)
+    view.engine.now_us = 500
+    view.forget(view.remember())
+    (kept,) = view.recorder._parts["sent"]
+    assert kept["time"].tolist() == [90]
+
+
+def test_frames_that_wait_are_not_on_the_air(view):
+    view.engine.world.air["state"][:2] = (HELD, COMMITTED)
+    assert view.arrays(True)["flights"] == []

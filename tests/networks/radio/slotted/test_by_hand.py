@@ -1,11 +1,13 @@
 """The slotted loops with arrivals that are written here, where nothing is left to a draw."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from innervate.networks.radio.slotted import chance, contend, turns
+from innervate.networks.radio.slotted import chance, contend, drive, turns
 from innervate.networks.radio.slotted.draws import UNIT, choose, draw, generator
-from innervate.networks.radio.slotted.drive import poisson_table
+from innervate.networks.radio.slotted.drive import Dcf, Job, Options, dcf_here, poisson_table
 from innervate.networks.radio.slotted.model import Setting, _measure, _Times
 from innervate.networks.radio.slotted.recorder import (
     COLLISIONS,
@@ -232,3 +234,161 @@ def test_the_warm_up_ends_with_the_idle_slot_of_its_last_packet():
     assert measured(until=45, warmup=0.5).elapsed_slots == pytest.approx(45 - 21)
     nothing = measured(until=5)
     assert (nothing.throughput, nothing.duration_slots, nothing.order) == (0.0, 0.0, [])
+
+
+EDGES = [  # of an option: what is taken, and what is not any more
+    ("p", (1e-9, 1), (0, -0.1, 1.001)), ("reading", ("A", "B"), ("C", "")),
+    ("window", (0, 1, 500), (-1,)), ("backoff", ("binary", "linear"), ("cubic",)),
+    ("backoff_slots", (1, 10_000), (0, 10_001)),
+    ("turnaround_slots", (0, 0.5, 10_000), (-0.5, 10_000.5)),
+    ("return_slots", (None, 0, 0.5, 10_000), (-0.5, 10_000.5)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "taken", "refused"), EDGES)
+def test_an_option_is_taken_up_to_its_edge_and_no_further(name, taken, refused):
+    for value in taken:
+        Options(**{name: value}).check()
+    for value in refused:
+        with pytest.raises(ValueError, match=name if name != "p" else "p is a probability"):
+            Options(**{name: value}).check()
+
+
+TIMES = Dcf(slot_us=50, payload_us=8184, success_us=8982, collision_us=8713, window=32, stages=5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sound"),
+    [
+        ({}, True), ({"slot_us": 0}, False), ({"payload_us": 0}, False), ({"success_us": 0}, False),
+        ({"collision_us": 0}, False), ({"collision_us": 1}, True), ({"window": 0}, False),
+        ({"window": 1, "stages": 20}, True), ({"window": 1, "stages": 21}, False),
+        ({"window": 2, "stages": 20}, False), ({"stages": -1}, False), ({"stages": 0}, True),
+        ({"window": 1 << 20, "stages": 0}, True), ({"window": (1 << 20) + 1, "stages": 0}, False),
+    ],
+)  # fmt: skip
+def test_times_of_a_dcf_are_sound_up_to_their_edges(changes, sound):
+    made = replace(TIMES, **changes)
+    assert made.sound == sound
+    if sound:
+        Options(dcf=made).check()
+    else:
+        with pytest.raises(ValueError, match="dcf needs times > 0"):
+            Options(dcf=made).check()
+
+
+def test_a_dcf_on_the_papers_channel_ends_with_a_slot_an_answer_and_a_slot():
+    assert dcf_here(5) == Dcf(208, 1040, 1040 + 624, 1040 + 208, window=16, stages=6)
+
+
+SETTINGS = [
+    ({"stations": 1}, {"stations": 0}), ({"stations": 10_000}, {"stations": 10_001}),
+    ({"packet_slots": 1}, {"packet_slots": 0}),
+    ({"packet_slots": 10_000}, {"packet_slots": 10_001}),
+    ({"packets": 1}, {"packets": 0}), ({"packets": 50_000_000}, {"packets": 50_000_001}),
+    ({"seed": 0}, {"seed": -1}), ({"warmup": 0}, {"warmup": -0.01}),
+    ({"warmup": 0.999}, {"warmup": 1}),
+    ({"traffic": "poisson", "load": 50}, {"traffic": "poisson", "load": 50.1}),
+    ({"traffic": "poisson", "load": 1e-9}, {"traffic": "poisson", "load": 0}),
+    ({"traffic": "poisson", "load": 1}, {"traffic": "poisson"}), ({}, {"load": 1}),
+    ({"mac": "nonpersistent", "stations": 0, "traffic": "poisson", "load": 1},
+     {"mac": "nonpersistent", "stations": 0}),
+    ({"mac": "nonpersistent", "stations": 0, "traffic": "poisson", "load": 1},
+     {"stations": 0, "traffic": "poisson", "load": 1}),
+    ({"mac": "nonpersistent", "stations": 0, "traffic": "poisson", "load": 1, "packets": 10**8},
+     {"mac": "nonpersistent", "stations": 0, "traffic": "poisson", "load": 1,
+      "packets": 10**8 + 1}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("taken", "refused"), SETTINGS)
+def test_a_setting_is_taken_up_to_its_edge_and_no_further(taken, refused):
+    usual = {"mac": "tdma", "stations": 2, "packet_slots": 5, "traffic": "saturated"}
+    Setting(**usual | taken).check()
+    with pytest.raises(ValueError, match=r"are|is|belongs|needs"):
+        Setting(**usual | refused).check()
+
+
+def driven(mac, traffic=SATURATED, stations=3, load=None, **options):
+    """What a protocol's loop is called with, and the idle time of its last packet."""
+    called = []
+    made = Job(mac, new_recorder(traffic, stations, 4, generator(1, "x")), 5, load,
+               Options(**options), plain=True)  # fmt: skip
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(drive, "loop", lambda function, plain: lambda recorder, *values:
+                        called.append((function.__name__, *values)))  # fmt: skip
+        gap = drive.drive(made)
+    ((name, *values),) = called
+    return name, values[0] if len(values) == 1 else values, gap
+
+
+TURN, PACKET, SLOT = {"turnaround_slots": 2.5}, 5 * 208, 208
+
+
+@pytest.mark.parametrize(
+    ("options", "lead", "report", "each", "turn"),
+    [
+        ({}, PACKET + 2 * SLOT + 5 * SLOT, 0, PACKET + SLOT, 0),
+        ({"window": 0}, PACKET + 2 * SLOT, 0, PACKET + SLOT, 0),
+        ({"window": 2, **TURN}, PACKET + 2 * 520 + 4 * SLOT, 0, PACKET + SLOT + 520, 520),
+        ({"reading": "B"}, PACKET + 5 * SLOT, SLOT, PACKET, 0),
+        ({"reading": "B", "window": 0, **TURN}, PACKET + 2 * 520, SLOT, PACKET + 520, 520),
+    ],
+)
+def test_what_a_reservation_takes(options, lead, report, each, turn):
+    times = turns.Reservation(SLOT, turn, PACKET, lead, report, each)
+    is_b = options.get("reading") == "B"
+    assert driven("csma-cd-r", **options) == ("reserve", times, 0 if is_b else SLOT)
+    assert driven("csma-cd-r", stations=1, **options)[-1] == SLOT
+
+
+@pytest.mark.parametrize(
+    ("mac", "options", "cost", "turn", "back", "rules"),
+    [
+        ("csma-cd-d1", {}, SLOT, 0, 0, (208, 0, 0)),
+        ("csma-cd-d2", {}, PACKET + SLOT, 0, 0, (208, 0, 0)),
+        ("csma-cd-d2", TURN, PACKET + SLOT, 520, 520, (208, 0, 0)),
+        ("csma-cd-d2", TURN | {"return_slots": 0}, PACKET + SLOT, 520, 0, (208, 0, 0)),
+        ("csma-cd-d2p", TURN | {"return_slots": 1}, PACKET + SLOT, 520, 208, (208, 0, 1)),
+        ("csma-cd-d2", {"backoff": "linear", "backoff_slots": 3}, PACKET + SLOT, 0, 0, (624, 1, 0)),
+        ("csma-cd-d2", {"turnaround_slots": 0.999}, PACKET + SLOT, 208, 208, (208, 0, 0)),
+    ],
+)
+def test_what_a_collision_and_its_backoff_take(mac, options, cost, turn, back, rules):
+    expected = contend.Contention(SLOT, PACKET, cost, turn, back, *rules)
+    assert driven(mac, **options) == ("contend", expected, SLOT)
+
+
+@pytest.mark.parametrize(("traffic", "at_once"), [(SATURATED, 0), (POISSON, 0), (DISASTER, 1)])
+def test_in_a_disaster_counters_begin_at_once(traffic, at_once):
+    expected = contend.Counters(208, PACKET + 3 * SLOT, PACKET + SLOT, 16, 6, at_once)
+    assert driven("dcf", traffic) == ("distribute", expected, 0)
+    expected = contend.Counters(50, 8982, 8713, 32, 5, at_once)
+    assert driven("dcf", traffic, dcf=TIMES) == ("distribute", expected, 0)
+
+
+def test_steps_of_those_who_send_by_chance():
+    p = round(UNIT / 3)
+    assert driven("slotted-aloha") == ("attempt", [p, PACKET, PACKET, 0], 0)
+    assert driven("nonpersistent") == ("attempt", [p, SLOT, PACKET, SLOT], SLOT)
+    assert driven("p-persistent", p=0.25) == ("attempt", [UNIT // 4, SLOT, PACKET, SLOT], SLOT)
+    assert driven("tree") == ("split", PACKET, 0)
+    assert driven("tdma") == ("take_turns", [SLOT, PACKET], SLOT)
+
+
+def test_how_many_come_to_an_infinite_population_in_a_step():
+    """Of a load of 2 packets a packet time of 5 slots, 0.4 come in a slot."""
+    assert chance.STEPS_PER_PACKET == 1000
+
+    def mean(table):
+        return float((np.diff(table / UNIT, prepend=0.0) * np.arange(len(table))).sum())
+
+    name, (table, *steps), gap = driven("slotted-aloha", load=2.0)
+    assert (name, steps, gap, mean(table)) == ("pool", [PACKET] * 2 + [0], 0, pytest.approx(2.0))
+    name, (table, *steps), gap = driven("nonpersistent", load=2.0)
+    assert (name, steps, gap) == ("pool", [SLOT, PACKET, SLOT], SLOT)
+    assert mean(table) == pytest.approx(0.4)
+    for given, p in (({}, 0.1), ({"p": 0.5}, 0.5)):
+        name, (table, after, *steps), gap = driven("p-persistent", load=2.0, **given)
+        assert (name, steps, gap) == ("persist", [round(p * UNIT), SLOT, PACKET], SLOT)
+        assert (mean(table), mean(after)) == (pytest.approx(0.4), pytest.approx(2.4))

@@ -172,6 +172,19 @@ def test_a_disaster_ends_with_everybody_served(mac):
     assert run.airtime_slots == 40
 
 
+def test_of_a_disaster_all_is_measured():
+    run = slotted("tdma", 20, 5, "disaster", warmup=0.5, packets=7, plain=True)
+    assert run.order == list(range(20))
+
+
+def test_streams_of_one_seed_differ_by_name_and_never_begin_with_0():
+    one, same, other = (draws.generator(3, name).tolist() for name in ("a", "a", "b"))
+    assert one == same != other
+    drawn = np.array([draws.generator(seed, "a") for seed in range(200)])
+    assert drawn.min() >= 1
+    assert drawn.max() <= draws.UNIT
+
+
 def test_warm_up_is_not_measured():
     whole = saturated("csma-cd-d2", 3, packets=100, warmup=0)
     later = saturated("csma-cd-d2", 3, packets=100)
@@ -209,6 +222,21 @@ def test_exponential_intervals():
     assert (sample > 2000).mean() == pytest.approx(np.exp(-2), rel=0.05)
 
 
+def test_intervals_are_in_steps_of_a_millionth_of_the_mean():
+    steps = draws.RANGE // draws.COARSE
+    assert 1_000_000 < steps < 1_100_000
+    state, one = draws.generator(1, "test"), np.array([1, 2], np.int64)
+    apart = np.diff(np.sort([draws.exponential(state, steps) for _ in range(2_000)]))
+    assert apart[apart > 0].min() < 20
+    draws.exponential(one, draws.MEAN_MAX)  # in 64 bits
+    assert draws.MEAN_MAX * steps * 2 > 1 << 62 > draws.MEAN_MAX * (steps - 1)
+
+
+def test_a_table_that_ends_early_gives_its_last_place():
+    state = draws.generator(1, "test")
+    assert {draws.choose(state, [0, 0, 0]) for _ in range(5)} == {2}
+
+
 def test_the_generator_is_lecuyers():
     state = np.array([1, 2], np.int64)
     assert draws.step(state) == 2147483562 - (2 * 40692 - 40014)
@@ -229,8 +257,17 @@ def of_a_pool(play, *arguments):
 def test_who_comes_alone_gets_through_and_all_others_collide():
     alone = of_a_pool(chance.pool, ALWAYS[1], 10, 50, 10)
     assert alone.end.tolist() == [60 * k + 50 for k in range(8)]
-    together = of_a_pool(chance.pool, ALWAYS[2], 10, 50, 10)
-    assert together.counts[[DONE, COLLISIONS]].tolist() == [0, 8 * chance.STEPS_PER_PACKET]
+    for play, *given in ((chance.pool, ALWAYS[2], 10, 50, 10),
+                         (chance.persist, ALWAYS[2], ALWAYS[0], draws.UNIT, 10, 50)):  # fmt: skip
+        together = of_a_pool(play, *given)
+        assert together.counts[[DONE, COLLISIONS]].tolist() == [0, 8 * chance.STEPS_PER_PACKET]
+
+
+def test_of_a_finite_population_whoever_has_a_packet_sends_it():
+    recorder = new_recorder(POISSON, 3, 1, draws.generator(1, "three"))
+    recorder.arrivals[:] = recorder.offer[:] = [900, 7, 300]
+    chance.attempt(recorder, draws.UNIT, 10, 50, 10)
+    assert (recorder.station[0], recorder.offered[0], recorder.end[0]) == (1, 7, 60)
 
 
 def test_who_waits_sends_in_the_next_slot_that_the_draw_allows():

@@ -84,6 +84,26 @@ def test_stories_share_nothing():
         assert getattr(two, name) == []
 
 
+def test_a_story_is_told_of_a_network_of_which_nothing_is_left_out(monkeypatch):
+    """The search has one of several mirror images, beacons in ticks alone, and little room."""
+    seen = []
+
+    class Noting(story.Twin):
+        def __init__(self, model, system):
+            seen.append(model)
+            super().__init__(model, system)
+
+    monkeypatch.setattr(story, "Twin", Noting)
+    found = explore(SkinModel(graphs.parse("pair"), rule="paper"))
+    story.tell(found)
+    searched, told = seen
+    assert searched is found.model
+    assert (told.merge, told.symmetric, told.keep, told.unreduced) == (False, False, True, True)
+    assert told.capacity == story.ROOM >= 40 > found.model.capacity
+    assert told.changed(merge=True, symmetric=True, keep=False, unreduced=False,
+                        capacity=0) == searched  # fmt: skip
+
+
 def in_full(name, keys):
     """The shortest way to a ring: sentences, each with its steps and the network after it."""
     found = explore(SkinModel(graphs.parse(name), **{"rule": "paper"} | keys))

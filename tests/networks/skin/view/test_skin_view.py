@@ -9,6 +9,7 @@ from innervate import scenario
 from innervate.networks.skin.protocol.constants import REPORT_BROKEN, REPORT_PARENT
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.view.view import SkinView
+from innervate.scenario.actions.cables import CUT as EVENT_CUT
 from innervate.sim.cables.world import ROW
 from innervate.sim.tables import row_dtype
 from innervate.web.history import LOG, History
@@ -133,3 +134,63 @@ def test_while_some_are_cut_off_all_others_have_a_way_and_while_all_are_nobody()
     for apart, words in ((1, "all other cells have a way after 50.0 ms"), (3, None)):
         view, _ = viewed((5 * MS, -1, APART, apart, 0), unrouted(50, 0))
         assert lines(view) == ([words] if words else [])
+
+
+CELLS = [{"at_s": at_s, "action": action, "cell": {"row": 0, "column": column}}
+         for at_s, action, column in ((0.1, "kill", 0), (0.2, "kill", 1), (0.3, "kill", 2),
+                                      (0.4, "revive", 2), (0.5, "kill", 2))]  # fmt: skip
+
+
+def of_cells(*rows):
+    """What is told where three cells die one after the other, and the last comes back."""
+    plan = scenario.plan(scenario.from_dict(line(3, event=CELLS)))
+    view = SkinView(SimpleNamespace(plan=plan, given=[], now_us=0), History())
+    for row in rows:
+        view.note({"rows": np.array([row], row_dtype(ROW)), "deliveries": np.zeros(0)})
+    shown = view.memory.recovery.shown()
+    return shown["nobody"], shown["recovered_ms"]
+
+
+def mark(number):
+    at_ms = round(1e3 * CELLS[number]["at_s"])
+    return (at_ms * MS, CELLS[number]["cell"]["column"], CUT_OFF, number, 0)
+
+
+def apart(at_ms, cells):
+    return (at_ms * MS, -1, APART, cells, 0)
+
+
+def test_who_is_dead_or_cut_off_cannot_have_a_way():
+    assert of_cells(mark(0), mark(1)) == (False, 0.0)  # one is left
+    assert of_cells(mark(0), mark(1), mark(2)) == (True, None)
+    assert of_cells(mark(0), mark(1), apart(200, 1)) == (True, None)
+    assert of_cells(mark(0), apart(100, 1)) == (False, 0.0)
+    assert of_cells(mark(0), apart(100, 2), unrouted(150, 0)) == (True, None)
+
+
+def test_where_nobody_was_left_it_is_over_when_somebody_is_back_with_a_way():
+    none = (mark(0), mark(1), apart(200, 1))
+    assert of_cells(*none, apart(260, 0)) == (False, 60.0)
+    # Back, but without a way: until it has one.
+    assert of_cells(*none, unrouted(250, 1), apart(260, 0)) == (False, None)
+    assert of_cells(*none, unrouted(250, 1), apart(260, 0), unrouted(290, 0)) == (False, 90.0)
+    assert of_cells(*none, apart(260, 1)) == (True, None)
+    revived = (mark(0), mark(1), mark(2), mark(3))
+    assert of_cells(*revived, unrouted(420, 0)) == (False, 120.0)
+    assert of_cells(*revived, mark(4)) == (True, None)
+
+
+def test_only_a_parent_that_is_lost_is_told():
+    found = (110 * MS, 2, REPORT_PARENT, 1, 0)
+    view, _ = viewed(unrouted(0, 3), unrouted(30, 0), found)
+    assert lines(view) == ["all cells have a way after 30.0 ms"]
+
+
+def test_faults_by_hand_are_told_behind_those_of_the_scenario():
+    plan = scenario.plan(scenario.from_dict(line(3)))
+    given = [SimpleNamespace(at_us=5, action=EVENT_CUT, end=12, node=-1, loss_q15=0, frames=0)]
+    view = SkinView(SimpleNamespace(plan=plan, given=given, now_us=0), History())
+    row = np.array([(5, -1, CUT_OFF, 0, 2)], row_dtype(ROW))
+    view.note({"rows": row, "deliveries": np.zeros(0)})
+    assert view.memory.fault is given[0]
+    assert lines(view) == ["cable to interface 0 cut", "2 cells lost the way to the PC"]

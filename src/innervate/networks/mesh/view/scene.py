@@ -29,9 +29,8 @@ class Field:
         self.plan = plan
         self.walks = bool(plan.walks) and is_to_scale(plan, WIDTH)
         moving = {walk.node for walk in plan.walks} if self.walks else set()
-        always = {pair for pair in plan.good if not moving & set(pair)}
-        never = {(min(i, j), max(i, j)) for i in moving for j in range(plan.nodes) if i != j}
-        self.pairs: list[tuple[int, int]] = sorted(always | never)
+        met = {(min(i, j), max(i, j)) for i in moving for j in range(plan.nodes) if i != j}
+        self.pairs: list[tuple[int, int]] = sorted({*plan.good, *met})
         self._ends = np.array(self.pairs, np.int64).reshape(-1, 2)
         self._wanders = np.array([bool(moving & set(pair)) for pair in self.pairs], np.bool_)
         true_places = is_to_scale(plan, WIDTH)

@@ -1,0 +1,106 @@
+"""What is said of a mesh's run, by summaries that are written here."""
+
+import re
+from types import SimpleNamespace as Of
+
+import pytest
+
+from innervate.networks.mesh.plot import node_report, words
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+
+PLAN = Of(names=["mast", "n1", "n2"])
+
+
+@pytest.mark.parametrize(("action", "said"), [
+    (CUT, "link n1 - n2 cut"), (RESTORE, "link n1 - n2 restored"), (KILL, "node n1 switched off"),
+    (REVIVE, "node n1 switched on"), (RESTART, "node n1 restarted"),
+    (JAM, "noise of -72.5 dBm at node n1"), (QUIET, "no noise at node n1 any more"),
+])  # fmt: skip
+def test_an_event_in_words(action, said):
+    fault = Of(action=action, node=1, other=2, value=-7250)
+    assert words.fault_words(PLAN, fault) == said
+
+
+def alarms(sent, came):
+    return {"sent": sent, "delivered": came, "latency_ms": {"max": 42.0},
+            "overrun_m": {"max": 0.128}}  # fmt: skip
+
+
+@pytest.mark.parametrize(("sent", "came", "said"), [
+    (0, 0, []), (2, 0, ["2 crossings of the fence, and the monitor learned of none."]),
+    (1, 1, ["1 crossing of the fence, and the monitor learned of it: the alarm took 42.0 ms, "
+            "no robot got farther out than 0.13 m by then."]),
+    (3, 3, ["3 crossings of the fence, and the monitor learned of all: the slowest alarm took "
+            "42.0 ms, no robot got farther out than 0.13 m by then."]),
+    (3, 2, ["3 crossings of the fence, and the monitor learned of 2; the slowest alarm took "
+            "42.0 ms, a robot got 0.13 m out."]),
+    (3, 1, ["3 crossings of the fence, and the monitor learned of 1; the alarm took 42.0 ms, "
+            "a robot got 0.13 m out."]),
+])  # fmt: skip
+def test_how_many_crossings_the_monitor_learned_of(sent, came, said):
+    assert words._alarms(alarms(sent, came)) == said
+
+
+def messages(ratio, joined=10, of_joined=1.0, p50=4.0):
+    return words._messages({
+        "messages": {"counted": 10}, "delivery_ratio": ratio,
+        "latency_ms": {"p50": p50, "p99": 9.0},
+        "connected": {"sent": joined, "delivery_ratio": of_joined},
+    })  # fmt: skip
+
+
+def test_how_many_messages_came_and_which_had_no_chance():
+    assert messages(None) == []
+    times = ", half within 4 ms, 99 % within 9 ms."
+    assert messages(1.0, joined=8) == ["10 messages: every one was delivered" + times]
+    assert messages(0.7) == ["10 messages: 7 delivered (70 %)" + times]
+    assert messages(0.0, p50=None) == ["10 messages: 0 delivered (0 %)."]
+    _, apart = messages(0.7, joined=8, of_joined=0.875)
+    assert apart == ("Of those, 2 had no chance: sender and recipient were not connected, or off; "
+                     "of the others 87.5 % were delivered.")  # fmt: skip
+    assert "of the others 0 % were" in messages(0.0, joined=8, of_joined=None)[1]
+
+
+@pytest.mark.parametrize(("tables_s", "with_tables", "end"), [
+    (2.345, 9, "; every node had its table 2.35 s after the first request."),
+    (None, 9, "; 9 of 12 nodes got a table."), (None, None, "."),
+])  # fmt: skip
+def test_what_the_first_round_found(tables_s, with_tables, end):
+    found = {"recall": 0.5, "complete_s": 1.2345, "tables_s": tables_s,
+             "with_tables": with_tables}  # fmt: skip
+    begin = "The first round found 50 % of the good links within 1.23 s"
+    assert words._discovery(found, 12) == [begin + end]
+    assert words._discovery({"recall": None}, 12) == ["No discovery round was completed."]
+
+
+def test_who_became_gateway_last():
+    led = [{"node": 0, "at_s": 0.0}, {"node": 1, "at_s": 2.0}, {"node": 2, "at_s": 3.5}]
+    for leaders, took, said in (
+        (led[:1], 1.0, []), (led, None, ["Node n2 became gateway at 3.500 s."]),
+        (led[:2], 1.234, ["Node n1 became gateway at 2.000 s; its tables were everywhere 1.23 s "
+                          "after the old one died."]),
+    ):  # fmt: skip
+        assert words._gateways(PLAN, {"gateways": leaders, "takeover_s": took}) == said
+
+
+@pytest.mark.parametrize(("doubled", "looped", "said"), [
+    (0, 0, "No message came twice; none met a node twice on the way."),
+    (1, 0, "1 message came twice; none met a node twice on the way."),
+    (0, 1200, "No message came twice; 1,200 met a node twice on the way."),
+])  # fmt: skip
+def test_what_came_twice(doubled, looped, said):
+    assert words._trouble({"duplicates": doubled, "looped": looped}) == said
+
+
+@pytest.mark.parametrize(("count", "folded"), [(40, False), (41, True)])
+def test_nodes_one_by_one_and_many_folded(monkeypatch, count, folded):
+    one = Of(node=0, on=False, neighbours=2, depth=None, version=0, control_bytes=1, forwarded=1,
+             share=0.5, suspected=0)  # fmt: skip
+    top = Of(**vars(one) | {"depth": 0, "on": True, "version": 3})
+    monkeypatch.setattr(node_report, "nodes", lambda _: [one, *[top] * (count - 1)])
+    monkeypatch.setattr(node_report, "roles", lambda _: {0: "robot"})
+    made = node_report.section_of(Of(plan=PLAN))
+    cells = re.findall("<td[^>]*>([^<]*)</td>", made)
+    assert (cells[1], cells[3:5]) == ("robot, off", ["unknown", "none"])
+    assert (cells[10], cells[12:14]) == ("robot", ["0", "3"])
+    assert (f"All {count} nodes" in made) == folded

@@ -1,0 +1,142 @@
+"""What is made of the words of running cells and of their PC, and commands that it is given."""
+
+import pytest
+
+from innervate.networks.skin.view.live import LOAD_FULL, SkinLiveView, SkinMap, SkinState
+from innervate.web.errors import Refused
+from innervate.web.messages import Give
+from tests.web.test_live_state import cell, skin_of_three, udp
+
+
+def state_of(told, left=None):
+    return SkinState(SkinMap(told), told if left is None else left)
+
+
+def three(**changes):
+    """PC - c0 - c1; changes by node: c0, c1, pc."""
+    told = skin_of_three()
+    for number, name in enumerate(("c0", "c1", "pc")):
+        told[number] |= changes.get(name, {})
+    return told
+
+
+def without(told, *nodes):
+    return {at: one for at, one in told.items() if at not in nodes}
+
+
+def facts(state):
+    found = state._facts
+    return list(found.silent), list(found.cut_off), list(found.seeking), found.pc_off
+
+
+CASES = [  # changes, who is silent: (none, astray, could have one), then the facts
+    ({}, (), (0, 0, 2), ([], [], [], False)),
+    ({"c1": {"parent": None}}, (), (1, 1, 2), ([], [], [1], False)),
+    ({"c0": {"parent": None}}, (), (2, 2, 2), ([], [], [0, 1], False)),
+    ({}, (1,), (0, 0, 1), ([1], [], [], False)),
+    ({}, (0,), (1, 0, 0), ([0], [1], [], False)),
+    ({}, (2,), (2, 0, 0), ([], [0, 1], [], True)),
+]
+
+
+@pytest.mark.parametrize(("changes", "silent", "counted", "found"), CASES)
+def test_who_has_no_way_and_who_could_have_one(changes, silent, counted, found):
+    told = three(**changes)
+    state = state_of(told, without(told, *silent))
+    assert state.look() == counted
+    assert facts(state) == found
+
+
+def test_whoever_is_cut_off_by_hand_seeks_nothing():
+    state = state_of(three(c1={"parent": None}))
+    state.cut_off = [False, True, False]
+    state.look()
+    assert facts(state) == ([], [1], [], False)
+
+
+def test_where_no_cable_is_known_cells_are_believed():
+    told = {0: cell(0, 0, udp((1, 2))), 1: cell(1, None, udp((3, 4)))}
+    state = state_of(told)
+    assert state.map.links == []
+    assert state.look() == (1, 1, 2)
+    assert facts(state) == ([], [], [1], False)  # no PC is known: it is not said to be off
+
+
+def test_a_cell_sends_over_the_path_of_its_parents_port_from_either_end():
+    state = state_of(three())
+    assert state.hop.tolist() == [2, 0, -1]
+    shown = state.more()
+    assert (shown["port"].tolist(), shown["depth"].tolist()) == ([0, 0, 0], [1, 2, 0])
+    other = state_of(three(c0={"parent": 1}))  # each to the other
+    assert other.hop.tolist() == [1, 0, -1]
+    assert other.more()["port"].tolist() == [-1, -1, 0]
+    assert state_of(three(c1={"parent": 9})).hop.tolist() == [2, -1, -1]  # no such port
+
+
+def test_load_is_a_share_of_what_fills_a_link():
+    assert LOAD_FULL == 66
+    shown = state_of(three(c0={"load": 33}, c1={"load": 200})).more()
+    assert shown["load"].tolist()[:2] == [0.5, 1.0]
+    assert shown["told"] == [-1] * 3
+    assert state_of(three(c0={"command": 0})).more()["told"][0] == 0
+
+
+def test_of_those_who_do_not_answer_one_is_the_pc_where_no_other_is():
+    view, cells = SkinLiveView(), [one for one in three().values() if one["role"] == "cell"]
+    assert [one.get("role") for one in view.unknown(cells, 2)] == ["sink", None]
+    assert [one.get("role") for one in view.unknown(list(three().values()), 2)] != ["sink", None]
+    assert all(one.get("role") != "sink" for one in view.unknown(list(three().values()), 1))
+    assert view.unknown(cells, 0) == []
+
+
+class Asked:
+    """A PC that answers; what it was asked."""
+
+    def __init__(self, answer):
+        self.answer, self.requests = answer, []
+
+    def __call__(self, node, request):
+        self.requests.append((node, request))
+        return self.answer
+
+
+def given(view, ask, node=None):
+    told = three()
+    command = Give(code=3, value=4, node=node)
+    return view.give(command, SkinMap(told), told, lambda place: f"cell {place.node}", ask)
+
+
+def test_a_command_is_sent_by_the_pc_and_told_when_all_have_it():
+    view, ask = SkinLiveView(), Asked({"number": 7, "ports": [0]})
+    assert given(view, ask) == "command 7 sent to all cells"
+    assert ask.requests == [(2, {"do": "command", "code": 3, "value": 4, "cell": None})]
+    told = three(c0={"command": 7})
+    assert view.news(told, lambda i: f"c{i}") == []
+    assert view.news(without(three(), 0, 1), lambda i: f"c{i}") == []  # no cell answers
+    told[1]["command"] = 7
+    assert view.news(told, lambda i: f"c{i}") == [("command 7 came to all 2 cells", "good")]
+    assert view.news(told, lambda i: f"c{i}") == []  # once
+
+
+def test_a_command_for_a_cell_is_told_when_that_has_it():
+    view, ask = SkinLiveView(), Asked({"number": 8, "ports": [0]})
+    assert given(view, ask, node=1) == "command 8 sent to cell 1"
+    assert ask.requests[0][1]["cell"] == 1
+    assert view.news(three(c0={"command": 8}), lambda i: f"c{i}") == []
+    assert view.news(three(c1={"command": 8}), lambda i: f"c{i}") == [
+        ("command 8 came to c1", "good")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("answer", "node", "words"), [
+    (None, None, "did not take it: no answer"), ({"error": "too fast"}, None, "too fast"),
+    ({"number": 1, "ports": []}, None, "no cell has the PC as its parent"),
+    ({"number": 1, "ports": [0]}, 2, "this is a port of the PC"),
+    ({"number": 1, "ports": [0]}, 3, "node"),
+])  # fmt: skip
+def test_a_command_that_cannot_be_is_refused_and_not_waited_for(answer, node, words):
+    view = SkinLiveView()
+    with pytest.raises(Refused, match=words):
+        given(view, Asked(answer), node)
+    assert view._under_way == {}
+    assert view.can(three()) == ("command",)
+    assert view.can(without(three(), 2)) == ()

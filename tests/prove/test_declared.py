@@ -1,0 +1,95 @@
+"""What is proved of any network, by protocols of a few lines: what handlers may be told."""
+
+import ast
+from types import SimpleNamespace as Of
+
+import pytest
+
+from innervate.dialect.arith import MASK30
+from innervate.prove import declared, execute
+from innervate.prove.check import check
+from innervate.prove.errors import ProveError
+
+SOURCE = """
+def report(out, code, a, b):
+    pass
+
+def on_start(state, params, now, cause, out):
+    state.x = cause
+
+def on_frame(state, params, now, port, frame, out):
+    state.x = port
+
+def on_timer(state, params, now, timer, out):
+    state.x = timer
+
+def on_input(state, params, now, kind, item, out):
+    state.x = kind
+
+def at_any_time(state, params, now, cause, out):
+    state.x = now
+
+def of_a_frame(state, params, now, port, frame, out):
+    state.x = frame.y
+
+def often(state, params, now, timer, out):
+    for i in range(params.z):
+        report(out, 1, 2, 3)
+"""
+NODES = {node.name: node for node in ast.parse(SOURCE).body}
+KNOWN = {
+    name: Of(name=name, node=node, path="m.py", constants={},
+             module=execute.OUTBOX if name == "report" else "m", calls={one: one for one in NODES})
+    for name, node in NODES.items()
+}  # fmt: skip
+
+
+def network(most=9, many=0, **protocol):
+    """A network whose state has an x up to `most`, and which may send so many reports."""
+    fields = Of(STATE=(("x", 0, 0, most, "", ""),), FRAME=(("y", 0, 3, 7, "", ""),),
+                PARAMS=(("z", 0, 0, many, "", ""),))  # fmt: skip
+    return Of(name="some", protocol=Of(TIMERS=2, **protocol), fields=fields,
+              has=lambda part: part in ("protocol", "fields"))  # fmt: skip
+
+
+def refuted(made, handler, *told):
+    step = declared._step(made, KNOWN, ("it happens", handler, list(told)))
+    return [bad.goal.partition(" (")[0] for bad in check(step, reach=False).refuted]
+
+
+RANGE = "every field stays in its declared range: state.x"
+
+
+@pytest.mark.parametrize(
+    ("handler", "told", "most"),
+    [
+        ("on_start", ["cause"], 1), ("on_frame", ["port", "frame"], 3), ("on_timer", [1], 1),
+        ("on_input", ["kind", "frame"], 15), ("at_any_time", ["cause"], MASK30),
+        ("of_a_frame", ["port", "frame"], 7),
+    ],
+)  # fmt: skip
+def test_what_a_handler_is_told_may_be_anything_up_to_its_most(handler, told, most):
+    assert refuted(network(most), handler, *told) == []
+    assert refuted(network(most - 1), handler, *told) == [RANGE]
+
+
+def test_an_outbox_holds_what_its_protocol_says_or_sixteen():
+    for more, room in (({}, 16), ({"OUTBOX": 5}, 5)):
+        assert refuted(network(many=room, **more), "often", 0) == []
+        assert refuted(network(many=room + 1, **more), "often", 0) == ["the outbox has room"]
+
+
+def test_everything_happens_that_the_protocol_knows():
+    usual = [("on_start", ["cause"]), ("on_frame", ["port", "frame"]), ("on_timer", [0]),
+             ("on_timer", [1])]  # fmt: skip
+    assert [what[1:] for what in declared._events(network())] == usual
+    found = [what[1:] for what in declared._events(network(on_input=None))]
+    assert found == [*usual, ("on_input", ["kind", "frame"])]
+
+
+@pytest.mark.parametrize("lacks", ["protocol", "fields"])
+def test_without_a_declared_protocol_nothing_is_proved(lacks):
+    made = network()
+    made.has = lambda part: part != lacks
+    with pytest.raises(ProveError, match="some declares no protocol"):
+        declared.theories(made)
