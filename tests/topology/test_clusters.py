@@ -114,3 +114,13 @@ def test_the_limit_itself_is_not_too_much():
 def test_where_it_cannot_be_everybody_belongs_to_the_nearest():
     near = lattice(10, 2)
     assert shared(near, even(near), [2, 19], 5) == nearest(near, even(near), [2, 19])
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_shared_clusters_hold_together_about_their_heads(seed):
+    near, costs = drawn(seed)
+    starts = random.Random(seed).sample(range(len(near)), 5)
+    for most in range(8, 25, 2):
+        owner = shared(near, costs, starts, most)
+        assert [owner[start] for start in starts] == list(range(5)), f"seed {seed}, {most}"
+        assert hold_together(near, owner)

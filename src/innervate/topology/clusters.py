@@ -78,7 +78,7 @@ def shared(
     """As `nearest`, but at most so many nodes to each: what is too much goes to the next nearest.
 
     A cluster that is too large gets a little farther from all its nodes, until none is. Where that
-    does not come about, everybody belongs to the nearest.
+    does not come about, or one would lose its own head, everybody belongs to the nearest.
     """
     ahead = [0] * len(starts)
     step = max(1, min(costs.values(), default=1) // 4)
@@ -91,6 +91,8 @@ def shared(
         for which in large:
             ahead[which] += step
         owner = nearest(near, costs, starts, ahead)
+        if any(owner[start] != which for which, start in enumerate(starts)):
+            break
     return first
 
 
