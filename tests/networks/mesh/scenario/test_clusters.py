@@ -246,7 +246,7 @@ def test_check_says_which_and_how_to_run_the_others() -> None:
     said = describe(line(2))
     assert "cluster 2 of 3; nodes of each gateway: n2 9, n15 14, n29 7" in said
     assert "clusters.run = 1 to 3" in said
-    assert "--vary clusters.run=1..3" in said
+    assert "--vary clusters.run=1..3 --paired clusters.run" in said
     assert "nodes      14, gateway n15" in said
     assert "--vary" not in describe(line(1, gateways="1"))
 

@@ -70,7 +70,7 @@ def _cluster(made: MeshPlan) -> list[str]:
     if len(found.sizes) > 1:
         lines.append(
             f"             the others: clusters.run = 1 to {len(found.sizes)}, or all in a row: "
-            f"innervate sweep FILE --vary clusters.run=1..{len(found.sizes)}"
+            f"innervate sweep FILE --vary clusters.run=1..{len(found.sizes)} --paired clusters.run"
         )
     return lines
 
