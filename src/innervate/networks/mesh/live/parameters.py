@@ -15,7 +15,7 @@ IP: dict[str, int] = {
     "retry": 1, "reliable": 1, "activation": 0, "told": 0, "hop_acks": 1, "flood_us": 625,
     "transmissions": 3, "ack_us": 5000, "ack_adapt": 1,
     "hop_frames": 16, "gather": 1, "queue": 48, "kept": 32,
-    "suspect_us": 2_000_000, "min_rssi": -93, "jitter_us": 5000, "copies": 2,
+    "suspect_us": 2_000_000, "min_rssi": -93, "faint": -92, "jitter_us": 5000, "copies": 2,
     "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
     "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "guard_us": 0, "standby": 0,
     "jobs": 4, "job_us": 100_000, "job_tries": 3, "e2e_us": 30_000, "e2e_adapt": 1, "e2e_tries": 8,
@@ -63,5 +63,6 @@ def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     corners = {name: [0] * POINTS for name in ("px", "py", "after")}
     own = {"nodes": nodes, "width": width, "row": words(width), "places": width}
     made = {**IP, **corners, **own, **changes}
-    faint = min(made["min_rssi"] + 1, 127) if made["discovery"] == LIST else -128
-    return {"faint": faint, **made}
+    if "faint" not in changes:
+        made["faint"] = min(made["min_rssi"] + 1, 127) if made["discovery"] == LIST else -128
+    return made
