@@ -13,6 +13,7 @@ import pytest
 
 pytest_plugins = [
     "tests.fixtures.disk",
+    "tests.fixtures.forks",
     "tests.fixtures.papers",
     "tests.fixtures.plots",
     "tests.fixtures.scenarios",
