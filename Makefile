@@ -21,11 +21,9 @@ WORKERS ?= 2
 # Tests start hundreds of processes: to translate the sources anew takes up to a second in each.
 unexport PYTHONDONTWRITEBYTECODE
 
-# Two workers more than there are processors: tests that wait leave theirs to others.
-PYTEST = $(BIN)/python -m pytest -n $$(( $(WORKERS) + 2 )) --dist worksteal
-
-# What many tests run is compiled before they start, where it is not compiled yet.
-COMPILE = $(BIN)/python -m tests.loops $(WORKERS)
+# Three workers more than there are processors: tests that wait leave theirs to others. What many
+# tests run is compiled before they start, where it is not compiled yet.
+PYTEST = $(BIN)/python -m pytest --forks $$(( $(WORKERS) + 3 )) --loops $(WORKERS)
 
 # Packages that the page is built with, as package-lock.json has them; no scripts of theirs are run.
 PAGE := src/innervate/web/page
@@ -65,11 +63,9 @@ demo: $(STAMP)
 	@$(BIN)/innervate demo
 
 test: $(STAMP)
-	$(COMPILE)
 	$(PYTEST) -m "not slow" --junitxml=.mutants/suite.xml
 
 full: $(STAMP)
-	$(COMPILE)
 	$(PYTEST) --junitxml=.mutants/suite.xml
 	$(BIN)/python -m tests.mutants --workers $(WORKERS) --seed $$(date +%Y%m%d) --count 40 --least 0.7
 

@@ -1,11 +1,9 @@
 """Compiles what many tests run, each loop once, before the tests start: `python -m tests.loops 2`.
 
 Tests that start side by side would wait for each other's loops, and a page or a process under test
-would take half a minute to answer. A loop that a single test wants is compiled there. The files of
-tests themselves, which pytest rewrites, are rewritten once instead of in each worker.
+would take half a minute to answer. A loop that a single test wants is compiled there.
 """
 
-import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -55,15 +53,8 @@ def compiled(index):
         loop()
 
 
-def rewritten():
-    """Have pytest rewrite what it collects; what is wrong with it is said by the run itself."""
-    collect = [sys.executable, "-m", "pytest", "--collect-only", "-qq"]
-    subprocess.run(collect, stdout=subprocess.DEVNULL, check=False)
-
-
 if __name__ == "__main__":
     with ProcessPoolExecutor(int(sys.argv[1])) as processes:
         ready = [processes.submit(compiled, index) for index in range(len(GROUPS))]
-        ready.append(processes.submit(rewritten))
         for one in ready:
             one.result()

@@ -316,7 +316,7 @@ def run_here(root: Path, env: dict[str, str], tests: list[str], watch: Watch) ->
     if sitecustomize.FAULT in env:
         sitecustomize.plant(**json.loads(env[sitecustomize.FAULT]))
     sys.path.insert(0, str(root / "src"))
-    asked = ["-x", "-q", "-m", "not slow", "-p", "no:cacheprovider", "-p", "no:xdist",
+    asked = ["-x", "-q", "-m", "not slow", "-p", "no:cacheprovider",
              f"--basetemp={watch.log.parent / 'tests'}"]  # fmt: skip
     watch.files = [test.partition("::")[0] for test in tests]
     try:

@@ -1,0 +1,147 @@
+"""Tests in forked processes: each once, whatever becomes of its process, and said as it was."""
+
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as Tree
+from pathlib import Path
+
+import pytest
+
+SUITE = {
+    "test_one.py": """
+import os, warnings
+import pytest
+
+@pytest.fixture(scope="module")
+def made():
+    with open("made", "a") as file:
+        file.write(f"{os.getpid()}\\n")
+    yield
+    with open("gone", "a") as file:
+        file.write(f"{os.getpid()}\\n")
+
+@pytest.mark.parametrize("number", range(9))
+def test_passes(made, number, tmp_path):
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "mine").touch()
+
+def test_fails():
+    print("said", "before")
+    warnings.warn("not so", DeprecationWarning)
+    assert {"here": 1} == {"here": 2}
+
+def test_skips():
+    pytest.skip("no reason")
+""",
+    "test_two.py": """
+import os, signal
+import pytest
+
+tries = []
+
+def test_kills_its_process():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+@pytest.mark.parametrize("number", range(5))
+def test_comes_after_it(number):
+    pass
+
+@pytest.mark.flaky(reruns=1)
+def test_at_the_second_try():
+    tries.append(0)
+    assert len(tries) == 2
+""",
+}
+WAITS = {
+    "test_waits.py": """
+import time
+import pytest
+
+@pytest.fixture(scope="session")
+def left():
+    yield
+    open("torn_down", "w").close()
+
+def test_waits(left):
+    open("begun", "w").close()
+    time.sleep(60)
+""",
+}
+
+
+def begin(folder, suite, *options):
+    for name, text in suite.items():
+        (folder / name).write_text(text)
+    command = [sys.executable, "-m", "pytest", "-p", "tests.fixtures.forks", *options]
+    root = str(Path(__file__).parents[1])
+    return subprocess.Popen(
+        command, cwd=folder, env={"PYTHONPATH": root}, text=True, start_new_session=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """What two processes say of tests that pass, fail, are skipped, are killed, or come back."""
+    folder = tmp_path_factory.mktemp("forked")
+    process = begin(folder, SUITE, "--forks", "2", "--junitxml=out.xml")
+    return folder, process.communicate()[0], process.returncode
+
+
+def test_each_runs_once_and_is_counted(run):
+    folder, said, status = run
+    assert "2 failed, 15 passed, 1 skipped, 1 warning, 1 rerun" in said.splitlines()[-1]
+    assert status == 1
+    cases = [case.get("name") for case in Tree.parse(folder / "out.xml").iter("testcase")]
+    assert len(set(cases)) == 18
+    assert len(cases) == 18 + 1  # of which one was tried twice
+
+
+def test_what_failed_says_why(run):
+    _, said, _ = run
+    assert "assert {'here': 1} == {'here': 2}" in said
+    assert said.count("said before") == 1
+    assert "DeprecationWarning: not so" in said
+    assert "test_two.py::test_kills_its_process: the process that ran it ended (-9)" in said
+
+
+def test_fixtures_of_a_file_are_made_once_in_a_process_and_torn_down(run):
+    folder, _, _ = run
+    made = (folder / "made").read_text().split()
+    assert 1 <= len(made) == len(set(made)) <= 3
+    assert sorted(made) == sorted((folder / "gone").read_text().split())
+
+
+def test_it_ends_at_the_first_that_fails(tmp_path):
+    process = begin(tmp_path, SUITE, "--forks", "1", "-x", "-k", "fails or passes or skips")
+    said, _ = process.communicate()
+    assert "stopping after 1 failures" in said
+    assert "1 failed, 9 passed" in said.splitlines()[-1]
+    assert (tmp_path / "gone").exists()
+
+
+def test_ctrl_c_ends_it_and_tears_down(tmp_path):
+    process = begin(tmp_path, WAITS, "--forks", "2")
+    while not (tmp_path / "begun").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    said, _ = process.communicate(timeout=30)
+    assert process.returncode == pytest.ExitCode.INTERRUPTED
+    assert "KeyboardInterrupt" in said
+    assert (tmp_path / "torn_down").exists()
+
+
+@pytest.mark.parametrize(("status", "said"), [
+    (0, "1 passed"), (3, "Exit: python -m tests.loops ended with 3"),
+])  # fmt: skip
+def test_loops_come_first(tmp_path, status, said):
+    (tmp_path / "tests").mkdir()
+    loops = f"import sys\nopen('loops', 'w').write(sys.argv[1])\nsys.exit({status})\n"
+    (tmp_path / "tests" / "loops.py").write_text(loops)
+    suite = {"test_it.py": "def test_it():\n    assert open('loops').read() == '7'\n"}
+    process = begin(tmp_path, suite, "--forks", "1", "--loops", "7")
+    assert said in process.communicate()[0]
+    assert process.returncode == bool(status)
