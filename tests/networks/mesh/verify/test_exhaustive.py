@@ -4,12 +4,13 @@ import pytest
 
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
-from innervate.networks.mesh.verify.cases import DEATH_AND_ACK, QUICK, SHORT
+from innervate.networks.mesh.verify.cases import ASKED, DEATH_AND_ACK, QUICK, SHORT
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 
 TWICE = (("e2e_tries", 1), ("transmissions", 2))
 DEATH, CALM = MeshBudget(1, 0, 0, 0), MeshBudget(0, 0, 0, 0)
 RETURNS, LOSSES = MeshBudget(1, 1, 0, 0), MeshBudget(0, 0, 2, 0)
+LOSS = MeshBudget(0, 0, 1, 0)
 
 # Links, failover, the rest of the model, states.
 MESSAGES = [
@@ -32,9 +33,18 @@ GATEWAYS = [
     ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 72_086),
     ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 45_752),
 ]
+ASKING = [
+    (links, "search", {"standby": standby, "beats": 3, "budget": budget, "settings": ASKED}, states)
+    for links, standby, budget, states in (
+        ("line", (2,), DEATH, 11_433),
+        ("line", (2,), LOSS, 67_555),
+        ("line", (2,), RETURNS, 276_792),
+        ("triangle", (1, 2), DEATH, 34_365),
+    )
+]
 
 QUICK_ONES = [case for case in MESSAGES if case[3] < 6_000]
-OTHERS = [case for case in MESSAGES + GATEWAYS if case not in QUICK_ONES]
+OTHERS = [case for case in MESSAGES + GATEWAYS + ASKING if case not in QUICK_ONES]
 
 
 @pytest.mark.parametrize(

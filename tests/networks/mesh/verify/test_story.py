@@ -141,22 +141,28 @@ def test_frames_and_acks_that_a_story_loses_are_counted_from_their_message_on():
     assert losses(offer, air, offer, lost) == [Loss(2, 1, 2, const.DATA, 0)]
 
 
+ASKS = "gateways that are asked"
+
+
 def test_what_is_explored_if_nobody_says_and_on_links_of_ones_own():
     found = [
         (name, models_.failover, models_.links) for name, models_ in cases.models(MeshWanted())
     ]
     shapes = [models.parse(shape) for shape in ("line", "triangle", "square")]
     messages = [("a message", "search", links) for links in shapes]
-    more = [(name, "search", shapes[0]) for name in ("an alarm", "gateways")]
+    more = [(name, "search", shapes[0]) for name in ("an alarm", "gateways", ASKS)]
     assert found == [*messages, *more, *(("a message", "graph", links) for links in shapes)]
     links = ((0, 1), (1, 2), (2, 3))
     own = list(cases.models(MeshWanted(("search", "random"), links, "deaths=2")))
-    assert [name for name, _ in own] == ["a message", "an alarm", "gateways", "two messages"]
+    assert [name for name, _ in own] == ["a message", "an alarm", "gateways", ASKS, "two messages"]
     assert {one.links for _, one in own} == {links}
-    message, alarm, gateways, two = (one for _, one in own)
+    message, alarm, gateways, asked, two = (one for _, one in own)
     assert message.offers == ((3, 0),)
     assert (alarm.robot, gateways.standby, gateways.beats) == (3, (3,), 6)
-    assert [one.budget.deaths for one in (message, alarm, gateways, two)] == [2] * 4
+    assert (asked.standby, asked.beats) == ((3,), 3)
+    asks = [models.parameters(one)["guard_us"] for one in (gateways, asked)]
+    assert asks == [0, 100_000]
+    assert [one.budget.deaths for one in (message, alarm, gateways, asked, two)] == [2] * 5
     assert message.budget == MeshBudget(deaths=2, frames=0, acks=1)
     assert cases.text_of(links) == "0-1 1-2 2-3"
 

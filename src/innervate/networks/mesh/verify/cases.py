@@ -18,6 +18,8 @@ from innervate.verify.tally import Tally
 # A message is tried twice in all, a hop once: what three transmissions can do to a hop, one can.
 SHORT = (("e2e_tries", 1), ("transmissions", 1))
 QUICK = (("period_s", 2.0), ("period_max_s", 2.0), ("dead_s", 3.0), ("dead_step_s", 1.0))
+# Questions, each after a wait: all in vain before the next request could be missed.
+ASKED = (("period_s", 6.0), ("period_max_s", 6.0), ("guard_s", 0.1))
 DEATH_AND_ACK = MeshBudget(deaths=1, frames=0, acks=1)
 LOST_ACK = MeshBudget(deaths=0, frames=0, acks=1)
 
@@ -107,6 +109,11 @@ def _own(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
         yield (
             "gateways",
             MeshModel(links, failover, (), standby=(last,), budget=budget, settings=QUICK, beats=6),
+        )
+        budget = budget_of(wanted.budget, MeshBudget(1, 0, 0, 0))
+        yield (
+            "gateways that are asked",
+            MeshModel(links, failover, (), standby=(last,), budget=budget, settings=ASKED, beats=3),
         )
 
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from innervate.networks.mesh.protocol import constants as const
+from innervate.networks.mesh.protocol.standby import IN_VAIN
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.local import (
+    BROKEN_DEPOSED,
     BROKEN_ENDLESS,
     BROKEN_GATEWAYS,
     BROKEN_UNHEARD,
@@ -40,7 +42,7 @@ class Fair:
     def check(self, net: Net) -> int:
         """What a state's calm future breaks; 0 nothing."""
         if self.nets.model.beats:
-            return self._one_gateway(net)
+            return BROKEN_DEPOSED if self._is_deposed(net) else self._one_gateway(net)
         wanted = self._wanted(net)
         end = self._end(net)
         self.longest = max(self.longest, end.events)
@@ -118,6 +120,14 @@ class Fair:
         self.longest = max(self.longest, end.events)
         late = self.nets.calm_beats() * self.nets.locals.params.tick_us
         return end.broken or (BROKEN_GATEWAYS if end.events > late else 0)
+
+    def _is_deposed(self, net: Net) -> bool:
+        """True if another leads while node 0 lives, and fewer frames than questions were lost."""
+        budget, (deaths, _, frames, _) = self.nets.model.budget, net.left
+        if deaths < budget.deaths or budget.frames - frames >= IN_VAIN:
+            return False
+        asks = self.nets.locals.params.guard_us > 0  # else a request that is lost may do it
+        return asks and any(self.nets.locals.field(number, "leading") for number in net.nodes[1:])
 
     def _last_quarrel(self, net: Net) -> End:
         rows: list[tuple[bytes, int, bool]] = []

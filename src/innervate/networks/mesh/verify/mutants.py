@@ -8,7 +8,7 @@ from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as mesh_story
-from innervate.networks.mesh.verify.cases import QUICK, SHORT
+from innervate.networks.mesh.verify.cases import ASKED, QUICK, SHORT
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import Nets
 from innervate.verify.mutants import Catch, Mutant, copies
@@ -42,6 +42,9 @@ MUTANTS = tuple(
         ("a standby never takes over",
          "if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:",
          "if node.quiet >= 60_000:"),
+        ("a gateway does not answer who asks it",
+         "    if node.leading:\n        if version != gate.version:\n            index = 0\n",
+         "    if node.leading > 1:\n        if version != gate.version:\n            index = 0\n"),
         ("who follows another leads on",
          "    if gateway != node.number:\n        node.leading = 0\n", ""),
         ("a retry is never due", "        set_timer(out, RETRY, (now + soonest) & MASK30)\n",
@@ -66,6 +69,7 @@ def models() -> Iterator[MeshModel]:
     yield MeshModel(line, robot=2, budget=calm, settings=SHORT)
     yield MeshModel(line, offers=((2, 0), (2, 0)), budget=calm, settings=twice)
     yield MeshModel(line, standby=(2,), beats=4, budget=MeshBudget(1, 1, 0, 0), settings=QUICK)
+    yield MeshModel(line, standby=(2,), beats=3, budget=calm, settings=ASKED)
 
 
 def hunt(mutant: Mutant) -> Catch:

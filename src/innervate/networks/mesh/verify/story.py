@@ -43,6 +43,7 @@ TITLES = {
     local.BROKEN_GATEWAYS: "nodes do not agree on one gateway",
     local.BROKEN_CRASH: "a handler cannot go on",
     local.BROKEN_ACKED: "a node waits for an ack that it has heard",
+    local.BROKEN_DEPOSED: "a standby leads though its gateway lives",
 }
 
 
