@@ -241,7 +241,7 @@ MESH_CASES = {
     local.BROKEN_ACKED: deaf_to_acks,
     local.BROKEN_CRASH: crash,
 }
-BY_THE_FUTURE = {local.BROKEN_ENDLESS, local.BROKEN_GATEWAYS}  # below
+BELOW = {local.BROKEN_ENDLESS, local.BROKEN_GATEWAYS, local.BROKEN_DEPOSED}
 CALM = mesh_model.MeshBudget(0, 0, 0, 0)
 
 
@@ -302,8 +302,26 @@ def test_nodes_that_follow_two_gateways_are_told():
         assert mesh_fair.Fair(nets).check(first) == code
 
 
+@pytest.mark.parametrize(("leading", "guard_us", "deaths", "lost", "deposed"), [
+    ((1, 0, 1), 100, 1, 0, True),
+    ((1, 1, 0), 100, 1, 3, True),
+    ((1, 0, 1), 100, 1, 4, False),  # four questions in vain: as if it were dead
+    ((1, 0, 1), 100, 0, 0, False),  # somebody died
+    ((1, 0, 1), 0, 1, 0, False),  # nobody asks
+    ((1, 0, 0), 100, 1, 0, False),
+])  # fmt: skip
+def test_nobody_leads_beside_a_gateway_that_lives(leading, guard_us, deaths, lost, deposed):
+    model = SimpleNamespace(budget=mesh_model.MeshBudget(1, 0, 5, 0), beats=1)
+    params = SimpleNamespace(guard_us=guard_us)
+    states = SimpleNamespace(params=params, field=lambda number, name: leading[number])
+    fair = mesh_fair.Fair(SimpleNamespace(model=model, locals=states))
+    fair._one_gateway = lambda net: 0
+    broken = fair.check(SimpleNamespace(left=(deaths, 0, 5 - lost, 0), nodes=(0, 1, 2)))
+    assert broken == (local.BROKEN_DEPOSED if deposed else 0)
+
+
 def test_every_property_of_a_mesh_has_a_case():
-    tried = {*MESH_CASES} | BY_THE_FUTURE
+    tried = {*MESH_CASES} | BELOW
     assert tried == set(mesh_story.TITLES)
     assert tried == {v for n, v in vars(local).items() if n.startswith("BROKEN_")}
 
