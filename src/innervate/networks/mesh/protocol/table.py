@@ -71,6 +71,14 @@ def put_in_force(node, params, epoch, version, out):
     report(out, REPORT_TABLE, version, epoch)
 
 
+def keep_table(node, params, before, out):
+    """A standby took over: our table is one of its own, if it was in force until now, else none."""
+    if node.version and node.table_epoch == before:
+        put_in_force(node, params, node.epoch, node.active, out)
+    else:
+        node.version = 0
+
+
 def on_table(node, params, now, frame, out):
     """A part of a routing table: ours, or somebody's further along the route."""
     count = frame.body[0]
