@@ -1,8 +1,11 @@
 """A takeover: tables stay, nobody looks for who is gone, and it costs little."""
 
+import numpy as np
 import pytest
 
 import innervate
+from innervate import scenario
+from innervate.networks.mesh.analysis.network import CONTROL, acked_kinds, airtime_us
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     DATA,
@@ -21,6 +24,7 @@ from innervate.networks.mesh.protocol.standby import (
     PATIENCE_MAX,
     SPARE_HOPS,
 )
+from innervate.networks.mesh.sim.simulate import simulate
 from tests.networks.mesh.bench import Frame
 from tests.networks.mesh.net import Net, geometric, line, ring
 from tests.networks.mesh.sim.test_standby import GUARD, SOON, SURE, guarded, kill, leaders
@@ -49,6 +53,17 @@ def test_with_thirty_messages_a_second_all_have_new_tables_within_three_seconds(
     path = tmp_path / "loaded.toml"
     path.write_text(LOADED)
     assert innervate.run(path, seed=seed).summary["takeover_s"] < 3
+
+
+@pytest.mark.parametrize("seed", [3, 5, 9])
+def test_a_takeover_takes_less_than_five_percent_of_airtime(seed):
+    """In the five seconds after the death; it took 13 to 14."""
+    plan = scenario.plan(scenario.loads(LOADED.replace("nodes", f"seed = {seed}\nnodes", 1)))
+    result = simulate(plan)
+    died = plan.faults[0].at_us
+    since = result.sent["time"] - died
+    counts = np.isin(acked_kinds(result.sent), CONTROL) & (since >= 0) & (since < 5_000_000)
+    assert airtime_us(result.sent)[counts].sum() < 0.05 * 5_000_000
 
 
 def led(net):
