@@ -62,14 +62,16 @@ def lead(node, gate, params, now, out):
     """Be the gateway from now on, with an epoch that nobody has had.
 
     Who knows of none draws it, and the version of its tables: it may have been gateway before, and
-    a table of the same epoch and version would be taken for the one that is there.
+    a table of the same epoch and version would be taken for the one that is there. Tables are kept
+    if all had theirs: a gateway says so in its second round, and gives no graph away before.
     """
+    keeps = node.version and (node.active or gate.part) and params.mode != TABLE_FREE
     reset(gate, params)
     epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
     begin(node, params, node.number, epoch, node.round, out)
     node.leading = 1
     gate.version = next_version(node.version) if node.version else draw(node, 65_536)
-    if node.version and params.mode != TABLE_FREE:
+    if keeps:
         inherit(node, gate, params, out)
     start_round(node, gate, params, now, out)
 
