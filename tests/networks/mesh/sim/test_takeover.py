@@ -17,7 +17,7 @@ from innervate.networks.mesh.protocol.constants import (
     RESPONSE,
     TABLE,
 )
-from innervate.networks.mesh.protocol.route import planned
+from innervate.networks.mesh.protocol.route import NONE, planned
 from innervate.networks.mesh.protocol.standby import (
     EVERYWHERE,
     IN_VAIN,
@@ -96,14 +96,20 @@ def tables(net):
     return {f.dest for _, _, f in net.sent if f.kind == TABLE}
 
 
+def ways(net):
+    """Next hops of all that live, but to the first gateway."""
+    return [[planned(node, net.params, to) for to in range(1, 12)] for node in net.nodes[1:]]
+
+
 def test_all_keep_their_tables_as_those_of_who_takes_over_until_its_next_round():
     net = guarded()
-    before = [node.next.copy() for node in net.nodes]
+    before = ways(net)
     died = kill(net, 0)
     net.run(died + SOON)
     heir = net.nodes[3]
     assert {(n.version, n.table_epoch) for n in net.nodes[1:]} == {(heir.version, heir.epoch)}
-    assert [node.next for node in net.nodes] == before
+    assert ways(net) == before
+    assert {planned(node, net.params, 0) for node in net.nodes[1:]} == {NONE}
     assert not tables(net)
     assert not [f for _, _, f in net.sent if f.kind == RESPONSE]
     net.run(died + 14_000_000)
@@ -159,6 +165,28 @@ def test_a_question_is_not_looked_for_everywhere():
     assert max(long for *_, long in asked) <= most
 
 
+def test_but_that_of_a_patient_standby_is_and_ends_its_patience():
+    net = guarded(count=20, links=geometric(20, 6, 2), standbys=(3,))
+    net.nodes[3].patience = PATIENCE_MAX
+    died = kill(net, 0)
+    net.run(died + 3_500_000)
+    assert leaders(net) == [3]
+
+
+def test_where_not_all_have_had_tables_nobody_keeps_one():
+    """The gateway dies while it hands out its first."""
+    net = Net(12, geometric(12, 5, 3), standbys=(3,), **GUARD)
+    net.lost = lambda frame, to: frame.kind == TABLE and frame.dest > 7
+    net.run(2_000_000)
+    net.lose_by_chance()
+    assert 0 < sum(node.version > 0 for node in net.nodes[1:]) < 11
+    died = kill(net, 0)
+    net.run(died + 8_000_000)
+    assert leaders(net) == [3]
+    assert {f.origin for _, _, f in net.sent if f.kind == RESPONSE} == set(range(1, 12)) - {3}
+    assert {node.table_epoch for node in net.nodes[1:]} == {net.nodes[3].epoch}
+
+
 def test_nobody_looks_for_the_gateway_that_is_gone():
     net = guarded(standbys=(3,))
     died = kill(net, 0)
@@ -171,11 +199,37 @@ def test_nobody_looks_for_the_gateway_that_is_gone():
     assert {net.nodes[i].gone for i in range(1, 12)} == {0}
 
 
-def test_until_the_next_round_or_until_it_is_heard():
+def test_until_the_round_after_the_next_for_messages_kept_are_tried_so_long():
     net = guarded(standbys=(3,))
     died = kill(net, 0)
     net.run(died + 14_000_000)
-    assert {net.nodes[i].gone for i in range(1, 12)} == {ALL}
+    assert {net.nodes[i].gone for i in range(1, 12)} == {0}
+    net.run(died + 24_000_000)
+    assert {net.nodes[i].gone for i in range(1, 12) if i != 3} == {ALL}
+
+
+def test_or_until_a_table_leads_to_it():
+    """Node 9 is too far away to hear it, which was switched off and on."""
+    net = guarded(count=10, links=line(10), standbys=(3,))
+    died = kill(net, 0)
+    net.run(died + 2_000_000)
+    net.revive(0)
+    net.run(died + 10_500_000)
+    assert net.nodes[9].gone == 0
+    net.run(died + 14_000_000)
+    assert [net.nodes[i].gone for i in range(1, 10)] == [ALL] * 9
+    assert planned(net.nodes[9], net.params, 0) == 8
+
+
+def test_who_missed_the_gateway_between_passes_by_nobody_where_the_first_leads_again():
+    """Of its request a node that followed it before keeps its table, too."""
+    net = guarded(count=4, links=line(4), standbys=(3,))
+    node = net.nodes[1]
+    node.epoch, node.table_epoch = node.epoch - 2, node.table_epoch - 2
+    net.gates[0].taken = 1
+    net.run(net.now + 10_000_000)
+    assert node.gone == ALL
+    assert node.gateway == 0
 
 
 def test_a_gateway_that_lives_is_not_gone_for_long():

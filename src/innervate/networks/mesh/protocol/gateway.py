@@ -30,7 +30,7 @@ from innervate.networks.mesh.protocol.paths import (
 from innervate.networks.mesh.protocol.queue import compose, kick
 from innervate.networks.mesh.protocol.round import begin, begin_anew
 from innervate.networks.mesh.protocol.search import is_edge
-from innervate.networks.mesh.protocol.table import put_in_force
+from innervate.networks.mesh.protocol.table import keep_table
 
 IDLE = 0
 COLLECTING = 1
@@ -84,7 +84,7 @@ def inherit(node, gate, params, out):
                 note_heard(gate, params, a, b)
     gate.taken = 1
     node.active = gate.version
-    put_in_force(node, params, node.epoch, gate.version, out)
+    keep_table(node, params, node.table_epoch, out)
 
 
 def start_round(node, gate, params, now, out):
@@ -94,8 +94,6 @@ def start_round(node, gate, params, now, out):
     if gate.taken:
         flags = PRIORITY
         copies = copies + COPIES_MORE
-    else:
-        node.gone = ALL
     node.round = (node.round + 1) & MASK16
     node.depth = 1
     begin_anew(node, params)

@@ -65,7 +65,10 @@ def begin(node, params, gateway, epoch, round, out):
     if not node.known or node.gateway != gateway or node.epoch != epoch:
         report(out, REPORT_GATEWAY, gateway, epoch)
     node.known = 1
-    node.gone = ALL if node.gateway == gateway else node.gateway
+    if node.gateway != gateway:
+        node.gone = node.gateway
+    elif node.version != node.active:  # tables have come since it was gone
+        node.gone = ALL
     node.gateway = gateway
     node.epoch = epoch
     node.round = round

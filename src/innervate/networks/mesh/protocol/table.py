@@ -62,7 +62,9 @@ def expect(node, epoch, version, count):
 
 
 def put_in_force(node, params, epoch, version, out):
-    """What came in is in force from now on."""
+    """What came in is in force from now on; whoever it leads to is there."""
+    if node.gone != ALL and node.next[node.bank * params.width + node.gone] != NONE:
+        node.gone = ALL
     node.version = version
     node.table_epoch = epoch
     node.new_version = 0
@@ -72,8 +74,13 @@ def put_in_force(node, params, epoch, version, out):
 
 
 def keep_table(node, params, before, out):
-    """A standby took over: our table is one of its own, if it was in force until now, else none."""
+    """A standby took over: our table, if it is of the epoch `before`, is its own, else we have none.
+
+    It leads no more to who was gateway.
+    """
     if node.version and node.table_epoch == before:
+        if node.gone != ALL:
+            node.next[node.bank * params.width + node.gone] = NONE
         put_in_force(node, params, node.epoch, node.active, out)
     else:
         node.version = 0
