@@ -45,7 +45,8 @@ then of all messages, never of alarms: a full channel heals (decision 0016).
 brings a part of the graph, until it has all. Questions in vain, more where answers used to be late:
 it leads. Its first request makes all tables its own: nobody responds but who has none, and is sent
 one of the graph that came with the answers; all have new ones after the next round (decision 0053).
-Until then nobody looks for the gateway that is `gone`, or goes by it, unless it is heard (0049).
+Nobody looks for the gateway that is `gone`, or goes by it, until it is heard, or a table leads to
+it, or the round after the next begins.
 Questions and answers go before all else: a gateway that has much to send is not dead.
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
@@ -135,7 +136,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
 | any        | `REQUEST` of another gateway,   | `redirect`: alarms go to it; who |                |
 |            | or `lead`                       | led before is `gone`             |                |
-| any        | a frame of who is `gone`        | `hear_of_gateway`: it is not     |                |
+| any        | a frame of who is `gone`, or a  | `hear_of_gateway`,               |                |
+|            | table that leads to it          | `put_in_force`: it is not        |                |
 | any        | `TICK`                          | `on_tick`: `sweep`, `age`,       |                |
 |            |                                 | `watch`, `beacon`,               |                |
 |            |                                 | `repeat_alarm`                   |                |
@@ -371,8 +373,8 @@ or gone at any moment, and nodes die and come back without memory.
 
 - A packet visits at most 24 nodes and 48 transmissions of its own: nothing circles for good,
   whatever tables say (A9). With `failover` SEARCH and no loss it finds a way within 24 nodes, if
-  there is one; not to a gateway that another one took over from, before the next round or before
-  it is heard.
+  there is one; not to a gateway that another one took over from, before it is heard, or is in a
+  table, or two rounds have begun.
 - A packet is delivered at most once in a boot of its origin: its recipient clears the window when
   the origin was silent for `forget` ticks, and by then nothing is retransmitted (`lifetime`).
 - REPORT_ARRIVED is said only when the recipient acknowledged; a message without it, REPORT_EXPIRED,

@@ -74,7 +74,7 @@ def put_in_force(node, params, epoch, version, out):
 
 
 def keep_table(node, params, before, out):
-    """A standby took over: our table, if it is of the epoch `before`, is its own, else we have none.
+    """A standby took over: our table is its own, if it is of the epoch `before`; else we have none.
 
     It leads no more to who was gateway.
     """
