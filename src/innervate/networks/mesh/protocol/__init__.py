@@ -43,10 +43,11 @@ then of all messages, never of alarms: a full channel heals (decision 0016).
 
 *Standby.* A standby that has no sign of the gateway's life for a `guard_us` asks it. Each answer
 brings a part of the graph, until it has all. Questions in vain, more where answers used to be late:
-it leads, hands out tables of the graph that it has, and need not wait for a round. Questions and
-answers go before all else: a gateway that has much to send is not dead. While tables go out the
-channel is theirs: who hears the new one begins no messages for a `collect_us`, and until the next
-round nobody looks for the gateway that is `gone`, unless it is heard (decision 0049).
+it leads. Its first request makes all tables its own: nobody responds but who has none, and is sent
+one of the graph that came with the answers; all have new ones after the next round (decision 0053).
+Nobody looks for the gateway that is `gone`, or goes by it, until it is heard, or a table leads to
+it, or the round after the next begins.
+Questions and answers go before all else: a gateway that has much to send is not dead.
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor has acknowledged them. Who hears a robot outside is its witness
@@ -68,8 +69,7 @@ States
 |                                       | leads (`leading` = 1); `rank` 0 is the gateway's, 1 and  |
 |                                       | up the standbys', -1 all others'                         |
 | round at a node, `due`                | `NOTHING = 0`; `LOOK_AGAIN = 1` heard weak requests      |
-|                                       | only; `RESPOND = 2`; `HUSHED = 3` own messages wait for  |
-|                                       | a new gateway's tables                                   |
+|                                       | only; `RESPOND = 2`                                      |
 | round at the gateway, `step`          | `IDLE = 0`; `COLLECTING = 1`                             |
 | a node's table, at the gateway, `job` | `CURRENT = 0`; `TO_SEND = 1`; `UNDER_WAY = 2`;           |
 |                                       | `GIVEN_UP = 3`                                           |
@@ -96,8 +96,7 @@ lost may be made good by what is heard later: `drop_overheard`, which also ends 
 | `RESPONSE`                             | a hop            | `on_upward`: up; at the gateway      |
 |                                        |                  | `on_response`                        |
 | `TABLE`                                | a hop            | `on_table`, unless `record_packet`   |
-|                                        |                  | had it: along its route, or once     |
-|                                        |                  | around a hop that failed; ours:      |
+|                                        |                  | had it: along its route; ours:       |
 |                                        |                  | `take_part`                          |
 | `TABLE_ACK`                            | a hop            | `on_upward`: up; at the gateway      |
 |                                        |                  | `on_ack`                             |
@@ -137,7 +136,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
 | any        | `REQUEST` of another gateway,   | `redirect`: alarms go to it; who |                |
 |            | or `lead`                       | led before is `gone`             |                |
-| any        | a frame of who is `gone`        | `hear_of_gateway`: it is not     |                |
+| any        | a frame of who is `gone`, or a  | `hear_of_gateway`,               |                |
+|            | table that leads to it          | `put_in_force`: it is not        |                |
 | any        | `TICK`                          | `on_tick`: `sweep`, `age`,       |                |
 |            |                                 | `watch`, `beacon`,               |                |
 |            |                                 | `repeat_alarm`                   |                |
@@ -145,8 +145,10 @@ A hop for which there is no room gets no ack, so that another is tried.
 | new round  | `REQUEST`, weak                 | `await_better`                   | LOOK_AGAIN     |
 | LOOK_AGAIN | `ROUND`                         | `step`, `look_again`, `join`     | RESPOND        |
 | RESPOND    | `ROUND`                         | `step`, `respond`                | NOTHING        |
-| new round  | `REQUEST`, `PRIORITY`           | `join`: `is_hushed`              | HUSHED         |
-| HUSHED     | `ROUND`                         | `step`                           | NOTHING        |
+| new round  | `REQUEST`, `PRIORITY`           | `keep_table`: it is the new      | NOTHING        |
+|            |                                 | gateway's; `join`: no response   |                |
+| ...        | ... no table of the epoch       | `keep_table`: we have none       | RESPOND        |
+|            | before                          |                                  |                |
 | IDLE       | `TICK`, the period is over      | `start_round`                    | COLLECTING     |
 | COLLECTING | `RESPONSE`                      | `on_response`: `note_list`,      |                |
 |            |                                 | unless `WEAK` `note_path`        |                |
@@ -205,8 +207,7 @@ Timers
 |                | `jitter_us`                                                                     |
 | `ACK_WAIT = 1` | `ack_us` from SENT on; with `ack_adapt` a round trip to that neighbour longer   |
 | `ROUND = 2`    | a node: 2 `jitter_us` to look again; `listen_us` and up to `spread_us` to       |
-|                | respond; up to `spread_us` after `collect_us` to begin messages again; the      |
-|                | gateway: `collect_us`                                                           |
+|                | respond; the gateway: `collect_us`                                              |
 | `TICK = 3`     | `tick_us`, by itself: `period`, `period_max`, `dead`, `dead_step`, `forget`,    |
 |                | `lost` are counted in it                                                        |
 | `RETRY = 4`    | first end-to-end timeout: `e2e_us`, or with `e2e_adapt` 4 round trips; doubled, |
@@ -224,7 +225,7 @@ Frames
 | frame           | way                          | payload                                         |
 |-----------------|------------------------------|-------------------------------------------------|
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
-|                 |                              | flag `PRIORITY`: nobody responds; more copies   |
+|                 |                              | flag `PRIORITY`: tables stay; more copies       |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud; flag `WEAK`: came over a faint link       |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
@@ -312,6 +313,8 @@ Constants and settings
 |                                                | each that is before it                          |
 | `IN_VAIN = 4`, `PATIENCE = 12`,                | questions in vain; quarters of one more, and of |
 | `PATIENCE_MAX = 24`                            | a longer wait: at first, after a late answer    |
+| `SPARE_HOPS = 3`                               | decision 0053: of a question, beyond what a     |
+|                                                | node as deep takes                              |
 | `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
 |                                                | gateway: no patience                            |
 | `LISTED_MAX = 15`, `UPLINKS_TOLD = 3`          | neighbours in a response; without tables        |
@@ -370,8 +373,8 @@ or gone at any moment, and nodes die and come back without memory.
 
 - A packet visits at most 24 nodes and 48 transmissions of its own: nothing circles for good,
   whatever tables say (A9). With `failover` SEARCH and no loss it finds a way within 24 nodes, if
-  there is one; not to a gateway that another one took over from, before the next round or before
-  it is heard.
+  there is one; not to a gateway that another one took over from, before it is heard, or is in a
+  table, or two rounds have begun.
 - A packet is delivered at most once in a boot of its origin: its recipient clears the window when
   the origin was silent for `forget` ticks, and by then nothing is retransmitted (`lifetime`).
 - REPORT_ARRIVED is said only when the recipient acknowledged; a message without it, REPORT_EXPIRED,

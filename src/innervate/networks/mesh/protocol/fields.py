@@ -335,7 +335,7 @@ def gate(n, most=0):
         ("open", 0, 0, 1, "flag", "tables of this version are on their way"),
         ("sum_a", 0, 0, TIME, "hash", "of the graph of the newest tables"),
         ("part", 0, 0, 15, "fragment", "graph: next to be flooded; standby: next to be asked for"),
-        ("whole", 0, 0, 1, "flag", "standby: we have the gateway's graph"),
+        ("taken", 0, 0, 1, "flag", "taken over: all keep their tables until the next round"),
     )
 
 

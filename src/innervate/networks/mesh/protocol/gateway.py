@@ -7,14 +7,12 @@ from innervate.networks.mesh.protocol.constants import (
     ALARMS,
     ALL,
     PRIORITY,
-    REPORT_GATEWAY,
     REPORT_GRAPH,
     REPORT_ROUND,
     REQUEST,
     ROUND,
     TABLE_FREE,
     WEAK,
-    WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, signed8
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
@@ -30,8 +28,9 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
-from innervate.networks.mesh.protocol.round import NOTHING, begin_anew
+from innervate.networks.mesh.protocol.round import begin, begin_anew
 from innervate.networks.mesh.protocol.search import is_edge
+from innervate.networks.mesh.protocol.table import keep_table
 
 IDLE = 0
 COLLECTING = 1
@@ -56,53 +55,45 @@ def reset(gate, params):
     gate.open = 0
     gate.sum_a = 0
     gate.part = 0
-    gate.whole = 0
+    gate.taken = 0
 
 
 def lead(node, gate, params, now, out):
     """Be the gateway from now on, with an epoch that nobody has had.
 
     Who knows of none draws it, and the version of its tables: it may have been gateway before, and
-    a table of the same epoch and version would be taken for the one that is there.
+    a table of the same epoch and version would be taken for the one that is there. Tables are kept
+    if all had theirs: a gateway says so in its second round, and gives no graph away before.
     """
-    inherits = gate.whole or (params.mode == WHOLE_GRAPH and node.version)
+    keeps = node.version and (node.active or gate.part) and params.mode != TABLE_FREE
     reset(gate, params)
-    if inherits:
-        inherit(node, gate, params)
-    node.epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
-    node.known = 1
+    epoch = (node.epoch + 1) & 255 if node.known else draw(node, 256)
+    begin(node, params, node.number, epoch, node.round, out)
     node.leading = 1
-    node.due = NOTHING
-    node.gone = node.gateway
-    node.gateway = node.number
-    node.parent = ALL
-    gate.version = node.version if node.version else draw(node, 65_536)
-    node.quiet = 0
-    report(out, REPORT_GATEWAY, node.number, node.epoch)
+    gate.version = next_version(node.version) if node.version else draw(node, 65_536)
+    if keeps:
+        inherit(node, gate, params, out)
     start_round(node, gate, params, now, out)
 
 
-def inherit(node, gate, params):
-    """The links that the gateway before us knew, but for its own, count as just reported."""
+def inherit(node, gate, params, out):
+    """All keep their tables, and links count as just reported, but for those of who led before."""
     for a in range(params.nodes):
         for b in range(params.nodes):
-            if a != node.gateway and b != node.gateway and is_edge(node, params, a, b):
+            if a != node.gone and b != node.gone and is_edge(node, params, a, b):
                 note_heard(gate, params, a, b)
-    gate.whole = 1
+    gate.taken = 1
+    node.active = gate.version
+    keep_table(node, params, node.table_epoch, out)
 
 
 def start_round(node, gate, params, now, out):
-    """Broadcast a discovery request, and collect what comes back; who has a graph asks nobody."""
+    """Broadcast a discovery request, and collect what comes back."""
     flags = 0
-    wait = params.collect_us
     copies = params.copies
-    if gate.whole:
+    if gate.taken:
         flags = PRIORITY
         copies = copies + COPIES_MORE
-        wait = 2 * params.jitter_us
-        gate.whole = 0
-    else:
-        node.gone = ALL
     node.round = (node.round + 1) & MASK16
     node.depth = 1
     begin_anew(node, params)
@@ -119,7 +110,7 @@ def start_round(node, gate, params, now, out):
         add16(node, i, node.active)
         add8(node, i, params.jitter_us // JITTER_UNIT_US)
         node.q_copies[i] = copies
-    set_timer(out, ROUND, (now + wait) & MASK30)
+    set_timer(out, ROUND, (now + params.collect_us) & MASK30)
     kick(node, params, now, out)
 
 
@@ -156,13 +147,18 @@ def collect(node, gate, params, now, out):
                 note_heard(gate, params, node.neighbour[k], node.number)
     mark = build_graph(gate, params)
     changed = mark != gate.sum_a
-    gate.sum_a = mark
     report(out, REPORT_GRAPH, gate.links, changed)
     stretch(gate, params, changed)
     if changed:
         measure_all(gate, params)
-        gate.version = next_version(gate.version)
-        install_own(node, gate, params, out)
+        if gate.taken:  # all keep the tables that they have until the next round
+            mark = 0
+            changed = 0
+        else:
+            gate.version = next_version(gate.version)
+            install_own(node, gate, params, out)
+    gate.sum_a = mark
+    gate.taken = 0
     if params.mode != TABLE_FREE:
         give_jobs(node, gate, params, changed, out)
         pump(node, gate, params, now, out)

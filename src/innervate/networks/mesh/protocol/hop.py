@@ -11,12 +11,11 @@ many after a missing one.
 
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.outbox import set_timer
-from innervate.networks.mesh.protocol.constants import ACK_WAIT, ALARMS, ALL, MESSAGES
+from innervate.networks.mesh.protocol.constants import ACK_WAIT, ALARMS, ALL
 from innervate.networks.mesh.protocol.neighbours import place_of
 
 NONE = -1
 NOBODY_GAVE = 255
-HUSHED = 3  # in `due`: a new gateway hands out tables
 UNACKED = 3  # in q_state
 LONGEST_US = 1 << 20  # of a round trip, and of a wait
 DOUBLED_MAX = 2  # a wait four times as long is longer than three transmissions took
@@ -78,15 +77,8 @@ def learn_late(node, now, k):
         node.hop_doubled[k] = 0
 
 
-def is_hushed(node, i):
-    """1 if the frame in place i begins here and leaves the channel to a new gateway's tables."""
-    return node.due == HUSHED and node.q_rank[i] >= MESSAGES and node.q_from[i] == NOBODY_GAVE
-
-
 def is_full(node, params, i):
     """1 if the frame in place i waits until another one to its neighbour is acknowledged."""
-    if is_hushed(node, i):
-        return 1
     if not params.hop_frames or node.q_rank[i] == ALARMS or node.q_link_dst[i] == ALL:
         return 0
     k = place_of(node, params, node.q_link_dst[i])

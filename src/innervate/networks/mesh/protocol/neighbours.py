@@ -112,7 +112,7 @@ def is_over(node, k):
 def is_suspect(node, params, who):
     """1 if `who` is a neighbour that did not answer."""
     k = place_of(node, params, who)
-    return k >= 0 and node.suspect[k] & SUSPECT
+    return who == node.gone or (k >= 0 and node.suspect[k] & SUSPECT)
 
 
 def trust(node, params):

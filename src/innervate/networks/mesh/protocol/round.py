@@ -22,11 +22,11 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import forgive
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
-from innervate.networks.mesh.protocol.hop import HUSHED, NOBODY_GAVE
+from innervate.networks.mesh.protocol.hop import NOBODY_GAVE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
 from innervate.networks.mesh.protocol.queue import WAITS, compose, drop, enqueue, kick
 from innervate.networks.mesh.protocol.send import send_up
-from innervate.networks.mesh.protocol.table import activate
+from innervate.networks.mesh.protocol.table import activate, keep_table
 from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
 
 NOTHING = 0
@@ -65,7 +65,10 @@ def begin(node, params, gateway, epoch, round, out):
     if not node.known or node.gateway != gateway or node.epoch != epoch:
         report(out, REPORT_GATEWAY, gateway, epoch)
     node.known = 1
-    node.gone = ALL if node.gateway == gateway else node.gateway
+    if node.gateway != gateway:
+        node.gone = node.gateway
+    elif node.version != node.active:  # tables have come since it was gone
+        node.gone = ALL
     node.gateway = gateway
     node.epoch = epoch
     node.round = round
@@ -93,6 +96,7 @@ def on_request(node, params, now, frame, k, out):
     round = get16(frame, 2)
     if is_newer(node, params, gateway, epoch, round):
         old = node.gateway
+        before = node.epoch
         begin(node, params, gateway, epoch, round, out)
         settles = 0
         if old != gateway and old != ALL:
@@ -101,6 +105,8 @@ def on_request(node, params, now, frame, k, out):
                 node.rank = node.rank - 1
             redirect(node, params, now, old, out)
         node.active = get16(frame, 4)
+        if frame.flags & PRIORITY:
+            keep_table(node, params, before, out)
         activate(node, params, epoch, node.active, out)  # should the flood have passed us by
         arm_guard(node, params, now + settles, out)
     elif gateway != node.gateway or epoch != node.epoch or round != node.round:
@@ -115,7 +121,8 @@ def on_request(node, params, now, frame, k, out):
         else:
             node.parent = frame.link_src
             queue_request(node, params, now, frame, 0, out)
-            join(node, params, now, frame.path_len + 1, frame.flags & PRIORITY, out)
+            kept = frame.flags & PRIORITY and node.version
+            join(node, params, now, frame.path_len + 1, kept, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
 
@@ -168,16 +175,13 @@ def await_better(node, params, now, frame, out):
     queue_request(node, params, now, frame, 2 * params.jitter_us, out)
 
 
-def join(node, params, now, depth, taken, out):
-    """We know our depth in this round: respond later, unless a standby has just taken over."""
+def join(node, params, now, depth, kept, out):
+    """We know our depth in this round: respond later, unless we keep our table in a takeover."""
     node.depth = depth
-    if params.discovery != EACH:
+    if params.discovery != EACH and not kept:
         node.due = RESPOND
-        wait = params.listen_us
-        if taken:
-            node.due = HUSHED
-            wait = params.collect_us
-        set_timer(out, ROUND, (now + wait + draw(node, params.spread_us + 1)) & MASK30)
+        wait = params.listen_us + draw(node, params.spread_us + 1)
+        set_timer(out, ROUND, (now + wait) & MASK30)
 
 
 def look_again(node, params, now, out):

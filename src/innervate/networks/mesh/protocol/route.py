@@ -18,7 +18,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLES,
     WHOLE_GRAPH,
 )
-from innervate.networks.mesh.protocol.duplicates import forwarded_at, is_bad, is_skipped, skip
+from innervate.networks.mesh.protocol.duplicates import forwarded_at, is_bad, is_skipped
 from innervate.networks.mesh.protocol.frames import was_at
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
@@ -310,7 +310,6 @@ def advance_route(node, i):
 
 def learn_failure(node, params, i, failed):
     """Neighbour `failed` failed for the packet in place i; lost tables rewrite none."""
-    skip(node, node.q_origin[i], node.q_seq[i], failed)
     if params.mode == TABLE_FREE:
         strip_route(node, i)
     if params.mode != 0:

@@ -7,10 +7,8 @@ from innervate.networks.mesh.protocol.backoff import note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
-    ALL,
     ALTERNATE,
     DATA,
-    DETOURED,
     END_TO_END,
     NOBODY,
     REPORT_DROPPED,
@@ -141,21 +139,17 @@ def hop_failed(node, params, now, i, out):
     node.q_state[i] = WAITS
     node.q_due[i] = now
     node.q_fails[i] = node.q_fails[i] + 1
+    suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
+    skip(node, node.q_origin[i], node.q_seq[i], failed)
     if is_upward(kind):
-        suspect(node, params, now, failed, 0, out)
-        skip(node, node.q_origin[i], node.q_seq[i], failed)
         if node.q_fails[i] > FAILURES_MAX:
             give_up(node, params, i, out)
         else:
             climb(node, params, now, i, out)
     else:
-        suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
         learn_failure(node, params, i, failed)
-        if not params.retry or node.q_fails[i] > HOPS_MAX or is_stale(node, params, now, i):
-            give_up(node, params, i, out)
-        elif kind == TABLE and (node.gone == ALL or node.q_flags[i] & DETOURED):
-            give_up(node, params, i, out)
-        elif not aim(node, params, i, out):
+        lasts = params.retry and kind != TABLE and node.q_fails[i] <= HOPS_MAX
+        if not (lasts and not is_stale(node, params, now, i) and aim(node, params, i, out)):
             give_up(node, params, i, out)
 
 

@@ -11,6 +11,7 @@ from innervate.networks.mesh.protocol.constants import (
     GRAPH,
     PARTS_MAX,
     TABLES,
+    TTL,
 )
 from innervate.networks.mesh.protocol.frames import get16
 from innervate.networks.mesh.protocol.gateway import lead
@@ -23,6 +24,7 @@ from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_e
 IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
 PATIENCE = 12  # quarters, at first
 PATIENCE_MAX = 24  # after an answer that came late
+SPARE_HOPS = 3  # of a question of who has no patience: it is not looked for everywhere
 EVERYWHERE = 14  # nodes that had a packet for the gateway: then it does not answer anybody
 
 
@@ -46,7 +48,10 @@ def hear_of_gateway(node, params, now, frame, out):
 
 
 def guard(node, gate, params, now, out):
-    """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain."""
+    """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain.
+
+    Who is patient has its question looked for everywhere: that tells it whether it need be.
+    """
     node.silent = node.silent + 1
     if node.silent == 1:
         node.patience = max(node.patience - 1, 0)
@@ -56,6 +61,8 @@ def guard(node, gate, params, now, out):
     else:
         i = compose(node, now, ALARMS, GRAPH, node.gateway, 0, out)
         if i >= 0:
+            if not node.patience:
+                node.q_ttl[i] = min(node.depth + SPARE_HOPS, TTL)
             fill_graph(node, gate, params, i, gate.part, 0)  # of no parts: a question
             send_on(node, params, now, i, out)
         kick(node, params, now, out)
@@ -83,8 +90,6 @@ def on_guard(node, gate, params, now, frame, out):
         if index == gate.part and index < count:
             read_edges(node, params, frame, index)
             gate.part = index + 1
-            if gate.part == count:
-                gate.whole = 1
 
 
 def parts_told(gate, params):

@@ -62,13 +62,28 @@ def expect(node, epoch, version, count):
 
 
 def put_in_force(node, params, epoch, version, out):
-    """What came in is in force from now on."""
+    """What came in is in force from now on; whoever it leads to is there."""
+    if node.gone != ALL and node.next[node.bank * params.width + node.gone] != NONE:
+        node.gone = ALL
     node.version = version
     node.table_epoch = epoch
     node.new_version = 0
     node.ready = 0
     clear_bad(node, params)
     report(out, REPORT_TABLE, version, epoch)
+
+
+def keep_table(node, params, before, out):
+    """A standby took over: our table is its own, if it is of the epoch `before`; else we have none.
+
+    It leads no more to who was gateway.
+    """
+    if node.version and node.table_epoch == before:
+        if node.gone != ALL:
+            node.next[node.bank * params.width + node.gone] = NONE
+        put_in_force(node, params, node.epoch, node.active, out)
+    else:
+        node.version = 0
 
 
 def on_table(node, params, now, frame, out):
