@@ -265,9 +265,9 @@ def _mix(state, word):
 @overload(within, jit_options=INSIDE)  # type: ignore[untyped-decorator]
 def _within(words, low, high):
     def every(words, low, high):  # type: ignore[no-untyped-def]
-        wrong = 0
+        wrong = False
         for i in range(len(low)):
             wrong |= (words[i] < low[i]) | (words[i] > high[i])
-        return wrong == 0
+        return not wrong
 
     return every
