@@ -11,10 +11,11 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from llvmlite.binding import Linkage
 
 from innervate.analysis import intervals
 from innervate.dialect import arith
-from innervate.kernel import cache, compilation
+from innervate.kernel import cache, compilation, linking
 from innervate.kernel.linking import as_one
 from innervate.network import networks
 from innervate.networks.mesh.protocol import node
@@ -158,6 +159,27 @@ def test_what_cannot_be_kept_runs_all_the_same(tmp_path, monkeypatch, full_disk)
         assert made(21) == 42
     compilation.mark_compiled("mine")
     assert not compilation.is_compiled("mine")  # the next process says that it compiles
+
+
+def four_times(number):
+    return twice(twice(number))
+
+
+def test_what_is_linked_into_a_loop_belongs_to_it_alone(own_cache, monkeypatch):
+    """Otherwise each call is handed all tables of a world: half the time of some loops."""
+    optimise, linked = linking._numbas_optimize, {}
+
+    def looked_at(library):
+        for one in library._final_module.functions:
+            if "test_compilation" in one.name and not one.is_declaration:
+                linked.setdefault(one.linkage, []).append(one.name)
+        optimise(library)
+
+    monkeypatch.setattr(linking, "_numbas_optimize", looked_at)
+    compilation.register_functions(twice, hot=False)
+    assert compilation.compiled_as_one(four_times)(3) == 12
+    assert any("twice" in name for name in linked[Linkage.internal])
+    assert Linkage.linkonce_odr not in linked
 
 
 MAKES_ARRAYS = """

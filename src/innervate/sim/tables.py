@@ -91,6 +91,14 @@ class Tables:
         made: Any = np.ascontiguousarray(values, kind).ravel()
         return made.tolist() if self.plain else made
 
+    def spans(self, declaration: Any) -> Any:
+        """How a declaration's words are checked (see `kernel.records.spans`)."""
+        spans = records.spans(declaration)
+        table = self.records(records.Span._fields, len(spans), wide=records.Span._fields)
+        for place, span in enumerate(spans):
+            put(table, place, **span._asdict())
+        return table
+
     def outbox(self, limit: int, frame: Any, wide: Collection[str] = WIDE) -> Out:
         """An empty outbox with room for `limit` actions."""
         return Out(

@@ -315,7 +315,7 @@ def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_cloc
 
     check = declared._checks([holds])[0]
     run = Of(broken=0, broken_node=-1, checks=1)
-    world = Of(run=[run], words=[[value]], low=[0], high=[8], radios=[Of(offset=100)],
+    world = Of(run=[run], words=[[value]], low=[0], high=[8], spans=[], radios=[Of(offset=100)],
                stations=[None], params=[None])  # fmt: skip
     check(world, None, 0, MASK30)
     assert (run.broken, run.broken_node) == (broken, 0)

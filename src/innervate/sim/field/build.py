@@ -42,6 +42,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
         words=tables.words(stations, fields.STATE),
         low=tables.given(low, np.int32),
         high=tables.given(high, np.int32),
+        spans=tables.spans(fields.STATE),
         params=tables.states(fields.PARAMS, 1),
         radios=tables.records(w.RADIO, n, wide=w.RADIO),
         below=(),

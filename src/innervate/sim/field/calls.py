@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.kernel.bits import mix
-from innervate.kernel.records import within
+from innervate.kernel.records import within_spans
 from innervate.sim import rows
 from innervate.sim.field.medium import BROKEN_OUTBOX, breaks
 from innervate.sim.field.timers import set_timer
@@ -64,4 +64,4 @@ def take(world, do, node, frame, time):
 
 def is_sound(world, node):
     """True if every word of a node's record is in its range."""
-    return within(world.words[node], world.low, world.high)
+    return within_spans(world.words[node], world.low, world.high, world.spans)

@@ -39,6 +39,7 @@ class World(NamedTuple):
     words: Any  # these as rows of words
     low: Any
     high: Any
+    spans: Any  # words that are checked in one go
     params: Any
     macs: Any  # medium access: a record a node
     mac_params: Any

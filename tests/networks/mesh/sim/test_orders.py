@@ -125,7 +125,7 @@ def test_a_round_has_a_row_when_a_gateway_reports_its_graph(monkeypatch, code, c
 
 @pytest.mark.parametrize(("word", "broken"), [(8, 0), (9, medium.BROKEN_RANGE)])
 def test_a_value_out_of_range_breaks_the_run(word, broken):
-    world = Of(run=[Of(broken=0, broken_node=-1)], words=[[0], [word]], low=[0], high=[8])
+    world = Of(run=[Of(broken=0, broken_node=-1)], words=[[0], [word]], low=[0], high=[8], spans=[])
     orders.check(world, None, 1, 70)
     assert (world.run[0].broken, world.run[0].broken_node) == (broken, 1 if broken else -1)
 

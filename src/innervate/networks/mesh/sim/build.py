@@ -54,6 +54,7 @@ def build(plan: Any, plain: bool, **kept: bool) -> m.World:
         words=tables.words(nodes, fields),
         low=tables.given(low, np.int32),
         high=tables.given(high, np.int32),
+        spans=tables.spans(fields),
         params=tables.states(mesh_fields.PARAMS, 1),
         radios=tables.records(m.RADIO, n, wide=m.RADIO),
         due=tables.numbers(n * m.TIMERS, NEVER, np.int64),

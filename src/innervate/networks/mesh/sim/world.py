@@ -54,6 +54,7 @@ class World(NamedTuple):
     words: Any  # these as rows of words
     low: Any
     high: Any
+    spans: Any  # words that are checked in one go
     gates: Any  # what gateways and standbys have besides; one more, untouched
     gate_words: Any
     params: Any
