@@ -42,8 +42,43 @@ EXPRESSIONS = (
     ("a + 1 > 3", "a + 1 > 3"), ("a << 1 < 4", "(a << 1) < 4"), ("n ^ 1 ^ 2", "n ^ 1 ^ 2"),
     ("n & 1 | 2", "(n & 1) | 2"), ("n & (1 & m)", "n & (1 & m)"),
     ("n - 1 - (2 - 3)", "n - 1 - (2 - 3)"),
+    # C divides as Python does what is never negative; `and` of what is 0 or 1 alone is its `&&`.
+    ("(a & n) // 4", "(a & n) / 4"), ("(a | n) // 4", "own_floor_div(a | n, 4)"),
+    ("(p ^ n) // 4", "(p ^ n) / 4"), ("(n + m) // 4", "(n + m) / 4"),
+    ("(n + a) // 4", "own_floor_div(n + a, 4)"), ("(n - m) // 4", "own_floor_div(n - m, 4)"),
+    ("(n * m) // 4", "(n * m) / 4"), ("(n * a) // 4", "own_floor_div(n * a, 4)"),
+    ("(n << 2) // 4", "(n << 2) / 4"), ("(n >> 1) // 4", "(n >> 1) / 4"),
+    ("(a >> 1) // 4", "own_floor_div(a >> 1, 4)"), ("(a % n) // 4", "own_floor_mod(a, n) / 4"),
+    ("(n % a) // 4", "own_floor_div(own_floor_mod(n, a), 4)"),
+    ("(n // m) // 4", "(int32_t)((uint32_t)n / (uint32_t)m) / 4"),
+    ("max(n, m) // 4", "own_max(n, m) / 4"), ("max(a, n) // 4", "own_max(a, n) / 4"),
+    ("min(n, m) // 4", "own_min(n, m) / 4"), ("min(n, a) // 4", "own_floor_div(own_min(n, a), 4)"),
+    ("abs(a) // 4", "own_abs(a) / 4"), ("(n if p else m) // 4", "(p ? n : m) / 4"),
+    ("(n if p else a) // 4", "own_floor_div(p ? n : a, 4)"), ("(p and n) // 4", "(p ? n : 0) / 4"),
+    ("(p and a) // 4", "own_floor_div(p ? a : 0, 4)"), ("(p or n) // 4", "(p ? 1 : n) / 4"),
+    ("(p or a) // 4", "own_floor_div(p ? 1 : a, 4)"), ("(not a) // 4", "!a / 4"),
+    ("(-n) // 4", "own_floor_div(-n, 4)"), ("(~n) // 4", "own_floor_div(~n, 4)"),
+    ("(a < b) // 4", "(a < b) / 4"), ("now // 4", "now / 4"), ("timer // 4", "timer / 4"),
+    ("list[0] // 4", "list[0] / 4"), ("7 // 4", "7 / 4"), ("(-7) // 4", "own_floor_div(-7, 4)"),
+    ("True // 4", "1 / 4"), ("(p & n) and p", "p & n && p"), ("(n & m) and p", "n & m ? p : 0"),
+    ("(p | q) and p", "p | q && p"), ("(p | n) and p", "p | n ? p : 0"),
+    ("(p ^ q) and p", "p ^ q && p"), ("(p * q) and p", "p * q && p"),
+    ("(p * n) and p", "p * n ? p : 0"), ("(p + q) and p", "p + q ? p : 0"),
+    ("(p >> 1) and p", "p >> 1 && p"), ("(n % 2) and p", "n % 2 ? p : 0"),
+    ("min(p, q) and p", "own_min(p, q) && p"), ("min(p, n) and p", "own_min(p, n) ? p : 0"),
+    ("max(p, q) and p", "own_max(p, q) && p"), ("max(p, 2) and p", "own_max(p, 2) ? p : 0"),
+    ("(not n) and p", "!n && p"), ("(p if q else 1) and p", "(q ? p : 1) && p"),
+    ("(p if q else 2) and p", "(q ? p : 2) ? p : 0"), ("abs(p) and p", "own_abs(p) ? p : 0"),
+    ("(p and q) and p", "(p && q) && p"), ("(a > b) and p", "a > b && p"), ("1 and p", "1 && p"),
+    ("2 and p", "2 ? p : 0"), ("now and p", "now ? p : 0"), ("byte and p", "byte ? p : 0"),
+    ("(n - m) and p", "n - m ? p : 0"), ("(~p) and p", "~p ? p : 0"),
+    ("out.action[3].b - 1", "(&out->action[3])->b - 1"), ("n << 2 << 1", "(n << 2) << 1"),
+    ("not (p and q and n)", "!(p && q && n)"), ("(p or n) if q else 3", "q ? (p ? 1 : n) : 3"),
+    ("(p and n) if q else 3", "q ? (p ? n : 0) : 3"),
+    ("n and (1 if p else 2)", "n ? (p ? 1 : 2) : 0"), ("0 < n < 3 or p", "(0 < n && n < 3) || p"),
+    ("p or 0 < n < 3", "p || (0 < n && n < 3)"), ("(p or now) + 1", "(p ? 1 : now) + 1"),
 )  # fmt: skip
-FIELDS = ("list", "a", "b", "n", "m", "p", "q")
+FIELDS = ("list", "a", "b", "n", "m", "p", "q", "byte")
 STATEMENTS = '''"""Doc."""
 
 MOST = 9
@@ -254,7 +289,7 @@ void own_on_timer(own_state_t *state, const own_params_t *params, int32_t now, i
 
 def of_state(text, arrow):
     """The text with every field as one of the state."""
-    return re.sub(rf"\b({'|'.join(FIELDS)})\b", rf"state{arrow}\1", text)
+    return re.sub(rf"(?<![.>])\b({'|'.join(FIELDS)})\b", rf"state{arrow}\1", text)
 
 
 def made(tmp_path, monkeypatch, name, text):

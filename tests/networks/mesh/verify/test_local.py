@@ -4,8 +4,8 @@ from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol import constants as const
+from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.local import COLLECTING, NEVER, Locals
 from innervate.networks.mesh.verify.model import MeshModel
