@@ -269,20 +269,6 @@ def test_the_command_compiles_for_the_least_processor_and_keeps_no_cache(tmp_pat
     assert not Path(os.environ["INNERVATE_CACHE"]).exists()
 
 
-@pytest.mark.parametrize(("system", "machine", "maxsize", "found"), [
-    ("linux", "x86_64", 2**63 - 1, "linux-x86_64"), ("win32", "AMD64", 2**63 - 1, "win32-x86_64"),
-    ("linux", "aarch64", 2**63 - 1, "linux-aarch64"),
-    ("darwin", "arm64", 2**63 - 1, "darwin-aarch64"),
-    ("linux", "armv7l", 2**31 - 1, "linux-armv7l-32"),
-])  # fmt: skip
-def test_what_code_is_made_for(monkeypatch, system, machine, maxsize, found):
-    monkeypatch.setattr(sys, "platform", system)
-    monkeypatch.setattr(sys, "maxsize", maxsize)
-    monkeypatch.setattr("platform.machine", lambda: machine)
-    assert ready.target() == found
-    assert (ready.baseline() == ready.ANY) == (not found.endswith("-x86_64"))
-
-
 @pytest.mark.slow
 def test_from_a_wheel_the_first_figures_come_at_once_and_nothing_is_compiled(tmp_path):
     """Loops are made, a wheel built and unpacked elsewhere, and its scenarios run."""
