@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.recorded import declared, files, plans, points, simulated, wire
+from tests.recorded import declared, files, plans, simulated, wire
 from tests.recorded.data import tidy
 from tests.recorded.record import differences
 
@@ -26,7 +26,6 @@ SUBJECTS = {
     "wire": wire.found,
     "files": files.found,
     "simulated": simulated.found,
-    "points": points.found,
 }
 
 
