@@ -9,7 +9,6 @@ import pytest
 from innervate.papers import book
 from tests.recorded import pictures, record
 
-
 PAPERS = [group for group in pictures.GROUPS if group.startswith("papers")]
 # What a paper draws is drawn of kept rows at once, each by itself; runs are drawn together.
 OF_PAPERS = [(group, name) for group in PAPERS for name in pictures.recorded(group)]

@@ -4,7 +4,7 @@ from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.networks.skin.papers import fig6
+from innervate.networks.skin.papers import fig6, fig8a
 
 
 @pytest.mark.parametrize(("changes", "share"), [
@@ -25,3 +25,16 @@ def test_losses_of_a_sweep_go_from_none_to_all(quick, count, step):
     losses = fig6.losses(quick)
     assert losses == pytest.approx([step * i for i in range(count)])
     assert losses[-1] == 1.0
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_the_bar_is_asked_for_at_the_highest_rate(monkeypatch, quick):
+    asked = []
+    monkeypatch.setattr(fig8a, "_band", lambda *_: "a band")
+    monkeypatch.setattr(fig8a, "off_band", lambda got, rule, hz, k: asked.append((hz, k)) or [0.0])
+    monkeypatch.setattr(fig8a.IN_BAND.__class__, "share", lambda *_: 1.0)
+    *bands, bar = [next(claims) for claims in [fig8a.judge(Of(quick=quick))]
+                   for _ in range(len(fig8a.RULES) + 1)]  # fmt: skip
+    assert bands == ["a band"] * len(fig8a.RULES)
+    assert asked == [(250, k) for k in fig8a.BAR_K]
+    assert bar.claim.startswith("feasible at 250 Hz")
