@@ -7,10 +7,11 @@ import pytest
 
 from innervate.dialect.outbox import REPORT, SEND, SET_TIMER
 from innervate.networks.skin.protocol.constants import NONE, PORTS
-from innervate.networks.skin.prove import forgetting
+from innervate.networks.skin.prove import forgetting, pc
 from innervate.networks.skin.prove.mirror import ORDERS, SAID, Mirror, _same_sent
 from innervate.prove.records import Action
 from innervate.prove.terms import Terms
+from innervate.prove.theory import source
 
 
 def test_all_orders_of_four_ports_come_of_the_two():
@@ -65,3 +66,10 @@ def test_a_dead_port_is_the_parents_or_another_is_or_none(rule, count):
     assert {parent for parent, why in asked if why != forgetting.SAID} == others
     own = [(forgetting.PORT, forgetting.SAID)] if rule == forgetting.ANY_RULE else []
     assert [one for one in asked if one[0] == forgetting.PORT] == own
+
+
+def test_a_number_may_be_heard_at_any_port_that_there_is():
+    step = pc._heard_alike(source(pc.ENTRY, None))
+    there = step.terms.unknown("port'", 0, PORTS - 1)
+    assert step.terms.less(there, step.was("own", "ports")) in step.facts
+    assert [goal.name for goal in step.goals] == ["the same comes of it, and nothing is sent"]
