@@ -263,7 +263,7 @@ def test_the_command_compiles_for_the_least_processor_and_keeps_no_cache(tmp_pat
     (tmp_path / "file").touch()
     monkeypatch.setattr(sys, "argv", ["readying", str(tmp_path / "file" / "loops")])
     with pytest.raises(NotADirectoryError):
-        runpy.run_path(readying.__file__, run_name="__main__")
+        runpy.run_module("innervate.kernel.readying", run_name="__main__")
     assert os.environ["NUMBA_CPU_NAME"] == ready.baseline()[0]
     assert (os.environ["NUMBA_CPU_FEATURES"], os.environ["INNERVATE_READY"]) == ("", "0")
     assert not Path(os.environ["INNERVATE_CACHE"]).exists()
