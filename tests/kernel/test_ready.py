@@ -262,6 +262,7 @@ def test_the_command_compiles_for_the_least_processor_and_keeps_no_cache(tmp_pat
         monkeypatch.setenv(name, "before")
     (tmp_path / "file").touch()
     monkeypatch.setattr(sys, "argv", ["readying", str(tmp_path / "file" / "loops")])
+    monkeypatch.delitem(sys.modules, "innervate.kernel.readying")
     with pytest.raises(NotADirectoryError):
         runpy.run_module("innervate.kernel.readying", run_name="__main__")
     assert os.environ["NUMBA_CPU_NAME"] == ready.baseline()[0]
