@@ -163,6 +163,7 @@ def test_import_alone_loads_nothing():
 
 
 def test_unknown_attribute_of_the_package():
+    assert inspect.isfunction(vars(innervate)["__getattr__"])  # nothing is loaded before
     with pytest.raises(AttributeError, match="walk"):
         innervate.walk  # noqa: B018
 

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from types import SimpleNamespace
+from types import SimpleNamespace as Of
 
 import pytest
 
@@ -24,14 +24,14 @@ def served(monkeypatch):
 
     monkeypatch.setattr("innervate.web.serve.serve", serve)
     monkeypatch.setattr(watching, "_simulated", lambda what, settings: f"scenario {what}")
-    recorded = SimpleNamespace(report=Path("report.html"))
+    recorded = Of(report=Path("report.html"))
     monkeypatch.setattr(watching, "_recorded", lambda folder, settings: recorded)
     monkeypatch.setattr(watching, "_live", lambda nodes, settings: f"live {' '.join(nodes)}")
     return told
 
 
 def page(port=0, open_=False):
-    return SimpleNamespace(host="::1", port=port, open_=open_)
+    return Of(host="::1", port=port, open_=open_)
 
 
 def test_a_folder_is_a_run_but_for_live_and_what_comes_with_innervate(
@@ -58,7 +58,7 @@ def test_a_browser_is_opened_if_one_is_wanted(served, monkeypatch, is_open):
     monkeypatch.setattr(watching.webbrowser, "open", opened.append)
     monkeypatch.setattr(
         watching.threading, "Thread",
-        lambda target, args, daemon: SimpleNamespace(start=lambda: target(*args)),
+        lambda target, args, daemon: Of(start=lambda: target(*args)),
     )  # fmt: skip
     watching.watch("a.toml", [], PLAIN, page(open_=is_open))
     assert opened == ["http://here"] * is_open
@@ -183,3 +183,29 @@ def test_what_is_concluded_of_a_protocol(most, broken, failed, faults):
     assert f"at most {max(2, most or 0)} actions a call of 16, 5,000 states explored" in line
     assert ("values and frames fit" in line) == (not faults)
     assert line.endswith("7 of 9 functions reached by tests") == (failed is not None)
+
+
+def test_a_protocol_is_explored_on_two_nodes_in_so_many_states(monkeypatch):
+    asked = []
+    case = Of(record={"broken": None, "states": 5_000}, lines=["a line"])
+
+    def explore(network, **how):
+        asked.append(how)
+        return (case,)
+
+    monkeypatch.setattr("innervate.running.exploring.explore", explore)
+    monkeypatch.setattr(
+        making.folders,
+        "actions_of",
+        lambda *_: {"on_frame": (17, "a.py:3"), "on_timer": (None, "a.py:9")},
+    )
+    network, said, lines = Of(parts={}, package="own", protocol=Of(), name="own"), {}, []
+    making._look_further(Path(), network, False, said, lines)
+    assert asked == [{"graph": "pair", "states": 5_000}]
+    assert (said["outbox"], said["broken"]) == ({"on_frame": 17, "on_timer": None}, None)
+    assert lines[:3] == [
+        "a.py:3: on_frame may put 17 actions, the outbox holds 16; write OUTBOX = 17",
+        "a.py:9: on_timer: how many actions it may put is not seen from its loops; the outbox "
+        "holds 16", "a line",
+    ]  # fmt: skip
+    assert lines[3].startswith("own: the dialect is kept, but: the outbox is too small")

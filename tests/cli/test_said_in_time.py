@@ -2,13 +2,15 @@
 
 import builtins
 import re
+from types import SimpleNamespace as Of
 
 import pytest
 
 from innervate import scenario
-from innervate.cli import errors, exporting, files, live_app, sizing
+from innervate.cli import errors, exporting, files, live_app, running, sizing
 from innervate.cli.options import ExportOptions, SizeOptions, UpOptions
 from innervate.export import recording
+from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.sweeping import SweepError, sweep
 from tests.networks.skin.runs import line, patch, plan_of
@@ -105,3 +107,34 @@ def test_a_figure_of_a_sweep_says_over_what_it_takes_means():
     assert "means over 2 values of protocol.beacon_hz" in drawn.axes[0].get_xlabel()
     alone = done.plot("protocol.k", measure, by="protocol.beacon_hz")
     assert "means over" not in alone.axes[0].get_xlabel()
+
+
+@pytest.mark.parametrize(("given", "seed"), [(None, 1), (0, 0), (7, 7)])
+def test_a_size_is_of_the_seed_that_was_given_or_of_the_first(tmp_path, monkeypatch, given, seed):
+    asked, room = [], next(one.sizing for one in networks().values() if one.has("sizing"))
+    answer = Of(lines=lambda: ["two are enough"], draw=lambda folder: folder / "a.svg")
+    monkeypatch.setattr(room, "size", lambda question, **how: asked.append(how) or answer)
+    options = SizeOptions(links="*", ports="1..2", seed=given, repeat=5, out=tmp_path / "o")
+    assert sizing.size("arm.urdf", options) == 0
+    assert [(how["seed"], how["repeat"], how["out"]) for how in asked] == [
+        (seed, 5, tmp_path / "o")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("quiet", "is_quiet"), [((), False), ((True,), True), ((False,), False)])
+def test_a_run_says_how_far_it_is_unless_it_is_to_be_quiet(tmp_path, monkeypatch, quiet, is_quiet):
+    shown = []
+
+    class Display:
+        def __init__(self, is_compiled, is_quiet):
+            shown.append(is_quiet)
+
+        def __enter__(self):
+            return lambda now_us, duration_us: None
+
+        def __exit__(self, *why):
+            pass
+
+    monkeypatch.setattr(running, "Progress", Display)
+    monkeypatch.setattr("innervate.running.run", lambda loaded, progress, **how: "done")
+    assert running.simulate("setup-1", [], None, tmp_path / "out", *quiet) == "done"
+    assert shown == [is_quiet]

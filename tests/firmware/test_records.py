@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.firmware import compiled
+from innervate.firmware import compiled, payloads
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.packed import Packed
 from innervate.firmware.payloads import whole
@@ -25,6 +25,7 @@ from innervate.firmware.records import (
 from innervate.firmware.records import struct as struct_text
 from innervate.firmware.views import struct_of
 from innervate.live.board import Role
+from innervate.wire.layout import PAIRS, REST
 
 
 @pytest.mark.parametrize(
@@ -165,3 +166,25 @@ def test_libraries_that_were_not_used_for_longest_go(tmp_path):
 
 def test_payloads_that_are_not_looked_into_need_no_functions():
     assert whole("some", SimpleNamespace(forms=(SimpleNamespace(payloads={}),))) == []
+
+
+@pytest.mark.parametrize(("fields", "why"), [
+    ((("few", 2, (("n", 0, 8, 0), ("each", "n", 4, 0)), 0),), "few: groups of variable length"),
+    ((("count", 0, 8, 0), ("pairs", PAIRS, 8, 0)), "pairs: pairs are no payload"),
+])  # fmt: skip
+def test_payloads_that_c_does_not_go_through_are_refused(fields, why):
+    with pytest.raises(FirmwareError, match=why):
+        payloads._walk(fields)
+
+
+def test_a_payload_is_gone_through_field_by_field_to_its_end():
+    groups = ("groups", REST, (("a", 0, 4, 0), ("b", 0, 12, 0)), 0)
+    assert payloads._walk((("a", 0, 8, 0), ("b", 3, 4, 0))) == ["return at + 20 == end;"]
+    assert payloads._walk(()) == ["return at == end;"]
+    assert payloads._walk((("a", 0, 8, 0), ("rest", REST, 16, 0))) == [
+        "at += 8;", "return at <= end && (end - at) % 16 == 0;"]  # fmt: skip
+    assert payloads._walk((("rest", REST, 8, 0),)) == [
+        "return at <= end && (end - at) % 8 == 0;"]  # fmt: skip
+    whole = payloads._walk((("a", 0, 8, 0), groups))
+    assert (whole[:2], whole[-2:]) == (["at += 8;", "while (at < end) {"],
+                                       ["}", "return at == end;"])  # fmt: skip

@@ -156,6 +156,17 @@ def test_what_c_can_say_alike_is_taken(tmp_path, monkeypatch, body):
     assert "own_on_timer" in of_body(tmp_path, monkeypatch, body).source("own.h")
 
 
+@pytest.mark.parametrize(("name", "takes"), [
+    ("looks", "const own_state_t *state"), ("through", "own_state_t *state"),
+    ("bumps", "own_state_t *state"), ("bump", "uint8_t *values, int32_t at"),
+])  # fmt: skip
+def test_who_changes_what_it_is_given_says_so(tmp_path, monkeypatch, name, takes):
+    call = f"{name}(state.list, 0)" if name == "bump" else f"{name}(state)"
+    text = f"{BEGIN}    state.r[0] = {call}\n{HELPERS}"
+    made = Library(role_of(tmp_path, monkeypatch, f"own_gives_{name}", text), {})
+    assert f" own_{name}({takes})" in made.source("own.h")
+
+
 LOOKS = '''"""Doc."""
 
 from {other} import on_input

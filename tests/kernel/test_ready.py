@@ -2,12 +2,15 @@
 
 import json
 import os
+import runpy
 import shutil
 import subprocess
 import sys
 import zipfile
+import zlib
 from collections import namedtuple
 from pathlib import Path
+from types import SimpleNamespace as Of
 
 import numpy as np
 import pytest
@@ -162,6 +165,109 @@ def test_an_edit_makes_ready_loops_stale_and_moving_does_not(tmp_path):
     with (copied / "sim" / "wheel.py").open("a") as file:
         file.write("# another\n")
     assert content_hash(copied) != content_hash()
+
+
+class Jitted:
+    """What compiles a loop keeps the function that it was made of."""
+
+    def __init__(self, function):
+        self.compiled, self.function = function, function
+
+    def __call__(self, world, until, budget):
+        self.function(world, until, budget)
+
+
+class Running:
+    """A run of `counting`, by whatever it is advanced with."""
+
+    name = "usual"
+
+    def __init__(self, function):
+        self.world, self.fingerprint = counting(), ""
+        self._advance = ready.Loop("counting", lambda: Jitted(function))
+
+    def finish(self):
+        self._advance(self.world, 5, 3)
+        self.fingerprint = str(self.world)
+
+
+@pytest.fixture
+def network(monkeypatch, code):
+    """A network whose compiled loop is this function, and whose code is that of `counting`."""
+
+    def of(function, running=Running):
+        found = {"own": Of(simulation=lambda _: running(function))}
+        monkeypatch.setattr("innervate.network.networks", lambda: found)
+        monkeypatch.setattr("innervate.scenario.load", lambda *words: words)
+        monkeypatch.setattr("innervate.scenario.plan", lambda _: Of(kind="own"))
+        monkeypatch.setattr(readying, "object_code", lambda _: code)
+
+    return of
+
+
+class Named(Running):
+    loop_names = staticmethod(lambda: {"one", "another"})
+
+
+@pytest.mark.parametrize(("running", "names"), [
+    (Running, {"usual"}), (Named, {"one", "another"}),
+])  # fmt: skip
+def test_a_loop_is_packed_with_the_names_that_plans_have_for_it(network, code, running, names):
+    network(plain, running)
+    packed, known = readying.made("own", ())
+    assert (packed, known) == (readying.packed("counting", counting(), code), names)
+    key, data, digest = packed
+    assert zlib.decompress(data) == code
+    assert (key, len(digest)) == (ready.key_of("counting", counting()), 32)
+
+
+def test_a_loop_that_runs_otherwise_than_the_compiled_one_is_none(network):
+    network(lambda world, until, budget: plain(world, until, budget + 1))
+    with pytest.raises(RuntimeError, match="own: the ready loop runs otherwise"):
+        readying.made("own", ())
+
+
+def test_what_is_made_ready_takes_the_place_of_what_was(tmp_path, monkeypatch, capsys):
+    loops = {
+        ("a", ()): (("k1", b"one", "d1"), {"x", "y"}),
+        ("b", ("s",)): (("k2", b"2", "d2"), {"y"}),
+    }
+    monkeypatch.setattr(readying, "BUNDLED", tuple(loops))
+    monkeypatch.setattr(readying, "made", lambda *asked: loops[asked])
+    (tmp_path / "loops").mkdir()
+    (tmp_path / "loops" / "old.o.z").write_bytes(b"")
+    readying.write(tmp_path / "loops")
+    found = {path.name: path.read_bytes() for path in (tmp_path / "loops").iterdir()}
+    told = json.loads(found.pop(ready.ABOUT))
+    assert found == {"k1.o.z": b"one", "k2.o.z": b"2"}
+    assert told == {
+        "form": ready.FORM, "target": ready.target(), "features": list(ready.baseline()[1]),
+        "sources": content_hash(), "names": ["x", "y"], "loops": {"k1": "d1", "k2": "d2"},
+    }  # fmt: skip
+    assert capsys.readouterr().out == "a : 0 KiB\nb s: 0 KiB\n"
+    assert ready.loops_in(tmp_path / "loops") == 2
+
+
+def test_of_sources_that_were_edited_meanwhile_nothing_is_said(tmp_path, monkeypatch):
+    hashes = iter("ab")
+    monkeypatch.setattr(readying, "BUNDLED", ())
+    monkeypatch.setattr(readying, "content_hash", lambda: next(hashes))
+    with pytest.raises(RuntimeError, match="edited while"):
+        readying.write(tmp_path)
+    assert not (tmp_path / ready.ABOUT).exists()
+
+
+def test_the_command_compiles_for_the_least_processor_and_keeps_no_cache(tmp_path, monkeypatch):
+    for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "INNERVATE_READY", "INNERVATE_CACHE"):
+        monkeypatch.setenv(name, "before")
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(sys, "argv", ["readying", str(tmp_path / "file" / "loops")])
+    monkeypatch.delitem(sys.modules, "innervate.kernel.readying")
+    with pytest.raises(NotADirectoryError):
+        runpy.run_module("innervate.kernel.readying", run_name="__main__")
+    assert os.environ["NUMBA_CPU_NAME"] == ready.baseline()[0]
+    assert (os.environ["NUMBA_CPU_FEATURES"], os.environ["INNERVATE_READY"]) == ("", "0")
+    assert not Path(os.environ["INNERVATE_CACHE"]).exists()
 
 
 @pytest.mark.slow

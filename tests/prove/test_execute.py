@@ -83,7 +83,7 @@ def nested(s, n):
     return total
 
 def strange(s, n):
-    return n is 3
+    return n is s
 """
 
 

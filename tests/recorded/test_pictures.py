@@ -9,8 +9,12 @@ import pytest
 from innervate.papers import book
 from tests.recorded import pictures, record
 
+PAPERS = [group for group in pictures.GROUPS if group.startswith("papers")]
+# What a paper draws is drawn of kept rows at once, each by itself; runs are drawn together.
+OF_PAPERS = [(group, name) for group in PAPERS for name in pictures.recorded(group)]
 
-@pytest.mark.parametrize("group", pictures.GROUPS)
+
+@pytest.mark.parametrize("group", sorted(pictures.GROUPS.keys() - PAPERS))
 def test_pictures_are_as_recorded(group):
     kept = pictures.recorded(group)
     lost, names = [], []
@@ -20,6 +24,17 @@ def test_pictures_are_as_recorded(group):
         lost += pictures.differences(name, kept.get(name, {}), found)
     assert lost == []
     assert names == list(kept)
+
+
+@pytest.mark.parametrize("group", PAPERS)
+def test_all_of_a_paper_is_recorded(group):
+    assert [name for name, _ in pictures.GROUPS[group]()] == list(pictures.recorded(group))
+
+
+@pytest.mark.parametrize(("group", "name"), OF_PAPERS)
+def test_a_papers_picture_is_as_recorded(group, name):
+    found = pictures.text_of(dict(pictures.GROUPS[group]())[name]())
+    assert pictures.differences(name, pictures.recorded(group)[name], found) == []
 
 
 @pytest.mark.parametrize("system", book.books())

@@ -9,6 +9,7 @@ from innervate.scenario import ScenarioError, bundled, dump, from_dict, load, lo
 from innervate.scenario.cables import describe
 from innervate.scenario.declared.shared import check_values
 from innervate.scenario.events import in_time, told
+from innervate.scenario.overrides import parse_value
 from innervate.scenario.source import Source, shown
 
 RING = {"kind": "babel", "nodes": 4, "duration_s": 2.0}
@@ -150,3 +151,12 @@ def test_four_of_a_list_are_shown():
 def test_a_name_that_no_file_can_have_is_none(name):
     with pytest.raises(ScenarioError, match="no such file, and no bundled scenario"):
         load(name)
+
+
+@pytest.mark.parametrize(("text", "value"), [
+    ("2.5", 2.5), ("[1, 2]", [1, 2]), ("true", True), ("9x", "9x"), ('"9"', "9"),
+    ("1\nw = 2", "1\nw = 2"), ("1\r\nw = 2", "1\r\nw = 2"), ("1\r", "1\r"),
+    ("[1,\n2]", "[1,\n2]"),
+])  # fmt: skip
+def test_what_is_set_is_one_line_of_toml_or_a_text(text, value):
+    assert parse_value(text) == value

@@ -82,7 +82,7 @@ def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> 
         print(json.dumps(answer) if as_json else f"{state}{reason}", flush=True)
         if state in ("delivered", "expired", "refused") or not request["wait"]:
             break
-    return 0 if state in ("delivered", "accepted") else 1
+    return 0 if state == "delivered" or (state == "accepted" and not request["wait"]) else 1
 
 
 def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:

@@ -7,7 +7,7 @@ import pytest
 from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import URGENT
-from innervate.dialect.rng import FIXED_POINT
+from innervate.dialect.rng import FIXED_POINT, seeded
 from innervate.scenario.actions.field import CUT, JAM, KILL
 from innervate.scenario.declared.field import AirTable, Fault, FieldPlan, Heard
 from innervate.sim import heap, taps
@@ -71,6 +71,13 @@ def test_a_plan_becomes_the_numbers_of_its_air(over):
         assert [int(get(world.mac_params, 0, name)) for name in names] == [111, 3, 6, 9]
         drawn = uniform(3, "macs", 3, FIXED_POINT - 1) + 1  # a stream of their own
         assert world.macs["rng"].tolist() == drawn.tolist()
+
+
+@pytest.mark.parametrize("seed", range(1, 9))
+def test_what_is_lost_is_drawn_from_a_stream_of_the_mediums_own(seed):
+    world = build(plan_of(seed=seed), network_of(), False, Recorded())
+    drawn = int(uniform(seed, "medium", 1, 1 << 30)[0])
+    assert run_of(world)["rng"] == seeded(drawn)
 
 
 def test_what_no_radio_could_sense_is_one_at_least():

@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import (
     OWN,
     PRIORITY,
 )
+from innervate.networks.mesh.protocol.duplicates import UNREACHABLE
 from innervate.networks.mesh.protocol.retransmission import AHEAD_MAX, SURE_AFTER
 
 KEPT = 32
@@ -210,3 +211,20 @@ def test_places_grow_with_what_arrives_up_to_three_quarters(stack):
     assert (made._gone, made._in_vain) == ({2}, "nobody")
     made.heard(2)
     assert (made._gone, made._in_vain) == (set(), None)
+
+
+def test_places_are_so_many():
+    assert (turns.MOST, FEW, FIRST, SILENT, SPARE) == (4096, 16, 4, 4, 2)
+
+
+@pytest.mark.parametrize(("tries", "unreachable", "is_calm"), [
+    (SURE_AFTER, False, True), (SURE_AFTER + 1, False, False), (SURE_AFTER, True, False),
+    (SURE_AFTER + 1, True, False),
+])  # fmt: skip
+def test_all_is_calm_while_nobody_is_tried_for_long_and_nobody_unreachable(
+    stack, tries, unreachable, is_calm
+):
+    hold(stack, 3, 1, tries=tries)
+    if unreachable:
+        stack.node.bad_neighbour[1], stack.node.bad_dest[1] = UNREACHABLE, 9
+    assert Places(stack, set(), False, {})._is_calm == is_calm

@@ -4,7 +4,9 @@ import pytest
 
 from innervate.dialect import plain
 from innervate.dialect.access import CLOCK, PACKET
+from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import seeded
+from innervate.networks.radio.baselines import passing
 from innervate.networks.radio.baselines import station as entry
 from innervate.networks.radio.baselines.common import LISTEN, SEND
 from innervate.networks.radio.baselines.fields import BASELINE
@@ -64,3 +66,22 @@ def test_only_who_throws_dice_stops_waiting_when_a_carrier_comes(mac, armed):
     alone.given(1000, CLOCK, handle=0, ago=0)
     assert alone.given(1010, PACKET, slots=5).armed == 1
     assert alone.carrier(1020, 1).armed == armed
+
+
+@pytest.mark.parametrize(("queued", "most", "count"), [(0, 2, 0), (1, 0, 0), (1, 2, 1)])
+def test_who_hands_the_turn_on_has_sent_what_it_had_and_no_more(queued, most, count):
+    """Whatever it sent before that it was not told of; the turn goes on in two slots."""
+    alone = Alone("token-ring", count=5)
+    for _ in range(queued):
+        alone.given(500, PACKET, slots=7)
+    passing.grant(alone.station, alone.params, 1_000, 4, most, alone.out)
+    station = alone.station
+    assert (station.count, station.mode, station.step) == (count, SEND, 4)
+    assert station.end == 1_000 + 20 + (2 + 7 * count) * 208
+    assert max(frame.span for frame in alone.out.frame) == 5
+
+
+def test_moments_of_baselines_are_of_a_clock_of_30_bits():
+    moments = {name: (low, high) for name, _, low, high, unit, _ in BASELINE if unit == "us"}
+    assert set(moments) == {"start", "since", "due", "mark"}
+    assert set(moments.values()) == {(0, MASK30)}

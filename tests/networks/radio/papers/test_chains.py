@@ -18,3 +18,8 @@ def test_starts_are_more_than_a_slot_apart_and_before_the_first_packet_ends(n, w
     assert max(gaps) <= widest
     if n > 2:
         assert {209, widest} <= gaps
+
+
+def test_the_four_of_the_figure_start_when_their_packets_do():
+    starts = {robot: begin for robot, begin, _ in reversed(fig1.PACKETS)}
+    assert fig1.CHANNEL.starts_us == tuple(starts[robot] for robot in range(4))

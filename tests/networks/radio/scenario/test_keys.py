@@ -172,3 +172,11 @@ def test_a_lone_station_and_hidden_pairs_are_warned_of() -> None:
 
 def check_text(text: str) -> str:
     return summary(loads(f'kind = "radio"\n{text}'))
+
+
+def test_of_events_on_the_slotted_level_the_first_is_named() -> None:
+    text = SMALL.replace("tau_us = [52, 104]", 'level = "slotted"')
+    text += '\n[[event]]\nat_s = 2.0\naction = "kill"\nstation = 1\n'
+    with pytest.raises(ScenarioError, match="events go with") as found:
+        plan(loads(text))
+    assert (found.value.key, found.value.line) == ("event.0", 8)

@@ -98,6 +98,8 @@ def sent(start, end, node, kind=DATA):
         ([sent(10, 90, 0), sent(20, 40, 1), sent(60, 99, 2)], ["collision"] * 3, 1,
          ["collision of stations 0, 1, 2"]),
         ([sent(60, 99, 2), sent(10, 50, 0)], ["frame"] * 2, 0, []),
+        ([sent(10, 90, k % 5) for k in range(6)], ["collision"] * 6, 1,
+         ["collision of stations 0, 0, 1, 2, 3, 4"]),
         ([sent(10, 90, k % 5) for k in range(7)], ["collision"] * 7, 1,
          ["collision of stations 0, 0, 1, 1, 2, 3, ..."]),
     ],

@@ -3,7 +3,7 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.skin.analysis.touch import felt_image, received_image
+from innervate.networks.skin.analysis.touch import felt_image, read_sensors, received_image
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +54,21 @@ def test_a_sample_is_known_from_when_it_came_until_a_window_later():
         assert found.proximity.tolist() == [
             p * k for p, k in zip((10, 30, 40, 0), known, strict=True)
         ]
+
+
+def test_what_a_cell_feels_is_the_mean_of_its_three_sensors(touched):
+    carrier, at_us = touched.world.carrier, 1_900_000
+    sample = Of(force=[0, 0, 0], accel=[0, 0, 0])
+    sensors = Of(sample=[sample], carrier=Of(**{name: list(t) for name, t in
+                                                carrier._asdict().items()}))  # fmt: skip
+    found, sums = felt_image(touched, at_us / 1e6), []
+    for cell in range(touched.plan.graph.cells):
+        read_sensors(sensors, cell, at_us)
+        sums.append(sum(sample.force))
+        assert found.proximity[cell] == sample.proximity
+    assert max(sums) > 3_000
+    assert found.force_mn.tolist() == [force // 3 for force in sums]
+    assert set(found.age_us.tolist()) == {0}
 
 
 def test_a_run_will_do_as_well(touched):

@@ -84,6 +84,13 @@ def test_a_port_is_broken_after_k_misses_or_k_is_refused() -> None:
                 params(text)
 
 
+@pytest.mark.parametrize(("rate_hz", "period_us"), [
+    ("0.01", 100_000_000), ("0.3", 3_333_333), ("1", 1_000_000), ("7", 142_857), ("250", 4_000),
+])  # fmt: skip
+def test_a_period_is_a_second_by_the_rate_to_the_microsecond(small, rate_hz, period_us):
+    assert plan(loads(small, [f"data.rate_hz={rate_hz}"])).data_period_us == period_us
+
+
 def test_timing_and_data(small: str) -> None:
     sets = ["timing.latency=per_frame", "data.rate_hz=30", "data.queue=3", "timing.drift_ppm=7"]
     made = plan(loads(small, sets))

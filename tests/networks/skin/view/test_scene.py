@@ -62,3 +62,11 @@ def test_cells_are_drawn_a_pitch_apart():
     places = scene.places(graph)
     assert math.dist(places[0], places[1]) == pytest.approx(1)
     assert tuple(places[3] - places[0]) == pytest.approx((0.5, H))
+
+
+def test_the_usual_distance_is_of_cells_that_are_apart():
+    """A line of five: of four cables one joins two cells that lie at one place."""
+    graph = from_patches([(5, 1, "Z")])
+    for xs, pitch in (([0, 3, 3, 8, 8.5], 3.0), ([0, 0, 0, 0, 0], 14.0), ([0, 2, 2, 2, 9], 4.5)):
+        cells = np.array([(x, 0.0) for x in xs])
+        assert scene._pitch(graph, cells) == pitch

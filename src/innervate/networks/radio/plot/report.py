@@ -76,8 +76,15 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
     if summary["delivered"] == offered:
         return f"{begin}; every packet was delivered {took} later."
     missing = offered - summary["delivered"]
-    end = f"{missing:,} {'was' if missing == 1 else 'were'} not by the end of the run"
-    return f"{begin}; {summary['delivered']:,} packets were delivered within {took}, {end}."
+    came, end = (
+        f"{words.number_of(summary['delivered'], 'packet')} {_was(summary['delivered'])}",
+        f"{missing:,} {_was(missing)} not by the end of the run",
+    )
+    return f"{begin}; {came} delivered within {took}, {end}."
+
+
+def _was(count: int) -> str:
+    return "was" if count == 1 else "were"
 
 
 def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
@@ -92,7 +99,7 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
     expected = summary["offered"] - summary["abandoned"]
-    begin = f"{told.robots(summary['stations'])} had {expected:,} packets to send"
+    begin = f"{told.robots(summary['stations'])} had {words.number_of(expected, 'packet')} to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
     share = words.share_words(summary["delivered"] / expected)

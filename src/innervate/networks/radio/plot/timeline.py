@@ -226,7 +226,7 @@ class _Timeline:
         entries, at, row = [], LEFT, 0
         for what, text in found:
             long = 28 + 6.4 * len(text) + 22
-            if at > LEFT and at + long > WIDTH:
+            if at + long > WIDTH:
                 at, row = LEFT, row + 1
             entries.append((at if what else at - 28, row, what, text))
             at += long

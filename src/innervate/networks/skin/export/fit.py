@@ -129,14 +129,15 @@ def tables_of(found: Any) -> dict[str, Any]:
     cables = sorted({(min(key, key=_order), max(key, key=_order)) for key in ways}, key=_both)
     if not any(end.startswith("pc.") for pair in cables for end in pair):
         raise ExportError("the PC was not captured: a skin needs its interface ports")
-    low, high, per_frame = _latency(list(ways.values()))
     loose = _loose(ways)
     rest = [way for key, way in ways.items() if frozenset(key) not in loose]
     timing: dict[str, Any] = {"loss": round(_loss(rest), 5)}
-    if any(way.delays_us for way in ways.values()):
+    known = [sorted(way.delays_us) for way in ways.values() if way.delays_us]
+    if known:
+        low, high, per_frame = _latency(known)
         timing["hop_latency_us"] = [low, high]
-    if per_frame:
-        timing["latency"] = "per_frame"
+        if per_frame:
+            timing["latency"] = "per_frame"
     tables: dict[str, Any] = {"link": [{"a": a, "b": b} for a, b in cables], "timing": timing}
     if found.beacon_us:
         tables["protocol"] = {"beacon_hz": round(1e6 / found.beacon_us)}
@@ -148,17 +149,16 @@ def tables_of(found: Any) -> dict[str, Any]:
     return tables
 
 
-def _latency(ways: list[Way]) -> tuple[int, int, bool]:
+def _latency(known: list[list[float]]) -> tuple[int, int, bool]:
     """Least and greatest hop latency, us, and whether every frame has its own.
 
     Scenarios draw evenly from a range: it has the captured least and median. A busy computer keeps
     some frames waiting for very long.
     """
-    known = [sorted(way.delays_us) for way in ways if way.delays_us]
     per_frame = any(_quantile(delays, 0.99) - _quantile(delays, 0.01) > SPREAD_US
                     for delays in known)  # fmt: skip
     some = [_quantile(delays, 0.5) for delays in known]
-    low, high = min(some, default=1.0), max(some, default=1.0)
+    low, high = min(some), max(some)
     if per_frame:
         every = sorted(delay for delays in known for delay in delays)
         low = _quantile(every, 0.01)

@@ -1,0 +1,97 @@
+"""What figures of the mesh count, of nodes and runs that are written here."""
+
+from types import SimpleNamespace as Of
+
+import pytest
+
+from innervate.networks.mesh.papers import comparison, uplinks
+from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
+from innervate.papers.in_field import MONITOR
+from innervate.scenario.actions.field import KILL, REVIVE
+
+
+def node(depth, first, *heard):
+    """A node and whom it heard: (who, depth, RSSI)."""
+    near, depths, loud = ([one[i] for one in heard] for i in range(3))
+    return Of(depth=depth, parent=first, neighbour=near, round_depth=depths, round_rssi=loud)
+
+
+GATEWAY = node(0, FREE)
+
+
+def counted(*nodes, good=()):
+    plan = Of(nodes=1 + len(nodes), good=good, params={"min_rssi": -90})
+    run = Of(plan=plan, world=Of(nodes=[GATEWAY, *nodes]))
+    return uplinks.measure(Of(run=lambda seed: run), 1)
+
+
+@pytest.mark.parametrize(("heard", "best"), [
+    ([(5, 1, -80), (6, 0, -85)], 6), ([(5, 0, -80), (6, 0, -79)], 6),  # nearest, loudest
+    ([(5, 0, -91), (6, 1, -90)], 6), ([(5, 0, -91)], 5),  # faint ones if there is no other
+    ([(5, 0, -80), (6, 0, -80)], 5), ([(5, 2, -50), (6, 1, -89)], 6),  # not as far as itself
+    ([(FREE, 0, -50), (6, 1, -89)], 6), ([(5, UNHEARD, -50), (6, 1, -89)], 6),
+    ([(5, 2, -50)], None), ([], None),
+])  # fmt: skip
+def test_the_best_of_those_nearer_to_the_gateway(heard, best):
+    nodes = [node(2, 9, *heard)]
+    assert uplinks._best([GATEWAY, *nodes], 1, -90) == best
+    assert uplinks._best([GATEWAY, node(UNHEARD, 9, *heard)], 1, -90) is None
+
+
+def test_whom_a_node_heard_first_is_counted_against_the_best():
+    both, other, neither, deaf = (
+        node(1, 0, (0, 0, -60)), node(2, 1, (1, 1, -80), (5, 1, -70)), node(2, 1, (1, 1, -80)),
+        node(UNHEARD, FREE),
+    )  # fmt: skip
+    assert counted(both, other, neither, deaf, good=[(0, 1), (2, 5), (4, 0)]) == {
+        "nodes": 3, "other": 1, "first": 1, "best": 2,
+    }  # fmt: skip
+    assert counted(both, other, neither, good=[(1, 2)])["first"] == 1
+    assert counted(both, other, neither, good=[(2, 1), (3, 1)])["first"] == 2
+
+
+@pytest.fixture(scope="module")
+def small():
+    """A case of ten nodes of whom three die."""
+    return comparison.world({"nodes": 10, "rounds": 2, "dead": 3}, 1)
+
+
+def test_a_world_has_the_plans_radio(small):
+    radio = comparison.plan_of({"nodes": 10, "rounds": 2, "dead": 3}, 1).radio
+    assert {name: 100 * small.air[name] for name in ("capture_db", "sense_db")} == pytest.approx(
+        {"capture_db": radio.capture_cdb, "sense_db": radio.rssi50_cdb - radio.sense_cdb}
+    )
+    assert {name: small.air[name] for name in ("byte_ns", "phy_bytes", "turnaround_us")} == {
+        "byte_ns": radio.byte_ns, "phy_bytes": radio.phy_bytes,
+        "turnaround_us": radio.turnaround_us,
+    }  # fmt: skip
+    assert (small.nodes, small.gateway, small.since_us) == (10, 0, 20_000_000)
+    assert small.duration_us == 20_000_000 + 20 * 100_000 + 3_000_000
+
+
+def test_in_each_round_all_who_live_write_to_another_one(small):
+    gone = {node for _, _, node in small.faults}
+    assert {(at, action) for at, action, _ in small.faults} == {(20_000_000, KILL)}
+    assert (len(gone), 0 in gone, len(small.sent)) == (3, False, 14)
+    first, second = small.sent[:7], small.sent[7:]
+    assert [(one.source, one.dest) for one in first] == [(one.source, one.dest) for one in second]
+    assert {one.source for one in first} == set(range(10)) - gone
+    assert all(one.dest != one.source and one.dest not in gone for one in first)
+    assert [one.at_us - 20_000_001 for one in small.sent] == [
+        *(100_000 * i for i in range(7)), *(1_000_000 + 100_000 * i for i in range(7))]  # fmt: skip
+    assert [one.part for one in (first[0], second[0])] == ["first", "later"]
+
+
+def test_through_an_outage_messages_and_alarms_go_by_turns():
+    made = comparison.world({"nodes": 10, "rounds": 2, "root": 1}, 1)
+    assert made.faults == [(20_000_000, KILL, 0), (60_000_000, REVIVE, 0)]
+    assert made.again == {"peers": (20_000_000, 60_000_000), "alarms": (20_000_000, 60_000_000),
+                          "after": (60_000_000, made.duration_us)}  # fmt: skip
+    assert [one.at_us for one in made.sent] == list(range(20_000_001, 100_000_001, 100_000))
+    messages, alarms = made.sent[::2], made.sent[1::2]
+    assert {one.dest for one in alarms} == {MONITOR}
+    assert {one.source for one in made.sent} == set(range(2, 10))  # neither root nor standby
+    assert all(one.dest != one.source for one in messages)
+    assert {one.dest for one in messages} == set(range(1, 10))
+    for some, before, after in ((messages, "peers", "peers after"), (alarms, "alarms", "after")):
+        assert [one.part for one in some] == [before] * 200 + [after] * 200

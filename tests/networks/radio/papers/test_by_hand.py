@@ -1,0 +1,58 @@
+"""Plans and curves that figures of the radio are made of."""
+
+import numpy as np
+import pytest
+
+from innervate.networks.radio.papers import common, delay
+from innervate.plot import style
+
+
+def offered(mac, **more):
+    given = {"per_turn": 1, "size": 5, "n": 4, "load": 0.5, "packets": 80} | more
+    return delay.Offered(mac, **given).plan(3)
+
+
+def test_all_protocols_are_offered_the_same_until_the_first_station_has_no_more():
+    ours = offered(delay.PRACTICAL)
+    assert ours.wanted == sum(map(len, ours.arrivals)) < 80
+    assert max(len(times) for times in ours.arrivals) == 20
+    last = min(times[-1] for times in ours.arrivals if len(times) == 20)
+    assert max(max(times) for times in ours.arrivals) == last
+    for mac in {mac for mac, _ in delay.LOOKS} - {delay.PRACTICAL}:
+        other = offered(mac)
+        assert (other.arrivals, other.wanted) == (ours.arrivals, ours.wanted)
+        assert other.protocol == (delay.DCF if mac == delay.DCF_ANSWERS else mac)
+
+
+def test_an_answer_comes_after_both_ways_and_a_slot():
+    """Each way a switch of the radio and the longest delay there may be."""
+    params = offered(delay.DCF_ANSWERS).params
+    assert params["ta_us"] == 2_000
+    assert params["answer_us"] == 2 * (2_000 + params["dmax_us"]) + 208
+    assert offered(delay.DCF).params | {"answer_us": params["answer_us"]} == params
+
+
+def test_a_curve_has_marks_at_some_of_its_places_and_looks_as_its_protocol_does():
+    look = common.LOOKS["csma-cd-d1"]
+    x, y = [2, 4, 5, 100, 101], [1.0, 2.0, 3.0, 4.0, 5.0]
+    with style.house():
+        _, (ax,) = style.panels(1, 1)
+        common.line(ax, look, x, y)
+        common.line(ax, look, x, y, marks=(4, 9))
+        some, other = ax.get_lines()
+    assert (some.get_markevery(), other.get_markevery()) == ([0, 2, 3], [1])
+    assert (some.get_xdata().tolist(), some.get_ydata().tolist()) == (x, y)
+    shown = some.get_color(), some.get_marker(), some.get_label()
+    assert shown == (look.colour, look.marker, look.name)
+    assert (some.get_linewidth(), some.get_markersize()) == (1.1, 3)
+
+
+@pytest.mark.parametrize("draw", [common.bars, common.band])
+def test_spread_is_from_5_to_95_of_100_runs(draw):
+    runs = np.array([np.arange(101.0), 10 * np.arange(101.0)])
+    with style.house():
+        _, (ax,) = style.panels(1, 1)
+        draw(ax, common.LOOKS["dcf"], [3, 7], runs)
+        corners = [path.vertices for shape in ax.collections for path in shape.get_paths()]
+    heights = {round(y, 6) for part in corners for x, y in part if x in (3, 7)}
+    assert heights == {5.0, 50.0, 95.0, 950.0}

@@ -1,0 +1,91 @@
+"""What a report says of a radio run in sentences, of figures that are written here."""
+
+from types import SimpleNamespace as Of
+
+import numpy as np
+import pytest
+
+from innervate.networks.radio.plot import report, slotted_report
+
+
+def run_of(*arrivals, ended_us=2_000_000):
+    return Of(plan=Of(arrivals=list(arrivals), params={"slot_us": 208}), ended_us=ended_us)
+
+
+@pytest.mark.parametrize(("index", "split"), [
+    (1.0, "shared evenly"), (0.9901, "shared evenly"), (0.99, "shared"), (0.9, "shared"),
+    (0.8999, "shared unevenly"), (0.25, "shared unevenly"),
+])  # fmt: skip
+def test_how_evenly_the_time_was_shared(index, split):
+    summary = {"stations": 4, "throughput": 0.5, "jain": index}
+    assert report._saturated(run_of(), summary) == (
+        "4 robots always had something to send; delivered packets filled 50.0 % of the time, "
+        f"{split} (Jain's index {index:.3f})."
+    )
+
+
+def test_where_nothing_was_delivered_nothing_was_shared():
+    summary = {"stations": 4, "throughput": None, "jain": None}
+    assert report._saturated(run_of(), summary).endswith("no packet was delivered in 2 s.")
+
+
+@pytest.mark.parametrize(("arrivals", "delivered", "said"), [
+    ([[5], [5]], 2, "2 robots started at once; every packet was delivered 100 slots (20.8 ms) later"
+                    "."),
+    ([[5], [], [1_005]], 1, "2 robots started within 1 ms; 1 packet was delivered within "
+                            "100 slots (20.8 ms), 1 was not by the end of the run."),
+    ([[5], [5], [5]], 1, "3 robots started at once; 1 packet was delivered within "
+                         "100 slots (20.8 ms), 2 were not by the end of the run."),
+    ([[9]], 1, "1 robot started; every packet was delivered 100 slots (20.8 ms) later."),
+])  # fmt: skip
+def test_how_a_disaster_ended(arrivals, delivered, said):
+    offered = sum(map(len, arrivals))
+    summary = {"offered": offered, "delivered": delivered, "duration_slots": 100, "duration_s": 3}
+    assert report._disaster(run_of(*arrivals), summary) == said
+    none = report._disaster(run_of(*arrivals), summary | {"duration_slots": None})
+    assert none.endswith("; no packet was delivered in 3 s.")
+
+
+@pytest.mark.parametrize(("delivered", "median", "end"), [
+    (0, None, "none was delivered."), (3, None, "60 % of them were delivered."),
+    (5, 10, "100 % of them were delivered, half within 10 slots (2.08 ms)."),
+])  # fmt: skip
+def test_how_many_that_arrived_were_delivered(delivered, median, end):
+    summary = {"stations": 2, "offered": 7, "abandoned": 2, "delivered": delivered,
+               "delay_slots": {"p50": median}}  # fmt: skip
+    said = report._arrivals(run_of(), summary)
+    assert said == f"2 robots had 5 packets to send; {end}"
+
+
+@pytest.mark.parametrize(("members", "struck", "said"), [
+    ([1, 2], [0, 1], "There was one collision, of 2 frames."),
+    ([3, 9, 4, 2], [1, 0, 1, 1], "There were 3 collisions, of up to 4 frames at once."),
+])  # fmt: skip
+def test_how_many_frames_met(monkeypatch, members, struck, said):
+    found = Of(members=np.array(members), collision=np.array(struck, bool))
+    monkeypatch.setattr(report.radio, "groups", lambda _: found)
+    assert report._collisions(None, {"collisions": sum(struck)}) == [said]
+    assert report._collisions(None, {"collisions": 0}) == ["No packet collided with another one."]
+
+
+@pytest.mark.parametrize(("count", "said"), [
+    (0, "No packet was lost silently."),
+    (1, "Lost silently: 1 packet that nobody received, taken for delivered by the sender."),
+])  # fmt: skip
+def test_what_nobody_knows_of(count, said):
+    assert report._silence({"lost_silently": count}) == said
+
+
+@pytest.mark.parametrize(("kind", "delivered", "said"), [
+    ("disaster", 2, "3 robots started at once; 2 packets came through in the time."),
+    ("disaster", 3, "3 robots started at once; every packet was delivered 123.5 slots later."),
+    ("saturated", 3, "3 robots: packets filled 50 % of the time."),
+])  # fmt: skip
+def test_what_is_said_of_the_slotted_level(monkeypatch, kind, delivered, said):
+    model = Of(protocol=Of(mac="tdma"), traffic=Of(kind=kind))
+    run = Of(plan=Of(scenario=Of(model=model), params={"packet_slots": 5}))
+    monkeypatch.setattr(slotted_report, "warnings", lambda _: [])
+    summary = {"name": "n", "seed": 1, "headline": {"text": "", "level": "ok"}, "stations": 3,
+               "delivered": delivered, "throughput": 0.5, "duration_slots": 123.46, "jain": 1.0,
+               "collisions": 0}  # fmt: skip
+    assert f"<p>{said}</p>" in slotted_report.top(run, summary)

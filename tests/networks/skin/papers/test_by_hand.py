@@ -1,0 +1,40 @@
+"""What figures of the skin work out, of cables and times that are written here."""
+
+from types import SimpleNamespace as Of
+
+import pytest
+
+from innervate.networks.skin.papers import fig6, fig8a
+
+
+@pytest.mark.parametrize(("changes", "share"), [
+    ([], 0.0), ([(3.0, 0, 1)], 0.5), ([(3.0, 0, 1), (3.5, 0, 0)], 0.25), ([(0.5, 0, 1)], 1.0),
+    ([(0.5, 0, 1), (0.9, 0, 0)], 0.0), ([(0.5, 0, 1), (2.5, 0, 0)], 0.25), ([(2.5, 0, 0)], 0.0),
+    ([(2.5, 0, 1), (3.0, 0, 0), (3.5, 0, 1)], 0.5), ([(2.5, 1, 1), (3.0, 0, 1)], 0.5),
+])  # fmt: skip
+def test_for_which_share_of_a_sweep_its_cable_is_held_broken(monkeypatch, changes, share):
+    """From 2 to 4 s; what an end of another cable holds does not count."""
+    times, ends, broken = zip(*changes, strict=True) if changes else ((), (), ())
+    found = Of(time_us=[at * 1e6 for at in times], end=ends, broken=broken)
+    monkeypatch.setattr(fig6, "broken_changes", lambda _: found)
+    assert fig6._broken_share(None, 2.0, 4.0) == pytest.approx(share)
+
+
+@pytest.mark.parametrize(("quick", "count", "step"), [(True, 6, 0.2), (False, 26, 0.04)])
+def test_losses_of_a_sweep_go_from_none_to_all(quick, count, step):
+    losses = fig6.losses(quick)
+    assert losses == pytest.approx([step * i for i in range(count)])
+    assert losses[-1] == 1.0
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_the_bar_is_asked_for_at_the_highest_rate(monkeypatch, quick):
+    asked = []
+    monkeypatch.setattr(fig8a, "_band", lambda *_: "a band")
+    monkeypatch.setattr(fig8a, "off_band", lambda got, rule, hz, k: asked.append((hz, k)) or [0.0])
+    monkeypatch.setattr(fig8a.IN_BAND.__class__, "share", lambda *_: 1.0)
+    *bands, bar = [next(claims) for claims in [fig8a.judge(Of(quick=quick))]
+                   for _ in range(len(fig8a.RULES) + 1)]  # fmt: skip
+    assert bands == ["a band"] * len(fig8a.RULES)
+    assert asked == [(250, k) for k in fig8a.BAR_K]
+    assert bar.claim.startswith("feasible at 250 Hz")
