@@ -29,17 +29,17 @@ MESSAGES = [
     ("line", "search", {"robot": 2, "budget": CALM}, 16_502),
 ]
 GATEWAYS = [
-    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 72_763),
-    ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 72_086),
-    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 45_752),
+    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 73_556),
+    ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 69_698),
+    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 46_142),
 ]
 ASKING = [
     (links, "search", {"standby": standby, "beats": 3, "budget": budget, "settings": ASKED}, states)
     for links, standby, budget, states in (
-        ("line", (2,), DEATH, 11_433),
+        ("line", (2,), DEATH, 10_890),
         ("line", (2,), LOSS, 67_555),
-        ("line", (2,), RETURNS, 276_792),
-        ("triangle", (1, 2), DEATH, 34_365),
+        ("line", (2,), RETURNS, 276_286),
+        ("triangle", (1, 2), DEATH, 34_352),
     )
 ]
 
