@@ -215,7 +215,7 @@ EDGES = [
      [[crossed(alarms.BOTH, 8, 4 * 3.745)]]),
     ("gateway", "outlives the gateway", [arrived(gateway.ALONE, 0, 0, 901)],
      [[arrived(gateway.ALONE, 0, 1000, 899)]]),
-    *[("gateway", f"^{setting.name}: new tables", [taken(setting, most)],
+    *[("gateway", f"^{setting.name}: tables of the new gateway", [taken(setting, most)],
        [[taken(setting, most + 0.1)], [taken(setting, None)]])
       for setting, most in ((gateway.SILENT, 30), (gateway.ONE, 30), (gateway.SECOND, 35))],
     ("gateway", "^who looks for a dead", [arrived(gateway.BUSY, 1, 0, 981)],

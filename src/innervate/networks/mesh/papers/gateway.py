@@ -1,4 +1,4 @@
-"""The gateway dies: what is lost without a standby, and how soon one has made new tables."""
+"""The gateway dies: what is lost without a standby, and how soon all have tables of one."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ AFTER_S = 60
 BIN_S = 2
 BEFORE = 5  # bins
 WAITS: Options = (("guard_s", 0),)  # for requests that stay away, as planned; it asks nobody
-SOONEST = 30.0  # seconds until there are new tables, at most
+SOONEST = 30.0  # seconds until all have tables of the new gateway, at most
 
 
 class Setting(NamedTuple):
@@ -120,7 +120,7 @@ def _send(plan: Any, setting: Setting, dies_us: int) -> None:
 
 
 def takeovers(got: Measured, setting: Setting) -> list[float]:
-    """Seconds from the death to the last node's new tables; infinite where that never came."""
+    """Seconds from the death until the last node has a table of the new gateway, or infinite."""
     found = got.floats(point(setting, got.quick), "takeover_s")
     return sorted(np.nan_to_num(found, nan=np.inf).tolist())
 
@@ -133,7 +133,7 @@ def _shares(got: Measured, setting: Setting, flow: int) -> tuple[Any, Any]:
 
 
 def draw(got: Measured) -> Figure:
-    """Delivery over the time since the death; times to new tables."""
+    """Delivery over the time since the death; times until all have tables of the new gateway."""
     figure, axes = style.panels(style.WIDE_IN, 2.8, 1, 3, width_ratios=(1.2, 1.2, 1))
     for flow, title in enumerate(("a  to the gateway", "b  among others")):
         ax = axes[flow]
@@ -154,7 +154,7 @@ def _times(ax: Axes, got: Measured) -> None:
         drawing.cumulated(ax, takeovers(got, setting), color=style.SERIES[i],
                           ls=style.DASHES[i % 4], label=setting.name)  # fmt: skip
     ax.axvline(SOONEST, color=style.INK, lw=0.8, ls=":", label="asked for")
-    ax.set(xlim=(14, 44), ylim=(0, 104), title="c  new tables",
+    ax.set(xlim=(14, 44), ylim=(0, 104), title="c  tables of the new gateway",
            xlabel="last new table after the death (s)", ylabel="networks (%)")  # fmt: skip
 
 
@@ -204,7 +204,7 @@ def _taken(got: Measured, setting: Setting) -> Claim:
     waits = got.floats(point(setting, got.quick), "led_s")
     return ours(
         "beyond",
-        f"{setting.name}: new tables within {most:g} s of the gateway's death",
+        f"{setting.name}: tables of the new gateway within {most:g} s of the gateway's death",
         f"{within} of {len(times)} networks; {most_s}{sent}",
         verdict(within == len(times)),
         f"{np.nanmean(waits):.1f} s of it in the mean the standby waits for requests, until it "
