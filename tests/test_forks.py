@@ -134,14 +134,31 @@ def test_ctrl_c_ends_it_and_tears_down(tmp_path):
     assert (tmp_path / "torn_down").exists()
 
 
+LOOPS = """
+import sys
+GROUPS = ((), ())
+
+def compiled(index):
+    with open("loops", "a") as file:
+        file.write(f", read {{index}}")
+
+if __name__ == "__main__":
+    with open("loops", "w") as file:
+        file.write(sys.argv[1])
+    sys.exit({status})
+"""
+
+
 @pytest.mark.parametrize(("status", "said"), [
     (0, "1 passed"), (3, "Exit: python -m tests.loops ended with 3"),
 ])  # fmt: skip
 def test_loops_come_first(tmp_path, status, said):
     (tmp_path / "tests").mkdir()
-    loops = f"import sys\nopen('loops', 'w').write(sys.argv[1])\nsys.exit({status})\n"
+    loops = LOOPS.format(status=status)
     (tmp_path / "tests" / "loops.py").write_text(loops)
-    suite = {"test_it.py": "def test_it():\n    assert open('loops').read() == '7'\n"}
+    suite = {
+        "test_it.py": "def test_it():\n    assert open('loops').read() == '7, read 0, read 1'\n"
+    }
     process = begin(tmp_path, suite, "--forks", "1", "--loops", "7")
     assert said in process.communicate()[0]
     assert process.returncode == bool(status)
