@@ -1,7 +1,7 @@
 # Everything by one word; each target sets up what it needs, in .venv, by itself.
 #
 #   make demo     the main job: a skin, a cut cable, the recovery
-#   make test     the tests in small sizes (7 to 9 minutes)     make full    all of them (long)
+#   make test     the tests in small sizes (6 to 8 minutes)      make full    all of them (long)
 #   make lint     style, types, import walls             make bench   how fast it is
 #   make papers   the published figures, redrawn         make parity  the same code on boards' Python
 #   make mutants  faults planted all over, and how many the tests find (long)
