@@ -21,9 +21,9 @@ WORKERS ?= 2
 # Tests start hundreds of processes: to translate the sources anew takes up to a second in each.
 unexport PYTHONDONTWRITEBYTECODE
 
-# Three workers more than there are processors: tests that wait leave theirs to others. What many
+# Two workers more than there are processors: tests that wait leave theirs to others. What many
 # tests run is compiled before they start, where it is not compiled yet.
-PYTEST = $(BIN)/python -m pytest --forks $$(( $(WORKERS) + 3 )) --loops $(WORKERS)
+PYTEST = $(BIN)/python -m pytest --forks $$(( $(WORKERS) + 2 )) --loops $(WORKERS)
 
 # Packages that the page is built with, as package-lock.json has them; no scripts of theirs are run.
 PAGE := src/innervate/web/page
