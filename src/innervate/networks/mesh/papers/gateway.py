@@ -155,7 +155,7 @@ def _times(ax: Axes, got: Measured) -> None:
                           ls=style.DASHES[i % 4], label=setting.name)  # fmt: skip
     ax.axvline(SOONEST, color=style.INK, lw=0.8, ls=":", label="asked for")
     ax.set(xlim=(14, 44), ylim=(0, 104), title="c  tables of the new gateway",
-           xlabel="last new table after the death (s)", ylabel="networks (%)")  # fmt: skip
+           xlabel="last of them after the death (s)", ylabel="networks (%)")  # fmt: skip
 
 
 def judge(got: Measured) -> Claims:
