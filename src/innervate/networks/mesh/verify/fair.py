@@ -122,7 +122,7 @@ class Fair:
         return end.broken or (BROKEN_GATEWAYS if end.events > late else 0)
 
     def _is_deposed(self, net: Net) -> bool:
-        """True if node 0 is not alone to lead: nobody died, fewer frames than questions were lost."""
+        """True if another leads, too, though nobody died and fewer frames than questions failed."""
         budget, (deaths, _, frames, _) = self.nets.model.budget, net.left
         if deaths < budget.deaths or budget.frames - frames >= IN_VAIN:
             return False
