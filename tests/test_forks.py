@@ -74,6 +74,8 @@ def test_waits(left):
 def begin(folder, suite, *options):
     for name, text in suite.items():
         (folder / name).write_text(text)
+    # A folder of its own: it would tidy up what earlier runs of all tests have left.
+    options = ["--basetemp", "left", *options]
     command = [sys.executable, "-m", "pytest", "-p", "tests.fixtures.forks", *options]
     root = str(Path(__file__).parents[1])
     return subprocess.Popen(
