@@ -8,7 +8,7 @@ from innervate.cli import main
 from innervate.networks.mesh.live.deployment import MeshDeployment
 from innervate.networks.mesh.protocol.constants import PARTS_MAX, WHOLE_GRAPH
 from innervate.networks.mesh.protocol.table import part_count
-from innervate.networks.mesh.scenario.planning import graph_nodes_max
+from innervate.networks.mesh.scenario.distribution import graph_nodes_max
 from innervate.networks.mesh.sim.simulate import loop_name, simulate
 from innervate.scenario import ScenarioError, loads, plan
 
@@ -55,7 +55,7 @@ def test_a_mesh_of_longer_frames_has_a_loop_of_its_own():
 
 @pytest.mark.parametrize(("mtu", "nodes"), [(64, 85), (127, 145), (200, 201), (1200, 254)])
 def test_the_flooded_graph_has_an_end(mtu, nodes):
-    assert graph_nodes_max({"mtu": mtu}) == nodes
+    assert graph_nodes_max(mtu) == nodes
     by_room = nodes in (201, 254)
     fits, more = (
         part_count(SimpleNamespace(mtu=mtu, nodes=nodes + n, mode=WHOLE_GRAPH)) for n in (0, 1)

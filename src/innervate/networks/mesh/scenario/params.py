@@ -19,7 +19,7 @@ from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
 
 DISCOVERY = {"list": w.LIST, "tree": w.TREE, "each": w.EACH}
 FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "search": w.SEARCH,
-            "graph": w.SEARCH}  # fmt: skip
+            "graph": w.SEARCH, "auto": w.SEARCH}  # fmt: skip
 FAINTEST_DBM, LOUDEST_DBM = -128, 127
 STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
 FORGET_S = 30.0

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from math import ceil
-from types import SimpleNamespace
 from typing import Any
 
-from innervate.networks.mesh.protocol import table
-from innervate.networks.mesh.protocol.constants import ALL, MONITOR, MTU, PARTS_MAX, WHOLE_GRAPH
+from innervate.networks.mesh.protocol.constants import ALL, MONITOR, MTU, WHOLE_GRAPH
 from innervate.networks.mesh.protocol.round import SLACK
 from innervate.networks.mesh.scenario import clusters
 from innervate.networks.mesh.scenario import events as mesh_events
@@ -15,9 +13,14 @@ from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario import robots as mesh_robots
 from innervate.networks.mesh.scenario import traffic as mesh_traffic
 from innervate.networks.mesh.scenario.access import access, suited
+from innervate.networks.mesh.scenario.distribution import (
+    GRAPH_NODES_MAX,
+    graph_nodes_max,
+    less_of_both,
+)
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.network import Network, linked, placed
-from innervate.networks.mesh.scenario.nodes import NODES_MAX, Nodes, nodes_of
+from innervate.networks.mesh.scenario.nodes import Nodes, nodes_of
 from innervate.networks.mesh.scenario.params import parameters
 from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.networks.mesh.scenario.profiles import Profile, profile_of
@@ -27,7 +30,6 @@ from innervate.trace.streams import stream
 START_US = 100_000  # nodes are switched on within this time, the gateway right after it
 # Nothing of a round is on the air then: without a standby, a gateway that comes back leads.
 COLLECTS_OLD = 4
-GRAPH_NODES_MAX = {64: 85, MTU: 145}  # by the bytes of a radio's frame
 
 
 def plan(scenario: Any) -> MeshPlan:
@@ -52,6 +54,9 @@ def plan(scenario: Any) -> MeshPlan:
     monitor = MONITOR if model.monitor == "gateway" else nodes.number(("monitor",), model.monitor)
     roles = {"gateway": gateway, "monitor": gateway if monitor == MONITOR else monitor}
     params = _parameters(model, network, profile, monitor)
+    if model.protocol.failover == "auto":
+        near = neighbours(len(nodes.names), network.good)
+        params["mode"] = less_of_both(network.radio, params, near, gateway)
     walks = mesh_robots.walks(model, nodes, network.points, duration_us)
     if model.fence is not None:
         visited = [(x, y) for walk in walks for _, x, y in walk.points]
@@ -167,7 +172,7 @@ def _parameters(
             f"protocol.mtu = {params['mtu']}, but a frame on the air has 64 or {MTU} bytes; longer "
             'ones need cables: radio.profile = "ip"',
         )
-    most = graph_nodes_max(params)
+    most = graph_nodes_max(params["mtu"])
     if params["mode"] == WHOLE_GRAPH and count > most:
         raise source.error(
             ("protocol", "failover"),
@@ -175,15 +180,3 @@ def _parameters(
             f'an MTU of {params["mtu"]}, not {count}; use "search", or protocol.tables = false',
         )
     return params
-
-
-def graph_nodes_max(params: dict[str, Any]) -> int:
-    """How many nodes a flooded graph holds: by the document on radios [mesh 8.1], else by room."""
-
-    def parts(nodes: int) -> int:
-        return int(
-            table.part_count(SimpleNamespace(mtu=params["mtu"], nodes=nodes, mode=WHOLE_GRAPH))
-        )
-
-    by_room = (nodes for nodes in range(NODES_MAX, 0, -1) if parts(nodes) <= PARTS_MAX)
-    return GRAPH_NODES_MAX.get(params["mtu"]) or next(by_room)

@@ -155,8 +155,11 @@ def _radio(model: MeshScenario) -> Iterator[Finding]:
 
 def _protocol(model: MeshScenario) -> Iterator[Finding]:
     protocol = model.protocol
-    if not protocol.tables and protocol.failover == "graph":
-        message = 'protocol.tables = false and failover = "graph" are two modes; leave one out'
+    if not protocol.tables and protocol.failover in ("graph", "auto"):
+        message = (
+            f'protocol.tables = false and failover = "{protocol.failover}" are two modes; '
+            "leave one out"
+        )
         yield ("protocol", "tables"), message
     if not protocol.tables and protocol.activation:
         message = "protocol.activation waits for tables, and there are none; leave one out"

@@ -22,7 +22,7 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
 
     discovery: Literal["list", "tree", "each"] = "list"
     uplink: Literal["best", "first"] | None = None
-    failover: Literal["search", "alternate", "rssi", "random", "graph"] = "search"
+    failover: Literal["search", "alternate", "rssi", "random", "graph", "auto"] = "search"
     avoid: Literal["sender", "origin"] = "sender"
     tables: bool = True
     retry: bool = True

@@ -32,7 +32,7 @@ mean_degree = 8               # good links of a node; or reach_m, or tx_dbm
 
 [protocol]
 discovery = "list"            # list | tree | each
-failover = "search"           # search | alternate | rssi | random | graph
+failover = "search"           # search | alternate | rssi | random | graph | auto
 retry = true                  # a packet whose hop failed is sent another way
 reliable = true               # messages are kept until they are acknowledged end to end
 # tables = false              # no routing tables: for many nodes

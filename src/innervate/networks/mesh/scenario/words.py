@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.networks.mesh.protocol.constants import MONITOR, PATH_MAX, TABLE_FREE, TABLES
+from innervate.networks.mesh.protocol.constants import (
+    MONITOR,
+    PATH_MAX,
+    TABLE_FREE,
+    TABLES,
+    WHOLE_GRAPH,
+)
+from innervate.networks.mesh.scenario.distribution import first_round, graph_nodes_max
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.model import MeshScenario
@@ -34,7 +41,6 @@ def describe(made: MeshPlan) -> str:
     monitor = "the gateway" if params["monitor"] == MONITOR else made.names[params["monitor"]]
     hops = [far for far in hops_from(made, gateway) if far >= 0]
     degree = 2 * len(made.good) / made.nodes
-    forwarding = {TABLES: model.protocol.failover, TABLE_FREE: "table-free"}
     lines = [
         opening(made),
         *_cluster(made),
@@ -42,7 +48,7 @@ def describe(made: MeshPlan) -> str:
         f"  radio      {model.radio.profile}, {made.mac}, {len(made.good)} good links, "
         f"{degree:.1f} a node, at most {max(hops)} hops from the gateway",
         f"  protocol   discovery {model.protocol.discovery}, "
-        f"failover {forwarding.get(params['mode'], 'graph')}, MTU {params['mtu']}, "
+        f"failover {_forwarding(made)}, MTU {params['mtu']}, "
         f"a round every {params['period'] * params['tick_us'] / 1e6:g} s",
     ]
     if made.offers:
@@ -56,6 +62,20 @@ def describe(made: MeshPlan) -> str:
     if made.walks:
         lines.append(f"  robots     {listed([made.names[walk.node] for walk in made.walks], 8)}")
     return "\n".join([*lines, *told(made, fault_words, warnings(made))])
+
+
+def _forwarding(made: MeshPlan) -> str:
+    """How packets find their way; of "auto" what that is here, and why."""
+    failover, mode = made.scenario.model.protocol.failover, made.params["mode"]
+    if failover != "auto":
+        return "graph" if mode == WHOLE_GRAPH else "table-free" if mode == TABLE_FREE else failover
+    near = neighbours(made.nodes, made.good)
+    tables_us, graph_us = first_round(made.radio, made.params, near, made.ranks.index(0))
+    takes = f"{graph_us / 1e6:.2f} s on the air"
+    if made.nodes > graph_nodes_max(made.params["mtu"]):
+        takes = f"holds {graph_nodes_max(made.params['mtu'])} nodes"
+    chosen = "graph" if mode == WHOLE_GRAPH else "search"
+    return f"{chosen} (auto: tables {tables_us / 1e6:.2f} s, the graph {takes})"
 
 
 def _cluster(made: MeshPlan) -> list[str]:
