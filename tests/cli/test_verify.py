@@ -77,6 +77,15 @@ def test_a_counterexample_is_told_written_and_1(sh):
     assert "1 forwarding loop" in sh.out
 
 
+def test_a_counterexample_that_cannot_be_written_is_one_line_and_not_there(sh, full_disk):
+    words = ("--plain", "--graph", "triangle", "--rule", "paper", "--updates", "periodic")
+    with full_disk():
+        assert sh("verify", *words, "--no-liveness", "--out", "found") == 2
+    (line,) = sh.err.splitlines()
+    assert line.startswith("innervate: found/counterexample-1.toml cannot be written: ")
+    assert not list(Path("found").iterdir())
+
+
 def test_json_is_all_there_is(sh):
     assert sh("verify", *SMALL, "--rule", "all", "--json") in (0, 1)
     cases = json.loads(sh.out)

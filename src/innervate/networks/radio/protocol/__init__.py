@@ -214,7 +214,7 @@ Frames
 |              |                                  | `base`; `window`, `span`, `split`              |
 
 In `next`: a place; its own: a window of one minislot; `ALONE = 127`: one, nobody else has a turn;
-`WINDOWS = 120` and the `STEPS = 3` from there: 6, 11 or 21 minislots, with quick radios 3, 6 or 12;
+`WINDOWS = 120` and the `SIZES = 3` from there: 6, 11 or 21 minislots, with quick radios 3, 6 or 12;
 `LONE_WINDOWS = 123`: those, and nobody else has a turn; `NEXT_NONE = 126` is not used. Bit by bit:
 docs/wire.md.
 

@@ -33,7 +33,7 @@ EARNED_MOST = 1600
 CALM = 2  # windows without newcomers: all who send have places
 CALM_MOST = 7
 BUSY = 10  # from here on it is worth a minislot for each to keep places over an idle channel
-STEPS = 3  # sizes of announced windows
+SIZES = 3  # of announced windows
 ACTIVE = 1  # a place whose turn comes in each round
 QUIET = 2  # one that is kept for a window; more: windows since it was used
 QUIET_MOST = 99  # ... and after so many it is free
@@ -168,7 +168,7 @@ def window_of(params, code):
 
     One for newcomers behind 5, 10 or 20 of kept places; 3, 6 or 12 where none are kept.
     """
-    step = (code - WINDOWS) % STEPS
+    step = (code - WINDOWS) % SIZES
     if is_slow(params):
         return 1 + (5 << step)
     return 3 << step
@@ -177,7 +177,7 @@ def window_of(params, code):
 def code_for(params, minislots):
     """The code of the smallest such window that is no smaller, or of the largest."""
     code = WINDOWS
-    while code < WINDOWS + STEPS - 1 and window_of(params, code) < minislots:
+    while code < WINDOWS + SIZES - 1 and window_of(params, code) < minislots:
         code = code + 1
     return code
 
