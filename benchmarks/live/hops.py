@@ -69,14 +69,15 @@ class Line:
 
     Args:
         commands: what starts each.
+        log: a file for what they write as errors; None = where ours go.
     """
 
-    def __init__(self, commands):
+    def __init__(self, commands, log=None):
         self.nodes = [None] * len(commands)
         for i in sorted(range(len(commands)), key=lambda i: i != 1):  # others call the middle
             self.nodes[i] = subprocess.Popen(
                 [sys.executable, *commands[i]],
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True,
             )  # fmt: skip
             self.hear(i)
 
@@ -105,6 +106,7 @@ class Line:
             "p50_us": statistics.median(late_us) if late_us else 0.0,
             "p99_us": late_us[int(0.99 * len(late_us))] if late_us else 0.0,
             "cpu_us": [1e6 * one["cpu_s"] / count for one in (told, *others)],
+            "middle": others[0],
         }
 
     def stop(self):
