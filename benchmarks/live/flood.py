@@ -12,6 +12,7 @@ Exit code 1 if a message was lost, a node wrote an error or answered, or p99 is 
 """
 
 import argparse
+import os
 import socket
 import subprocess
 import sys
@@ -140,7 +141,10 @@ def main():
                         choices=("stranger", "neighbour", "listener"))  # fmt: skip
     parser.add_argument("--sides", nargs="+", default=("plain", "sealed"))
     parser.add_argument("--engine", default="python")
+    parser.add_argument("--realtime", action="store_true", help="before other work (as root)")
     args = parser.parse_args()
+    if args.realtime:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
     wrong = []
     for side in args.sides:
         with tempfile.TemporaryDirectory() as folder:

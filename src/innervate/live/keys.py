@@ -127,6 +127,7 @@ class Sealer:
                 contact.put_out(lambda who: who.key in gone)
             elif changed:
                 contact.renew_all()
+            contact.listen()
 
     def close(self, path: Path, data: bytes) -> bytes | None:
         """Seal a frame for a path; None = it waits until somebody has proved to be there."""

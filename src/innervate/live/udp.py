@@ -6,12 +6,13 @@ import asyncio
 import errno
 import socket
 import struct
+from collections.abc import Mapping
 from contextlib import closing, suppress
 
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import only_from, unread
+from innervate.live.only_from import TAKE, Doors, of_peer, only_from, packed, unread
 
 Address = tuple[str, int]
 
@@ -33,6 +34,14 @@ class UdpPath(Path):
             self.ends = (here, f"{address[0]}:{address[1]}")
         self.link = link
         self.address = address
+        self.filter = of_peer(address)
+
+    def let_in(self, anybody: bytes, known: Mapping[int, int]) -> None:
+        """Have the system drop the rest, if it can."""
+        steps = self.link.filter_of(self, Doors(anybody, known))
+        if steps != self.filter:
+            self.filter = steps
+            self.link.guard()
 
     def bound_ends(self) -> tuple[str, str]:
         """Both addresses; ours on any interface is the one from which the neighbour is reached."""
@@ -103,15 +112,26 @@ class UdpLink(Link):
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
-            only_from(sock, self._by_address)
+            self.guard(sock)
             sock.bind(self.bind)
         except BaseException:
             sock.close()
             raise
         return sock
 
+    def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
+        """Instructions that let in what is for a path."""
+        return of_peer(path.address, doors)
+
+    def guard(self, sock: socket.socket | None = None) -> None:
+        """Have the system let in what is for our paths; at the least what bears their addresses."""
+        sock = sock or self.socket
+        if sock is not None:
+            addresses = map(of_peer, self._by_address)
+            only_from(sock, b"".join(path.filter for path in self.paths), b"".join(addresses))
+
     def unread(self) -> int:
-        """How many datagrams the system dropped: strangers', and those that found no room."""
+        """How many datagrams the system dropped: not for us, and those that found no room."""
         return self._unread + (0 if self.socket is None else unread(self.socket))
 
     def close(self) -> None:
@@ -182,12 +202,24 @@ class MulticastLink(UdpLink):
         self.interface = interface
         self._group: UdpPath = self.paths[0]
         self._group.is_group = True
+        self._group.filter = packed([TAKE])
+
+    def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
+        """Instructions that let in what is for members, whatever their addresses."""
+        return packed(doors.steps())
+
+    def guard(self, sock: socket.socket | None = None) -> None:
+        """Have the system let in what is for us, or all if that is too much to say."""
+        sock = sock or self.socket
+        if sock is not None:
+            only_from(sock, self._group.filter)
 
     def _make(self) -> socket.socket:
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self.guard(sock)
             sock.bind(self.group)
             self._join(sock)
             sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("B", 1))
