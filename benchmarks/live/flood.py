@@ -6,7 +6,8 @@ then the same while another process sends it 100,000 datagrams a second. Plain a
 --as stranger: from an address that is no neighbour's. --as neighbour (as root): from the address of
 the first node, by somebody who recorded another run of the same nodes: noise, frames of the
 recording with one byte changed, and what begins like them. --as listener: the same, recorded in
-this run, so that the first bytes are right.
+this run, so that the first bytes are right. --group: into the multicast group of three nodes, of
+which the first sends to the last.
 
 Exit code 1 if a message was lost, a node wrote an error or answered, or p99 is 5 ms.
 """
@@ -22,9 +23,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
 
-from benchmarks.live.hops import Line, ours, tell
+from benchmarks.live.hops import Line, free_ports, ours, tell
 
 HOST = "127.0.0.1"
+GROUP = "239.77.12.7"
 SIZE = 64
 PLAN = "r50"
 P99_US = 5_000
@@ -110,9 +112,11 @@ def with_rate(found, before):
 
 def run(side, args, folder, log):
     """Calm, then a flood: what was wrong."""
-    program, commands = built(folder), ours(Path(folder), 3, side == "sealed", engine=args.engine)
-    far, near = ports = port_of(commands[0]), port_of(commands[1])
-    words = [program, HOST, near, args.rate, args.seconds, args.seed]
+    group = f"{GROUP}:{free_ports(1)[0]}" if args.group else ""
+    commands = ours(Path(folder), 3, side == "sealed", None, args.engine, group)
+    far, near = ports = (0, 0) if group else (port_of(commands[0]), port_of(commands[1]))
+    host, port = group.split(":") if group else (HOST, near)
+    words = [built(folder), host, port, args.rate, args.seconds, args.seed]
     if args.whom == "neighbour":
         with running(commands, log) as line:
             words += [far, recorded(line, folder, ports)]
@@ -140,6 +144,7 @@ def main():
     parser.add_argument("--as", dest="whom", default="stranger",
                         choices=("stranger", "neighbour", "listener"))  # fmt: skip
     parser.add_argument("--sides", nargs="+", default=("plain", "sealed"))
+    parser.add_argument("--group", action="store_true", help="nodes in a multicast group")
     parser.add_argument("--engine", default="python")
     parser.add_argument("--realtime", action="store_true", help="before other work (as root)")
     args = parser.parse_args()
@@ -147,11 +152,10 @@ def main():
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
     wrong = []
     for side in args.sides:
-        with tempfile.TemporaryDirectory() as folder:
-            with (Path(folder) / "log").open("w+", encoding="utf-8") as log:
-                wrong += [f"{side}: {text}" for text in run(side, args, folder, log)]
-                log.seek(0)
-                wrong += [f"{side}: {text.rstrip()}" for text in log]
+        with tempfile.TemporaryDirectory() as folder, (Path(folder) / "log").open("w+") as log:
+            wrong += [f"{side}: {text}" for text in run(side, args, folder, log)]
+            log.seek(0)
+            wrong += [f"{side}: {text.rstrip()}" for text in log]
     for text in wrong:
         print(text)
     sys.exit(bool(wrong))

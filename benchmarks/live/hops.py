@@ -34,18 +34,20 @@ def free_ports(count):
     return ports
 
 
-def ours(folder, count, sealed=False, settings=None, engine="python"):
-    """Commands that start nodes of ours; node 1 is the gateway."""
+def ours(folder, count, sealed=False, settings=None, engine="python", group=""):
+    """Commands that start nodes of ours, on a line or in a group; node 1 is the gateway."""
     ports, commands = free_ports(count), []
     for i in range(count):
         peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
+        link = (['kind = "multicast"', 'interface = "127.0.0.1"', f'group = "{group}"'] if group
+                else ['kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
+                      f"peers = {json.dumps(peers)}"])  # fmt: skip
         lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
                  f'role = "{"gateway" if i == 1 else "node"}"',
                  f'socket = "{folder / f"n{i}.sock"}"', f'engine = "{engine}"',
                  *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
                  "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
-                 "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
-                 f"peers = {json.dumps(peers)}"]  # fmt: skip
+                 "[[link]]", *link]  # fmt: skip
         file = folder / f"n{i}.toml"
         file.write_text("\n".join(lines) + "\n")
         commands.append([*ENDS, str(file)])

@@ -375,7 +375,7 @@ def test_a_flood_of_first_messages_leaves_nothing_behind(make):
 @BOTH
 def test_of_a_burst_of_first_messages_few_are_answered_and_then_nobody_is_for_a_moment(make):
     async def main():
-        a, b = await two(make)
+        _, b = await two(make)
         other = Wire()
         sealer = begin(make(3), other)
         for _ in range(50):
