@@ -6,7 +6,9 @@ then the same while another process sends it 100,000 datagrams a second. Plain a
 --as stranger: from an address that is no neighbour's. --as neighbour (as root): from the address of
 the first node, by somebody who recorded another run of the same nodes: noise, frames of the
 recording with one byte changed, and what begins like them. --as listener: the same, recorded in
-this run, so that the first bytes are right. --group: into the multicast group of three nodes, of
+this run, so that the first bytes are right. --as caller: two of three are first messages of a
+handshake, whose mark is wrong. --as bystander: from the address of a fourth node that has no part
+in the messages, by somebody who listens to it. --group: into the multicast group of three nodes, of
 which the first sends to the last.
 
 Exit code 1 if a message was lost, a node wrote an error or answered, or p99 is 5 ms.
@@ -30,8 +32,10 @@ GROUP = "239.77.12.7"
 SIZE = 64
 PLAN = "r50"
 P99_US = 5_000
+WHOM = "stranger", "neighbour", "listener", "caller", "bystander"
 ANSWERS = 1.1  # so many times what the node sends in peace is no answer to anybody
 RECORD_S = 1.0
+CALL_BYTES = 150
 IP_BYTES, UDP_BYTES = 20, 8
 
 
@@ -61,6 +65,13 @@ def record(file, ports):
             if whence[2] != socket.PACKET_OUTGOING and of == ports:
                 frames.append(data[IP_BYTES + UDP_BYTES :])
     file.write_bytes(b"".join(len(one).to_bytes(2, "little") + one for one in frames))
+
+
+def first_message(folder):
+    """A recording of nothing but a first message."""
+    file = Path(folder) / "recording"
+    file.write_bytes(CALL_BYTES.to_bytes(2, "little") + b"\xd1" + bytes(CALL_BYTES - 1))
+    return file
 
 
 def recorded(line, folder, ports):
@@ -113,16 +124,20 @@ def with_rate(found, before):
 def run(side, args, folder, log):
     """Calm, then a flood: what was wrong."""
     group = f"{GROUP}:{free_ports(1)[0]}" if args.group else ""
-    commands = ours(Path(folder), 3, side == "sealed", None, args.engine, group)
-    far, near = ports = (0, 0) if group else (port_of(commands[0]), port_of(commands[1]))
+    shape = group or ("star" if args.whom == "bystander" else "line")
+    count, far = (4, 2) if shape == "star" else (3, 0)
+    commands = ours(Path(folder), count, side == "sealed", None, args.engine, shape)
+    far, near = ports = (0, 0) if group else (port_of(commands[far]), port_of(commands[1]))
     host, port = group.split(":") if group else (HOST, near)
     words = [built(folder), host, port, args.rate, args.seconds, args.seed]
     if args.whom == "neighbour":
         with running(commands, log) as line:
             words += [far, recorded(line, folder, ports)]
     with running(commands, log) as line:
-        if args.whom == "listener":
+        if args.whom in ("listener", "bystander"):
             words += [far, recorded(line, folder, ports)]
+        if args.whom == "caller":
+            words += [far, first_message(folder)]
         start = line.ask(1, "take")["sent"]
         calm = with_rate(line.measure(SIZE, args.seconds / 6, PLAN), start)
         tell(side, "calm", calm)
@@ -142,7 +157,7 @@ def main():
     parser.add_argument("--rate", type=int, default=100_000, help="datagrams a second")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--as", dest="whom", default="stranger",
-                        choices=("stranger", "neighbour", "listener"))  # fmt: skip
+                        choices=WHOM)  # fmt: skip
     parser.add_argument("--sides", nargs="+", default=("plain", "sealed"))
     parser.add_argument("--group", action="store_true", help="nodes in a multicast group")
     parser.add_argument("--engine", default="python")

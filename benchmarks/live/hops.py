@@ -34,12 +34,17 @@ def free_ports(count):
     return ports
 
 
-def ours(folder, count, sealed=False, settings=None, engine="python", group=""):
-    """Commands that start nodes of ours, on a line or in a group; node 1 is the gateway."""
+def ours(folder, count, sealed=False, settings=None, engine="python", shape="line"):
+    """Commands that start nodes of ours; node 1 is the gateway.
+
+    `shape` is "line", "star" (all are neighbours of node 1 alone) or the address of a group.
+    """
     ports, commands = free_ports(count), []
     for i in range(count):
-        peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
-        link = (['kind = "multicast"', 'interface = "127.0.0.1"', f'group = "{group}"'] if group
+        near = (i - 1, i + 1) if shape == "line" else [1] if i != 1 else range(count)
+        peers = [f"127.0.0.1:{ports[k]}" for k in near if 0 <= k < count and k != i]
+        link = (['kind = "multicast"', 'interface = "127.0.0.1"', f'group = "{shape}"']
+                if ":" in shape
                 else ['kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
                       f"peers = {json.dumps(peers)}"])  # fmt: skip
         lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",

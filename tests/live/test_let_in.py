@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.live import only_from as filters
+from innervate.live.errors import LiveError
 from innervate.live.only_from import Doors, of_peer, only_from, packed, unread
 from innervate.live.receipts import DELIVERED
 from innervate.live.udp import MulticastLink, UdpLink
@@ -191,3 +192,51 @@ def test_a_group_hears_its_members_while_strangers_flood_it():
     assert states == [DELIVERED] * 2
     assert dropped >= 1000
     assert received < 300
+
+
+def test_a_neighbours_flood_takes_no_room_from_what_others_send_and_nobody_takes_the_address():
+    async def main():
+        ports = [free_port() for _ in range(3)]
+        far = [("127.0.0.1", port) for port in ports[1:]]
+        link, got = UdpLink(("127.0.0.1", ports[0]), far), []
+        await link.open(lambda path, data: got.append((path.port, len(data))))
+        with pytest.raises(LiveError, match="already in use"):
+            await UdpLink(link.bind, far).open(print)
+        with (
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as loud,
+            socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as quiet,
+        ):
+            loud.bind(far[0])
+            quiet.bind(far[1])
+            for _ in range(2000):
+                loud.sendto(bytes(900), link.bind)
+            quiet.sendto(b"x", link.bind)
+        assert link.unread() > 0
+        while (1, 1) not in got:
+            await asyncio.sleep(0)
+        place = got.index((1, 1))
+        link.close()
+        return place
+
+    assert asyncio.run(main()) <= 64  # nor does it wait for the rest of the flood
+
+
+def test_where_neighbours_cannot_be_kept_apart_one_socket_hears_them_all(monkeypatch):
+    def refuse(*_):
+        raise OSError(errno.ENOPROTOOPT, "Protocol not available")
+
+    async def main():
+        ports = [free_port() for _ in range(3)]
+        far = [("127.0.0.1", port) for port in ports[1:]]
+        link, got = UdpLink(("127.0.0.1", ports[0]), far), []
+        await link.open(lambda path, data: got.append((path.port, data)))
+        for address in far:
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+                sock.bind(address)
+                sock.sendto(b"x", link.bind)
+        await until(lambda: len(got) == 2)
+        link.close()
+        return got, len(link._others)
+
+    monkeypatch.setattr("innervate.live.udp.share", refuse)
+    assert asyncio.run(main()) == ([(0, b"x"), (1, b"x")], 0)

@@ -8,18 +8,21 @@ neighbour's address and, where frames are sealed, an index that this node drew f
 from __future__ import annotations
 
 import ctypes
+import errno
 import socket
 import struct
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
 SO_ATTACH_FILTER, SO_DETACH_FILTER = 26, 27
+SO_ATTACH_REUSEPORT_CBPF = 51
 SO_MEMINFO = 55
 DROPS = 8  # its place among SO_MEMINFO's nine numbers
 NETWORK = 0x1_0000_0000 - 0x100000  # where the IP header is found; offset 0 is the UDP header
 SOURCE = NETWORK + 12
+SOURCE_PORT = NETWORK + 20
 FIRST, INDEX, COUNTER = 8, 9, 13  # of a datagram: its first byte, what a sealed frame says next
 LOAD_WORD, LOAD_HALF, LOAD_BYTE = 0x20, 0x28, 0x30
 JUMP_EQUAL, JUMP_FROM, RETURN = 0x15, 0x35, 0x06
@@ -79,15 +82,45 @@ def only_from(sock: socket.socket, *programs: bytes) -> None:
     if sys.platform != "linux":
         return
     for steps in programs:
-        code = steps + packed([DROP])
-        held = ctypes.create_string_buffer(code, len(code))
-        filled = struct.pack("HP", len(code) // STEP_BYTES, ctypes.addressof(held))
-        if len(code) <= STEPS_MAX * STEP_BYTES:
-            with suppress(OSError):
-                sock.setsockopt(socket.SOL_SOCKET, SO_ATTACH_FILTER, filled)
-                return
+        with suppress(OSError):
+            attach(sock, SO_ATTACH_FILTER, steps + packed([DROP]))
+            return
     with suppress(OSError):
         sock.setsockopt(socket.SOL_SOCKET, SO_DETACH_FILTER, 0)
+
+
+def attach(sock: socket.socket, option: int, steps: bytes) -> None:
+    """Give a program to a socket.
+
+    Raises:
+        OSError: the system does not take it.
+    """
+    if len(steps) > STEPS_MAX * STEP_BYTES:
+        raise OSError(errno.EINVAL, "too many instructions")
+    held = ctypes.create_string_buffer(steps, len(steps))
+    filled = struct.pack("HP", len(steps) // STEP_BYTES, ctypes.addressof(held))
+    sock.setsockopt(socket.SOL_SOCKET, option, filled)
+
+
+def share(first: socket.socket, others: Sequence[socket.socket], peers: Iterable[Peer]) -> None:
+    """Have several sockets take turns at one address, so that each peer's datagrams come to one.
+
+    The first is bound, and was before anybody could share its address with it; the others are not.
+
+    Raises:
+        OSError: the system cannot.
+    """
+    for sock in (first, *others):
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+    for sock in others:
+        sock.bind(first.getsockname())
+    steps: list[Step] = []
+    for i, (host, port) in enumerate(peers):
+        steps += [(LOAD_WORD, 0, 0, SOURCE),
+                  (JUMP_EQUAL, 0, 3, int.from_bytes(socket.inet_aton(host), "big")),
+                  (LOAD_HALF, 0, 0, SOURCE_PORT), (JUMP_EQUAL, 0, 1, port),
+                  (RETURN, 0, 0, i % (1 + len(others)))]  # fmt: skip
+    attach(first, SO_ATTACH_REUSEPORT_CBPF, packed([*steps, TAKE]))
 
 
 def unread(sock: socket.socket) -> int:

@@ -6,18 +6,20 @@ import asyncio
 import errno
 import socket
 import struct
+import sys
 from collections.abc import Mapping
 from contextlib import closing, suppress
 
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import TAKE, Doors, of_peer, only_from, packed, unread
+from innervate.live.only_from import TAKE, Doors, of_peer, only_from, packed, share, unread
 
 Address = tuple[str, int]
 
 DATAGRAM_MAX = 2048
-BATCH = 64  # datagrams read at once, before timers have their turn
+BATCH = 64  # datagrams read at once, before timers and other neighbours have their turn
+SOCKETS = 32  # of a link at most
 REOPEN_S = 0.5
 RENEW_S = 1.0
 ANY = "0.0.0.0:"
@@ -70,7 +72,7 @@ class UdpPath(Path):
 
 
 class UdpLink(Link):
-    """One socket for any number of neighbours.
+    """One address for any number of neighbours; each has room of its own for what it sends.
 
     Args:
         bind: own address; ("0.0.0.0", port) takes frames on every interface.
@@ -80,7 +82,8 @@ class UdpLink(Link):
 
     def __init__(self, bind: Address, peers: list[Address], first_port: int = 0) -> None:
         self.bind = bind
-        self.socket: socket.socket | None = None
+        self.socket: socket.socket | None = None  # sends; hears, too
+        self._others: list[socket.socket] = []
         self.paths: list[UdpPath] = [
             UdpPath(self, peer, first_port + i) for i, peer in enumerate(peers)
         ]
@@ -104,7 +107,9 @@ class UdpLink(Link):
     def _open(self) -> None:
         sock = self._make()
         self.socket = sock
-        asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
+        self._others = self._more(sock)
+        for one in (sock, *self._others):
+            asyncio.get_running_loop().add_reader(one.fileno(), self._readable, one)
         for path in self.paths:
             path.up = True
 
@@ -119,20 +124,40 @@ class UdpLink(Link):
             raise
         return sock
 
+    def _more(self, first: socket.socket) -> list[socket.socket]:
+        """Sockets for all neighbours but the first, if the system can keep them apart."""
+        others: list[socket.socket] = []
+        if sys.platform != "linux":
+            return others
+        try:
+            for _ in self.paths[1:SOCKETS]:
+                others.append(machine().socket(socket.AF_INET, socket.SOCK_DGRAM))
+                others[-1].setblocking(False)
+                self.guard(others[-1])
+            if others:
+                share(first, others, self._by_address)
+        except OSError:
+            for sock in others:
+                sock.close()
+            return []
+        return others
+
     def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
         """Instructions that let in what is for a path."""
         return of_peer(path.address, doors)
 
-    def guard(self, sock: socket.socket | None = None) -> None:
+    def guard(self, *socks: socket.socket) -> None:
         """Have the system let in what is for our paths; at the least what bears their addresses."""
-        sock = sock or self.socket
-        if sock is not None:
+        for sock in socks or self._sockets():
             addresses = map(of_peer, self._by_address)
             only_from(sock, b"".join(path.filter for path in self.paths), b"".join(addresses))
 
+    def _sockets(self) -> list[socket.socket]:
+        return [] if self.socket is None else [self.socket, *self._others]
+
     def unread(self) -> int:
         """How many datagrams the system dropped: not for us, and those that found no room."""
-        return self._unread + (0 if self.socket is None else unread(self.socket))
+        return self._unread + sum(map(unread, self._sockets()))
 
     def close(self) -> None:
         """Close the socket, and do not open it again."""
@@ -142,17 +167,16 @@ class UdpLink(Link):
         self._drop()
 
     def _drop(self) -> None:
-        if self.socket is not None:
+        self._unread = self.unread()
+        for sock in self._sockets():
             with suppress(RuntimeError):  # the loop may be closed already
-                asyncio.get_running_loop().remove_reader(self.socket.fileno())
-            self._unread = self.unread()
-            self.socket.close()
-            self.socket = None
+                asyncio.get_running_loop().remove_reader(sock.fileno())
+            sock.close()
+        self.socket, self._others = None, []
 
-    def _readable(self) -> None:
-        sock = self.socket
+    def _readable(self, sock: socket.socket) -> None:
         for _ in range(BATCH):
-            if sock is None:
+            if self.socket is None:  # whoever received may have closed us
                 return
             try:
                 data, address = sock.recvfrom(DATAGRAM_MAX)
@@ -166,7 +190,6 @@ class UdpLink(Link):
                 self.strangers += 1
             else:
                 self._receive(path, data)
-                sock = self.socket  # whoever received may have closed us
 
     def _origin(self, address: Address) -> UdpPath | None:
         return self._by_address.get(address)
@@ -208,10 +231,9 @@ class MulticastLink(UdpLink):
         """Instructions that let in what is for members, whatever their addresses."""
         return packed(doors.steps())
 
-    def guard(self, sock: socket.socket | None = None) -> None:
+    def guard(self, *socks: socket.socket) -> None:
         """Have the system let in what is for us, or all if that is too much to say."""
-        sock = sock or self.socket
-        if sock is not None:
+        for sock in socks or self._sockets():
             only_from(sock, self._group.filter)
 
     def _make(self) -> socket.socket:
