@@ -372,49 +372,6 @@ def test_a_flood_of_first_messages_leaves_nothing_behind(make):
     time_by_hand.run(main())
 
 
-@BOTH
-def test_of_a_burst_of_first_messages_few_are_answered_and_then_nobody_is_for_a_moment(make):
-    async def main():
-        _, b = await two(make)
-        other = Wire()
-        sealer = begin(make(3), other)
-        for _ in range(50):
-            sealer._contacts[0].ask(2)
-        sealer.stop()
-        before, b.others = len(b.said), []
-        for data in other.said:
-            b.hear(data)
-        answered = len(b.said) - before
-        shut = b.sealer.dropped["sealed: too many first messages"]
-        await settle(1.1 * SHUT_S)
-        b.hear(other.said[0])
-        return answered, shut, len(b.said) - before - answered
-
-    assert time_by_hand.run(main()) == (8, 42, 1)
-
-
-def test_who_has_shut_its_door_is_still_answered():
-    """A node that is started again is found by the one that is flooded, not by its own asking."""
-
-    async def main():
-        a, b = Wire("a"), Wire("b")
-        join(a, b)
-        begin(network_sealer(1), a)
-        await settle(0)
-        noise = bytes([0xD1]) + bytes(64)
-        sealer = begin(network_sealer(2), b)
-        for _ in range(200):
-            for _ in range(2 * KNOCKS):
-                b.hear(noise)
-            await settle(0.01)
-        assert sealer.dropped["sealed: too many first messages"] > 10_000
-        a.frame(VALVE)
-        await settle(0)
-        return b.frames()
-
-    assert time_by_hand.run(main()) == [VALVE]
-
-
 def test_an_event_loop_is_not_kept_busy_by_nobody():
     async def main():
         a = Wire()

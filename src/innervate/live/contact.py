@@ -123,11 +123,21 @@ class Contact:
 
     def listen(self) -> None:
         """Say to the path what is taken: nobody has to read the rest."""
-        self.path.let_in(self._anybody() if self.knocks.is_open else b"", self._known())
+        self.path.let_in(self._anybody() if self.knocks.is_open else (), self._known())
 
-    def _anybody(self) -> bytes:
-        """First bytes of what is heard from strangers."""
-        return bytes(seal.FIRST + key for key in self.sealer.ring.keys)
+    def _anybody(self) -> list[tuple[int, int]]:
+        """Ranges of first bytes that are heard from strangers: once somebody is there, calls alone.
+
+        Before, what is not sealed or under another key is heard, too, so that people can be told.
+        """
+        if not self.sessions:
+            return [(0, seal.MARK - 1), (seal.FIRST, 0xFF)]
+        return [(seal.FIRST + key, seal.FIRST + key) for key in self.sealer.ring.keys]
+
+    def in_clear(self) -> None:
+        """Something came that was not sealed."""
+        if not self.sessions:
+            self.knocks.note()
 
     def _known(self) -> dict[int, int]:
         """Indices under which we were to be told something, and the least counter of each."""
@@ -386,11 +396,3 @@ def is_worn(session: Session, now: int) -> bool:
     """True if a new session should take this one's place; who began it asks for it first."""
     late = REKEY_US if session.is_initiator else REKEY_US * 6 // 5
     return now - session.made_at > late or session.counter > COUNTERS // 2
-
-
-def is_same_end(claimed: str, known: str) -> bool:
-    """True if two names of one end of a path can both be right; "" and any address: not known."""
-    if not claimed or not known or claimed == known:
-        return True
-    (host, _, port), (other, _, another) = claimed.rpartition(":"), known.rpartition(":")
-    return port == another and "0.0.0.0" in (host, other)

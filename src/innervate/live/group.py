@@ -77,9 +77,9 @@ class GroupContact(Contact):
                  for (number, epoch), heard in self._heard.items()}  # fmt: skip
         return known | super()._known()
 
-    def _anybody(self) -> bytes:
+    def _anybody(self) -> list[tuple[int, int]]:
         """What is sealed for a group may be of a member that we do not know yet."""
-        return super()._anybody() + bytes((seal.GROUP,))
+        return [*super()._anybody(), (seal.GROUP, seal.GROUP)]
 
     def renew(self) -> None:
         """Another key for what we say, of which nobody knows who is not told from now on."""

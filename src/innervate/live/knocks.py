@@ -32,7 +32,7 @@ class Knocks:
         self._timer: asyncio.TimerHandle | None = None
 
     def note(self, weight: int = 1) -> None:
-        """Somebody knocked."""
+        """Somebody knocked: shut the door if that was too much."""
         now = clock_us()
         again = (now - self._at) * self._most / (1e6 * SHUT_S)
         self._left = min(self._left + again, self._most) - weight
@@ -47,6 +47,6 @@ class Knocks:
         self._turned()
 
     def stop(self) -> None:
-        """Turn nothing any more."""
+        """Leave the door as it is from now on."""
         if self._timer is not None:
             self._timer.cancel()

@@ -25,13 +25,14 @@ SOURCE = NETWORK + 12
 SOURCE_PORT = NETWORK + 20
 FIRST, INDEX, COUNTER = 8, 9, 13  # of a datagram: its first byte, what a sealed frame says next
 LOAD_WORD, LOAD_HALF, LOAD_BYTE = 0x20, 0x28, 0x30
-JUMP_EQUAL, JUMP_FROM, RETURN = 0x15, 0x35, 0x06
+JUMP_EQUAL, JUMP_FROM, JUMP_ABOVE, RETURN = 0x15, 0x35, 0x25, 0x06
 WHOLE = 0xFFFF_FFFF
 STEPS_MAX, STEP_BYTES = 4096, 8  # of a filter
 JUMP = 255  # at most so far
 
 Step = tuple[int, int, int, int]
 Peer = tuple[str, int]
+Ranges = Sequence[tuple[int, int]]
 TAKE: Step = (RETURN, 0, 0, WHOLE)
 DROP: Step = (RETURN, 0, 0, 0)
 
@@ -40,18 +41,18 @@ class Doors(NamedTuple):
     """What is let in of sealed frames on one path.
 
     Attributes:
-        anybody: first bytes of what is taken from anybody.
+        anybody: what is taken from anybody, by its first byte: ranges, both ends included.
         known: by index (of a group: sender and epoch) the least counter that can be new.
     """
 
-    anybody: bytes
+    anybody: Ranges
     known: Mapping[int, int]
 
     def steps(self) -> list[Step]:
         """Instructions that take or drop a datagram."""
         steps: list[Step] = [(LOAD_BYTE, 0, 0, FIRST)]
-        for first in self.anybody:
-            steps += [(JUMP_EQUAL, 0, 1, first), TAKE]
+        for low, high in self.anybody:
+            steps += [(JUMP_FROM, 0, 2, low), (JUMP_ABOVE, 1, 0, high), TAKE]
         steps.append((LOAD_WORD, 0, 0, INDEX))
         for index, least in self.known.items():
             if least:

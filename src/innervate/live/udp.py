@@ -13,7 +13,7 @@ from contextlib import closing, suppress
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import TAKE, Doors, of_peer, only_from, packed, share, unread
+from innervate.live.only_from import TAKE, Doors, Ranges, of_peer, only_from, packed, share, unread
 
 Address = tuple[str, int]
 
@@ -38,7 +38,7 @@ class UdpPath(Path):
         self.address = address
         self.filter = of_peer(address)
 
-    def let_in(self, anybody: bytes, known: Mapping[int, int]) -> None:
+    def let_in(self, anybody: Ranges, known: Mapping[int, int]) -> None:
         """Have the system drop the rest, if it can."""
         steps = self.link.filter_of(self, Doors(anybody, known))
         if steps != self.filter:
