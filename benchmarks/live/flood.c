@@ -4,7 +4,7 @@
    With AS_PORT they bear the address 127.0.0.1:AS_PORT (as root). With a recording (each frame as
    its length in two bytes, little-endian, and itself) a third is noise, a third are recorded frames
    with one byte changed, and a third begin as recorded ones do and go on with noise; the counters
-   of sealed ones go on as fast as they did in the recording, a second of it.
+   of sealed ones go on twice as fast as in the recording, a second of it, so that they are new.
    Says how many went, and how many datagrams came back to it. */
 #define _GNU_SOURCE
 #include <arpa/inet.h>
@@ -78,7 +78,7 @@ static size_t like_recorded(unsigned char *bytes, int is_changed, double seconds
   }
   memcpy(bytes, frame->bytes, HEAD);
   if (bytes[0] >= SEALED) {
-    uint32_t counter = htonl(first_counter + (uint32_t)(per_s * seconds) + draw() % 1000);
+    uint32_t counter = htonl(first_counter + (uint32_t)(2 * per_s * seconds) + draw() % 1000);
     memcpy(bytes + 5, &counter, 4);
   }
   return frame->count;

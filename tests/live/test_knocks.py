@@ -80,3 +80,21 @@ def test_noise_in_the_clear_shuts_no_door_once_somebody_is_there():
         return b.sealer._contacts[0].knocks.is_open
 
     assert time_by_hand.run(main())
+
+
+def test_a_neighbour_that_is_started_again_is_found_by_the_node_that_is_flooded():
+    async def main():
+        a, b = await two()
+        a.sealer.stop()
+        begin(network_sealer(1), a)
+        noise, seconds = bytes([0xD1]) + bytes(64), 0.0
+        while (1, VALVE) not in b.got:
+            for _ in range(2 * KNOCKS):
+                b.hear(noise)
+            a.frame(VALVE)
+            b.frame(b"beacon")
+            await settle(0.02)
+            seconds += 0.02
+        return seconds
+
+    assert time_by_hand.run(main()) < 3.7  # nothing is heard for 3 s, at the most
