@@ -30,6 +30,16 @@ def cpu_s():
     return used.ru_utime + used.ru_stime
 
 
+def mib():
+    """Most memory that this process had."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def sent(node):
+    """How many frames have left it."""
+    return sum(path.counters["sent"] for path in getattr(node, "paths", ()))
+
+
 def stamped(size):
     """A payload that begins with the time."""
     return time.monotonic_ns().to_bytes(STAMP_BYTES, "big") + bytes(size - STAMP_BYTES)
@@ -104,7 +114,7 @@ async def main():
             told = await send(node, int(words[1]), int(words[2]), float(words[3]), words[4])
         else:
             told = {"got": len(late_us), "late_us": late_us[:], "cpu_s": cpu_s() - cpu,
-                    "counters": node.counters()}  # fmt: skip
+                    "counters": node.counters(), "sent": sent(node), "mib": mib()}  # fmt: skip
             late_us.clear()
             cpu = cpu_s()
         print(json.dumps(told), flush=True)

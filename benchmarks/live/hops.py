@@ -34,18 +34,25 @@ def free_ports(count):
     return ports
 
 
-def ours(folder, count, sealed=False, settings=None, engine="python"):
-    """Commands that start nodes of ours; node 1 is the gateway."""
+def ours(folder, count, sealed=False, settings=None, engine="python", shape="line"):
+    """Commands that start nodes of ours; node 1 is the gateway.
+
+    `shape` is "line", "star" (all are neighbours of node 1 alone) or the address of a group.
+    """
     ports, commands = free_ports(count), []
     for i in range(count):
-        peers = [f"127.0.0.1:{ports[k]}" for k in (i - 1, i + 1) if 0 <= k < count]
+        near = (i - 1, i + 1) if shape == "line" else [1] if i != 1 else range(count)
+        peers = [f"127.0.0.1:{ports[k]}" for k in near if 0 <= k < count and k != i]
+        link = (['kind = "multicast"', 'interface = "127.0.0.1"', f'group = "{shape}"']
+                if ":" in shape
+                else ['kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
+                      f"peers = {json.dumps(peers)}"])  # fmt: skip
         lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
                  f'role = "{"gateway" if i == 1 else "node"}"',
                  f'socket = "{folder / f"n{i}.sock"}"', f'engine = "{engine}"',
                  *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
                  "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
-                 "[[link]]", 'kind = "udp"', f'bind = "127.0.0.1:{ports[i]}"',
-                 f"peers = {json.dumps(peers)}"]  # fmt: skip
+                 "[[link]]", *link]  # fmt: skip
         file = folder / f"n{i}.toml"
         file.write_text("\n".join(lines) + "\n")
         commands.append([*ENDS, str(file)])
@@ -69,14 +76,15 @@ class Line:
 
     Args:
         commands: what starts each.
+        log: a file for what they write as errors; None = where ours go.
     """
 
-    def __init__(self, commands):
+    def __init__(self, commands, log=None):
         self.nodes = [None] * len(commands)
         for i in sorted(range(len(commands)), key=lambda i: i != 1):  # others call the middle
             self.nodes[i] = subprocess.Popen(
                 [sys.executable, *commands[i]],
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True,
             )  # fmt: skip
             self.hear(i)
 
@@ -105,6 +113,7 @@ class Line:
             "p50_us": statistics.median(late_us) if late_us else 0.0,
             "p99_us": late_us[int(0.99 * len(late_us))] if late_us else 0.0,
             "cpu_us": [1e6 * one["cpu_s"] / count for one in (told, *others)],
+            "middle": others[0],
         }
 
     def stop(self):

@@ -3,7 +3,8 @@
 import pytest
 
 from innervate.cli import live_status
-from innervate.live.contact import REKEY_US
+from innervate.live.contact import KNOCKS, REKEY_US
+from innervate.live.knocks import ANSWERED, SHUT_S
 from innervate.wire import seal
 from tests.live import time_by_hand
 from tests.live.net import Mesh
@@ -358,6 +359,7 @@ def test_a_flood_of_first_messages_leaves_nothing_behind(make):
         for _ in range(20):
             for data in recorded:
                 b.hear(data)
+                await settle(SHUT_S / KNOCKS * (ANSWERED + 1))  # as fast as they are heard
         for _ in range(3):  # the same is answered as before, and costs no curve
             b.hear(recorded[-1])
         assert b.said[-1] == b.said[-2] == b.said[-3]

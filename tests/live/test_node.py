@@ -267,7 +267,7 @@ def test_a_nodes_counters_are_those_of_all_that_it_is_made_of(tmp_path):
         node._receive(node.paths[0], b"frame")
         assert node.counters() == {
             "frames": 1, "dropped: from a stranger": 7, "status: turned away": 2,
-            "dropped by the system: from strangers, or no room": 9, "state not written": 5,
+            "dropped by the system: not for this node, or no room": 9, "state not written": 5,
             "messages accepted": 4,
         }  # fmt: skip
         assert node.reports == {3: 2}

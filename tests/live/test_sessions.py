@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.live import contact
-from innervate.live.contact import REKEY_US, is_same_end, is_worn
+from innervate.live.contact import REKEY_US, is_worn
+from innervate.live.keyring import is_same_end
 from innervate.live.rotation import Rotation
 from innervate.live.session import COUNTERS
 from innervate.wire import seal

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from innervate.live import udp
 from innervate.live.errors import LiveError
 from innervate.live.machine import Machine
-from innervate.live.only_from import only_from, unread
+from innervate.live.only_from import of_peer, only_from, unread
 from innervate.live.receipts import DELIVERED
 from innervate.live.udp import MulticastLink, UdpLink
 from innervate.networks.mesh.live.node import MeshNode
@@ -68,7 +68,7 @@ def test_strangers_are_not_listened_to_but_counted(monkeypatch):
 def test_on_linux_the_system_drops_and_counts_them():
     link = UdpLink(("127.0.0.1", free_port()), [("127.0.0.1", 9)])
     counters, received = asyncio.run(stranger_to(link))
-    assert counters["dropped by the system: from strangers, or no room"] == 7
+    assert counters["dropped by the system: not for this node, or no room"] == 7
     assert counters["dropped: from a stranger"] == received == 0
 
 
@@ -86,7 +86,7 @@ def test_the_system_lets_in_exactly_the_neighbours(peers, who):
     ):
         own.bind(("127.0.0.1", 0))
         own.setblocking(False)
-        only_from(own, peers)
+        only_from(own, b"".join(map(of_peer, peers)))
         far.bind((who[0], ports[who[1]]))
         far.sendto(b"x", own.getsockname())
         try:  # what is sent over loopback is there when sendto returns

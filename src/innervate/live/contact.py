@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from innervate.live.engine import clock_us
 from innervate.live.keyring import ANYBODY, MAC_BYTES, About, Proven, read_about
+from innervate.live.knocks import ANSWERED, Knocks
 from innervate.live.links import Path
 from innervate.live.machine import machine
 from innervate.live.noise import KEY_BYTES, Broken, Handshake
@@ -30,7 +31,8 @@ SILENT_US = 3_000_000  # nothing was heard while we send: the neighbour may have
 REKEY_US = 600_000_000
 OLD_US = 3 * REKEY_US  # an older session is not taken any more
 ASKED = 4  # of our questions may be answered late
-ANSWERED = 8  # of others' are remembered
+ANSWERS = 8  # of ours are remembered
+KNOCKS = 64  # of strangers in 50 ms are heard
 SESSIONS = 3  # of a neighbour: frames of an older one may come late
 HELD = 8  # frames wait for the first session
 HELD_US = 100_000
@@ -58,11 +60,15 @@ class Contact:
 
     Attributes:
         sessions: those that were proved, by the number of who is there; the newest first.
+        knocks: what strangers' messages may cost.
     """
+
+    most_knocks = KNOCKS
 
     def __init__(self, sealer: Sealer, path: Path) -> None:
         self.sealer, self.path = sealer, path
         self.sessions: dict[int, list[Session]] = {}
+        self.knocks = Knocks(self.most_knocks, self.listen)
         self._current: Session | None = None
         self._by_index: dict[int, Session] = {}
         self._asked: dict[int, tuple[Handshake, int]] = {}
@@ -79,6 +85,7 @@ class Contact:
 
     def stop(self) -> None:
         """Ask no more who is there."""
+        self.knocks.stop()
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -111,7 +118,32 @@ class Contact:
             self.ask(ANYBODY)
             wait_s = self._wait_s * (0.75 + machine().chance.random() / 2)
             self._wait_s = min(2 * self._wait_s, WAIT_MAX_S)
+        self.listen()
         self._timer = asyncio.get_running_loop().call_later(wait_s, self.beat)
+
+    def listen(self) -> None:
+        """Say to the path what is taken: nobody has to read the rest."""
+        self.path.let_in(self._anybody() if self.knocks.is_open else (), self._known())
+
+    def _anybody(self) -> list[tuple[int, int]]:
+        """Ranges of first bytes that are heard from strangers: once somebody is there, calls alone.
+
+        Before, what is not sealed or under another key is heard, too, so that people can be told.
+        """
+        if not self.sessions:
+            return [(0, seal.MARK - 1), (seal.FIRST, 0xFF)]
+        return [(seal.FIRST + key, seal.FIRST + key) for key in self.sealer.ring.keys]
+
+    def in_clear(self) -> None:
+        """Something came that was not sealed."""
+        if not self.sessions:
+            self.knocks.note()
+
+    def _known(self) -> dict[int, int]:
+        """Indices under which we were to be told something, and the least counter of each."""
+        known = dict.fromkeys(self._asked, 0)
+        known |= {answer.handle: 0 for answer in self._answered.values() if answer.handshake}
+        return known | {index: one.window.least for index, one in self._by_index.items()}
 
     def _wants_session(self, now: int) -> bool:
         session = self._current
@@ -131,6 +163,7 @@ class Contact:
         if len(self._asked) > ASKED:
             del self._asked[next(iter(self._asked))]
         self.sealer.counts["handshakes begun"] += 1
+        self.listen()
         self.send(ring.close(ring.use, bytes((seal.FIRST + ring.use,)) + message))
 
     def close(self, data: bytes) -> bytes | None:
@@ -157,6 +190,9 @@ class Contact:
                 return self._second(data)
             if kind == seal.THIRD:
                 return self._third(data)
+            if not self.knocks.is_open:
+                return "too many first messages"
+            self.knocks.note()
             return self._first(data, kind - seal.FIRST)
         except Broken:
             return "wrong key or damaged"
@@ -230,6 +266,7 @@ class Contact:
         if known is not None:
             self.send(known.reply)
             return ""
+        self.knocks.note(ANSWERED)
         handshake = ring.handshake(key, False)
         about = read_about(handshake.read(data[1:-MAC_BYTES]))
         why = self.sealer.objection(about, self.path)
@@ -246,6 +283,7 @@ class Contact:
             )
         waiting = None if handshake.is_done else handshake
         self._remember(data[1 : 1 + KEY_BYTES], Answer(reply, index, waiting, about, key))
+        self.listen()
         self.send(reply)
         return ""
 
@@ -255,7 +293,7 @@ class Contact:
 
     def _remember(self, ephemeral: bytes, answer: Answer) -> None:
         self._answered[ephemeral] = answer
-        if len(self._answered) > ANSWERED:
+        if len(self._answered) > ANSWERS:
             oldest = self._answered.pop(next(iter(self._answered)))
             session = self._by_index.get(oldest.handle)
             if session is not None and not session.heard_at:
@@ -358,11 +396,3 @@ def is_worn(session: Session, now: int) -> bool:
     """True if a new session should take this one's place; who began it asks for it first."""
     late = REKEY_US if session.is_initiator else REKEY_US * 6 // 5
     return now - session.made_at > late or session.counter > COUNTERS // 2
-
-
-def is_same_end(claimed: str, known: str) -> bool:
-    """True if two names of one end of a path can both be right; "" and any address: not known."""
-    if not claimed or not known or claimed == known:
-        return True
-    (host, _, port), (other, _, another) = claimed.rpartition(":"), known.rpartition(":")
-    return port == another and "0.0.0.0" in (host, other)

@@ -18,6 +18,7 @@ from innervate.live.contact import (
     ALIVE,
     ANSWER,
     HELD_US,
+    KNOCKS,
     Contact,
     is_worn,
 )
@@ -58,6 +59,8 @@ class GroupContact(Contact):
         path: the group's.
     """
 
+    most_knocks = 4 * KNOCKS  # many members may come at once
+
     def __init__(self, sealer: Sealer, path: Path) -> None:
         super().__init__(sealer, path)
         self._called_at = 0
@@ -67,6 +70,16 @@ class GroupContact(Contact):
         identity = sealer.ring.identity
         self._signing = Ed25519PrivateKey.from_private_bytes(identity.signing) if identity else None
         self.renew()
+
+    def _known(self) -> dict[int, int]:
+        """Besides our indices the keys of members, and the least counter under each."""
+        known = {number << 16 | epoch: heard.window.least
+                 for (number, epoch), heard in self._heard.items()}  # fmt: skip
+        return known | super()._known()
+
+    def _anybody(self) -> list[tuple[int, int]]:
+        """What is sealed for a group may be of a member that we do not know yet."""
+        return [*super()._anybody(), (seal.GROUP, seal.GROUP)]
 
     def renew(self) -> None:
         """Another key for what we say, of which nobody knows who is not told from now on."""
@@ -135,6 +148,7 @@ class GroupContact(Contact):
 
     def _seek(self, number: int) -> None:
         """A member whom we do not know, perhaps: ask, now and then."""
+        self.knocks.note()
         now = clock_us()
         if now - self._sought_at >= SEEK_US and self._timer is not None:
             self._sought_at = now

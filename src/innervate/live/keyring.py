@@ -91,6 +91,14 @@ def read_about(data: bytes) -> About:
     return About(number, to, life, index, ends[0], ends[1], data[at:])
 
 
+def is_same_end(claimed: str, known: str) -> bool:
+    """True if two names of one end of a path can both be right; "" and any address: not known."""
+    if not claimed or not known or claimed == known:
+        return True
+    (host, _, port), (other, _, another) = claimed.rpartition(":"), known.rpartition(":")
+    return port == another and "0.0.0.0" in (host, other)
+
+
 class Proven(NamedTuple):
     """Who is at the far end of a session.
 

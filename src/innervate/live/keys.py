@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
-from innervate.live.contact import REVOKED, TWIN, Contact, is_same_end
+from innervate.live.contact import REVOKED, TWIN, Contact
 from innervate.live.engine import clock_us
 from innervate.live.group import GroupContact
 from innervate.live.identity import Identity, Revoked, read_revoked
-from innervate.live.keyring import LIFE_BYTES, About, Keyring, Proven
+from innervate.live.keyring import LIFE_BYTES, About, Keyring, Proven, is_same_end
 from innervate.live.links import Path
 from innervate.live.machine import machine
 from innervate.live.state import State
@@ -127,6 +127,7 @@ class Sealer:
                 contact.put_out(lambda who: who.key in gone)
             elif changed:
                 contact.renew_all()
+            contact.listen()
 
     def close(self, path: Path, data: bytes) -> bytes | None:
         """Seal a frame for a path; None = it waits until somebody has proved to be there."""
@@ -137,11 +138,12 @@ class Sealer:
 
         It counts as taken only when `take` is told so.
         """
-        if not seal.is_sealed(data):
-            return self._drop("not sealed")
         contact = self._contacts.get(path.port)
         if contact is None:
             return self._drop("sealed: not started")
+        if not seal.is_sealed(data):
+            contact.in_clear()
+            return self._drop("not sealed")
         if data[0] in (seal.SECOND, seal.THIRD) or data[0] >= seal.FIRST:
             why = contact.take(data)
             self.counts["handshake messages"] += not why

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 # Takes the path a frame came in on, and its bytes.
@@ -46,6 +46,13 @@ class Path:
     def send(self, data: bytes) -> None:
         """Send bytes; never waits and never raises: what cannot go is counted."""
         raise NotImplementedError
+
+    def let_in(self, anybody: Sequence[tuple[int, int]], known: Mapping[int, int]) -> None:
+        """What of sealed frames will be taken; a link may drop the rest before it is read.
+
+        `anybody` are ranges of first bytes that are taken whoever sent them; `known` says the least
+        counter that can be new for each index (of a group: sender and epoch).
+        """
 
     def sent(self, data: bytes) -> None:
         """Note that bytes have left."""

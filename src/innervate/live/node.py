@@ -215,7 +215,7 @@ class LiveNode:
             total["dropped: from a stranger"] = strangers
         unread = sum(link.unread() for link in self.links)
         if unread:
-            total["dropped by the system: from strangers, or no room"] = unread
+            total["dropped by the system: not for this node, or no room"] = unread
         if self.state.failed:
             total["state not written"] = self.state.failed
         return total + self.callers + self.outcomes

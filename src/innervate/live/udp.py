@@ -6,17 +6,20 @@ import asyncio
 import errno
 import socket
 import struct
+import sys
+from collections.abc import Mapping
 from contextlib import closing, suppress
 
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import only_from, unread
+from innervate.live.only_from import TAKE, Doors, Ranges, of_peer, only_from, packed, share, unread
 
 Address = tuple[str, int]
 
 DATAGRAM_MAX = 2048
-BATCH = 64  # datagrams read at once, before timers have their turn
+BATCH = 64  # datagrams read at once, before timers and other neighbours have their turn
+SOCKETS = 32  # of a link at most
 REOPEN_S = 0.5
 RENEW_S = 1.0
 ANY = "0.0.0.0:"
@@ -33,6 +36,14 @@ class UdpPath(Path):
             self.ends = (here, f"{address[0]}:{address[1]}")
         self.link = link
         self.address = address
+        self.filter = of_peer(address)
+
+    def let_in(self, anybody: Ranges, known: Mapping[int, int]) -> None:
+        """Have the system drop the rest, if it can."""
+        steps = self.link.filter_of(self, Doors(anybody, known))
+        if steps != self.filter:
+            self.filter = steps
+            self.link.guard()
 
     def bound_ends(self) -> tuple[str, str]:
         """Both addresses; ours on any interface is the one from which the neighbour is reached."""
@@ -61,7 +72,7 @@ class UdpPath(Path):
 
 
 class UdpLink(Link):
-    """One socket for any number of neighbours.
+    """One address for any number of neighbours; each has room of its own for what it sends.
 
     Args:
         bind: own address; ("0.0.0.0", port) takes frames on every interface.
@@ -71,7 +82,8 @@ class UdpLink(Link):
 
     def __init__(self, bind: Address, peers: list[Address], first_port: int = 0) -> None:
         self.bind = bind
-        self.socket: socket.socket | None = None
+        self.socket: socket.socket | None = None  # sends; hears, too
+        self._others: list[socket.socket] = []
         self.paths: list[UdpPath] = [
             UdpPath(self, peer, first_port + i) for i, peer in enumerate(peers)
         ]
@@ -95,7 +107,9 @@ class UdpLink(Link):
     def _open(self) -> None:
         sock = self._make()
         self.socket = sock
-        asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
+        self._others = self._more(sock)
+        for one in (sock, *self._others):
+            asyncio.get_running_loop().add_reader(one.fileno(), self._readable, one)
         for path in self.paths:
             path.up = True
 
@@ -103,16 +117,47 @@ class UdpLink(Link):
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
-            only_from(sock, self._by_address)
+            self.guard(sock)
             sock.bind(self.bind)
         except BaseException:
             sock.close()
             raise
         return sock
 
+    def _more(self, first: socket.socket) -> list[socket.socket]:
+        """Sockets for all neighbours but the first, if the system can keep them apart."""
+        others: list[socket.socket] = []
+        if sys.platform != "linux":
+            return others
+        try:
+            for _ in self.paths[1:SOCKETS]:
+                others.append(machine().socket(socket.AF_INET, socket.SOCK_DGRAM))
+                others[-1].setblocking(False)
+                self.guard(others[-1])
+            if others:
+                share(first, others, self._by_address)
+        except OSError:
+            for sock in others:
+                sock.close()
+            return []
+        return others
+
+    def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
+        """Instructions that let in what is for a path."""
+        return of_peer(path.address, doors)
+
+    def guard(self, *socks: socket.socket) -> None:
+        """Have the system let in what is for our paths; at the least what bears their addresses."""
+        for sock in socks or self._sockets():
+            addresses = map(of_peer, self._by_address)
+            only_from(sock, b"".join(path.filter for path in self.paths), b"".join(addresses))
+
+    def _sockets(self) -> list[socket.socket]:
+        return [] if self.socket is None else [self.socket, *self._others]
+
     def unread(self) -> int:
-        """How many datagrams the system dropped: strangers', and those that found no room."""
-        return self._unread + (0 if self.socket is None else unread(self.socket))
+        """How many datagrams the system dropped: not for us, and those that found no room."""
+        return self._unread + sum(map(unread, self._sockets()))
 
     def close(self) -> None:
         """Close the socket, and do not open it again."""
@@ -122,17 +167,16 @@ class UdpLink(Link):
         self._drop()
 
     def _drop(self) -> None:
-        if self.socket is not None:
+        self._unread = self.unread()
+        for sock in self._sockets():
             with suppress(RuntimeError):  # the loop may be closed already
-                asyncio.get_running_loop().remove_reader(self.socket.fileno())
-            self._unread = self.unread()
-            self.socket.close()
-            self.socket = None
+                asyncio.get_running_loop().remove_reader(sock.fileno())
+            sock.close()
+        self.socket, self._others = None, []
 
-    def _readable(self) -> None:
-        sock = self.socket
+    def _readable(self, sock: socket.socket) -> None:
         for _ in range(BATCH):
-            if sock is None:
+            if self.socket is None:  # whoever received may have closed us
                 return
             try:
                 data, address = sock.recvfrom(DATAGRAM_MAX)
@@ -146,7 +190,6 @@ class UdpLink(Link):
                 self.strangers += 1
             else:
                 self._receive(path, data)
-                sock = self.socket  # whoever received may have closed us
 
     def _origin(self, address: Address) -> UdpPath | None:
         return self._by_address.get(address)
@@ -182,12 +225,23 @@ class MulticastLink(UdpLink):
         self.interface = interface
         self._group: UdpPath = self.paths[0]
         self._group.is_group = True
+        self._group.filter = packed([TAKE])
+
+    def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
+        """Instructions that let in what is for members, whatever their addresses."""
+        return packed(doors.steps())
+
+    def guard(self, *socks: socket.socket) -> None:
+        """Have the system let in what is for us, or all if that is too much to say."""
+        for sock in socks or self._sockets():
+            only_from(sock, self._group.filter)
 
     def _make(self) -> socket.socket:
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             sock.setblocking(False)
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self.guard(sock)
             sock.bind(self.group)
             self._join(sock)
             sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("B", 1))

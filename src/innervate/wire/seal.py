@@ -20,6 +20,7 @@ TAG_BYTES = 16
 OVERHEAD_BYTES = HEADER_BYTES + TAG_BYTES
 COUNTER_MAX = (1 << 32) - 1
 WINDOW = 1024  # frames of a sender may overtake each other by so many
+STEP = 256  # of what is said of counters that are too old
 
 
 def header(kind: int, index: int, counter: int) -> bytes:
@@ -54,6 +55,11 @@ class Window:
         if behind < 0:
             return True
         return behind < WINDOW and not self.bits >> behind & 1
+
+    @property
+    def least(self) -> int:
+        """A counter below which nothing is new; it changes once in 256 frames."""
+        return max(self.highest - WINDOW, 0) // STEP * STEP
 
     def take(self, counter: int) -> None:
         """Note a counter; only after the frame has proved genuine."""
