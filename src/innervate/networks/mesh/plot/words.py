@@ -91,6 +91,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     found = [
         *_alarms(summary["alarms"]),
         *_messages(summary),
+        *_uncounted(summary["messages"]),
         *_discovery(summary["discovery"], summary["nodes"]),
         *_gateways(result.plan, summary),
         _trouble(summary),
@@ -137,13 +138,27 @@ def _messages(summary: Mapping[str, Any]) -> list[str]:
         begin += f", half within {ms_words(latency['p50'])}, 99 % within {ms_words(latency['p99'])}"
     found = [begin + "."]
     joined = summary["connected"]
-    if missing and joined["sent"] < decided:
+    if missing and not joined["sent"]:
+        found.append("None had a chance: sender and recipient were not connected, or off.")
+    elif missing and joined["sent"] < decided:
         apart = decided - joined["sent"]
         found.append(
             f"Of those, {apart:,} had no chance: sender and recipient were not connected, or off; "
             f"of the others {share_words(joined['delivery_ratio'] or 0.0)} were delivered."
         )
     return found
+
+
+def _uncounted(messages: Mapping[str, Any]) -> list[str]:
+    """Messages that no ratio and no headline has in it."""
+    off = messages["sender_off"]
+    young = messages["offered"] - off - messages["counted"]
+    said = []
+    if off:
+        said.append(f"{number_of(off, 'message')} of nodes that were off")
+    if young:
+        said.append(f"{number_of(young, 'message')} offered too shortly before the end")
+    return [f"Not counted: {', '.join(said)}."] if said else []
 
 
 def _discovery(found: Mapping[str, Any], nodes: int) -> list[str]:
@@ -154,7 +169,9 @@ def _discovery(found: Mapping[str, Any], nodes: int) -> list[str]:
         f"within {found['complete_s']:.3g} s"
     )
     if found["tables_s"] is not None:
-        line += f"; every node had its table {found['tables_s']:.3g} s after the first request"
+        all_, count = found["with_tables"] == nodes, found["with_tables"]
+        who = "every node had its table" if all_ else f"{count:,} of {nodes:,} nodes had a table"
+        line += f"; {who} {found['tables_s']:.3g} s after the first request"
     elif found["with_tables"] is not None:
         line += f"; {found['with_tables']:,} of {nodes:,} nodes got a table"
     return [line + "."]
