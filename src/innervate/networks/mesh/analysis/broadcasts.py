@@ -46,7 +46,8 @@ def _there(plan: Any, times: list[int], window_us: int) -> tuple[Flags, Numbers]
     switched = [fault for fault in plan.faults if fault.action in (KILL, REVIVE, RESTART)]
     moments = [fault.at_us for fault in switched]
     sets: dict[tuple[int, int, int], int] = {}
-    found, which = [], []
+    found: list[Flags] = []
+    which: list[int] = []
     for time in times:
         since, until = bisect_left(moments, time), bisect_right(moments, time + window_us)
         key = bisect_right(ground.times, time), since, until

@@ -68,11 +68,13 @@ def timeout_us(params: Mapping[str, int], stations: int) -> int:
     """How long a channel on which somebody waits may deliver nothing, us.
 
     Args:
-        params: `slot_us`, `packet_slots`, `ta_us`, `dmax_us` of the protocol, as in a plan.
+        params: `slot_us`, `packet_slots`, `ta_us`, `dmax_us` of the protocol, as in a plan;
+            `per_turn` if it has turns of several packets.
         stations: how many share the channel.
     """
     slot_us = params["slot_us"]
-    turn_us = (params["packet_slots"] + 1) * slot_us + 2 * (params["ta_us"] + params["dmax_us"])
+    turn_slots = params["packet_slots"] * params.get("per_turn", 1) + 1
+    turn_us = turn_slots * slot_us + 2 * (params["ta_us"] + params["dmax_us"])
     step_us = max(slot_us, params.get("backoff_us", 0))
     return ROUNDS * stations * turn_us + max(BACKOFF_SLOTS, params.get("cw_max", 0)) * step_us
 
