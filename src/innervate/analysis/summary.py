@@ -168,8 +168,9 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     """The state of any network, from what its medium counted.
 
     degraded: frames were lost, messages were given up or not delivered, or a node is off. down: all
-    nodes are off, or frames were sent and none arrived, or messages and none was delivered. no
-    data: nothing has happened yet, or nobody said anything. A message may be for many: where more are delivered than were given, nobody knows of whom some
+    nodes are off, or of all frames, or of all messages, none came. no data: nothing has happened
+    yet, or nobody said anything.
+    A message may be for many: where more are delivered than were given, nobody knows of whom some
     are missing.
 
     Args:

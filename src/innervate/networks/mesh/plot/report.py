@@ -97,7 +97,7 @@ def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
         number = crossings.index(shown) + 1
         text += (
             f" The alarm of crossing {number}, the slowest, and who was off then: "
-            f"{len(hops)} hops, {'flooded' if shown.flooded else 'routed'}."
+            f"{words.number_of(len(hops), 'hop')}, {'flooded' if shown.flooded else 'routed'}."
         )
     inside = keys(mesh_map.legend(result, crossings, hops))
     return section("The field", f'<div class="wide">{figure(drawing, "", text)}</div>' + inside)

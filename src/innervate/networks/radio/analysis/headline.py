@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.words import figure_words
 
 NAMED = 4  # so many robots are named one by one
 ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through
@@ -190,4 +191,4 @@ def _count(count: int, one: str, many: str) -> str:
 
 
 def _time(value_ms: float) -> str:
-    return f"{value_ms / 1000:.3g} s" if value_ms >= 999.5 else f"{value_ms:.3g} ms"
+    return f"{figure_words(value_ms / 1000)} s" if value_ms >= 999.5 else f"{value_ms:.3g} ms"
