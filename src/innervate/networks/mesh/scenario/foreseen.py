@@ -1,0 +1,121 @@
+"""What a mesh's own events, messages and robots will do to it, as far as a plan alone tells."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from innervate.networks.mesh.protocol.constants import ALL, MONITOR
+from innervate.networks.mesh.scenario.nodes import listed
+from innervate.networks.mesh.scenario.plan import MeshPlan, Walk
+from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.topology.placement import distances, neighbours
+
+METRE_CM = 100
+ON_A_LEG = 8  # places that are looked at between two points of a robot's way
+MOMENTS_MAX = 1000
+
+Path = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def foreseen(made: MeshPlan) -> list[str]:
+    """A sentence for each; none if all is well."""
+    return [*_at_the_end(made), *_too_much(made), *_out_of_reach(made)]
+
+
+def _at_the_end(made: MeshPlan) -> list[str]:
+    """Who is missing when all events have happened, and who is then cut off."""
+    on = [not absent for absent in made.absent]
+    cut: set[tuple[int, int]] = set()
+    for fault in made.faults:
+        pair = min(fault.node, fault.other), max(fault.node, fault.other)
+        if fault.action in (KILL, REVIVE, RESTART):
+            on[fault.node] = fault.action != KILL
+        elif fault.action in (CUT, RESTORE):
+            (cut.add if fault.action == CUT else cut.discard)(pair)
+    monitor = made.params["monitor"]
+    found = []
+    if monitor != MONITOR and not on[monitor]:
+        found.append(f"the monitor {made.names[monitor]} is off at the end")
+    leaders = [made.ranks.index(rank) for rank in range(max(made.ranks) + 1)]
+    leader = next((node for node in leaders if on[node]), None)
+    if leader is None:
+        whose = "and so is every standby" if len(leaders) > 1 else "and there is no standby"
+        return [*found, f"nobody leads at the end: the gateway is off, {whose}"]
+    good = [(a, b) for a, b in made.good if on[a] and on[b] and (a, b) not in cut]
+    hops = distances(neighbours(made.nodes, good), leader)
+    apart = [
+        made.names[node]
+        for node, far in enumerate(hops)
+        if far < 0 and on[node] and not made.robots[node]
+    ]
+    if apart:
+        name = made.names[leader]
+        found.append(f"at the end no good links lead to {name}, which leads, from {listed(apart)}")
+    return found
+
+
+def _too_much(made: MeshPlan) -> list[str]:
+    """Messages to one node that alone take longer than there is time: it hears one at a time."""
+    if not made.radio.collisions:
+        return []
+    bytes_to: dict[int, int] = {}
+    gateway = made.ranks.index(0)
+    monitor = gateway if made.params["monitor"] == MONITOR else made.params["monitor"]
+    for offer in made.offers:
+        dest = monitor if offer.dest == MONITOR else offer.dest
+        if dest not in (ALL, offer.node):
+            size = made.radio.phy_bytes + offer.length
+            bytes_to[dest] = bytes_to.get(dest, 0) + size
+    if not bytes_to:
+        return []
+    dest, most = max(bytes_to.items(), key=lambda item: item[1])
+    needed_us = most * made.radio.byte_ns / 1000
+    room_us = made.duration_us - made.offers[0].at_us
+    if needed_us <= room_us:
+        return []
+    return [
+        f"messages to {made.names[dest]} alone take {needed_us / 1e6:,.0f} s on the air, without "
+        f"any header or ack, and there are {room_us / 1e6:,.0f} s: most will not come"
+    ]
+
+
+def _out_of_reach(made: MeshPlan) -> list[str]:
+    """Robots that somewhere on their way hear not half of the frames of anybody."""
+    if not made.radio.base_cdb or not made.positions_cm:
+        return []
+    found = []
+    ways = {walk.node: walk for walk in made.walks}
+    for walk in made.walks:
+        moments = _moments(walk, made.duration_us)
+        own = _way(walk, moments)
+        best = np.full(len(moments), -np.inf)
+        for node in set(range(made.nodes)) - {walk.node}:
+            other = _way(ways[node], moments) if node in ways else made.positions_cm[node]
+            metres = np.hypot(*(own - other).T) / METRE_CM
+            loss = 10 * made.radio.exponent_c * np.log10(np.maximum(metres, 1.0))
+            best = np.maximum(best, made.radio.base_cdb[node * made.nodes + walk.node] - loss)
+        gone = np.flatnonzero(best < made.radio.rssi50_cdb)
+        if len(gone):
+            found.append((made.names[walk.node], moments[gone[0]]))
+    if not found:
+        return []
+    first = min(at for _, at in found) / 1e6
+    who = listed([name for name, _ in found])
+    return [f"out of everybody's reach on the way, first after {first:.3g} s: {who}"]
+
+
+def _moments(walk: Walk, until_us: int) -> Path:
+    """Times at which a robot is looked at: at every point of its way and between them."""
+    times = [min(at, until_us) for at, _, _ in walk.points]
+    legs = [np.linspace(a, b, ON_A_LEG, endpoint=False) for a, b in pairwise(times) if b > a]
+    found = np.unique(np.concatenate([*legs, [times[0], times[-1]]]))
+    return found[:: max(1, len(found) // MOMENTS_MAX)]
+
+
+def _way(walk: Walk, moments: Path) -> Path:
+    """Where a robot is at each of these moments, cm."""
+    at, x, y = (np.array(column, np.float64) for column in zip(*walk.points, strict=True))
+    return np.stack([np.interp(moments, at, x), np.interp(moments, at, y)], axis=1)
