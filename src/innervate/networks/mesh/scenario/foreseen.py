@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from itertools import pairwise
-from typing import Any
-
-import numpy as np
+from math import dist, log10
+from operator import itemgetter
 
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR
 from innervate.networks.mesh.scenario.nodes import listed
@@ -15,9 +15,7 @@ from innervate.topology.placement import distances, neighbours
 
 METRE_CM = 100
 ON_A_LEG = 8  # places that are looked at between two points of a robot's way
-MOMENTS_MAX = 1000
-
-Path = np.ndarray[Any, np.dtype[np.float64]]
+MOMENTS_MAX = 300
 
 
 def foreseen(made: MeshPlan) -> list[str]:
@@ -86,36 +84,47 @@ def _out_of_reach(made: MeshPlan) -> list[str]:
     """Robots that somewhere on their way hear not half of the frames of anybody."""
     if not made.radio.base_cdb or not made.positions_cm:
         return []
-    found = []
     ways = {walk.node: walk for walk in made.walks}
+    found = []
     for walk in made.walks:
-        moments = _moments(walk, made.duration_us)
-        own = _way(walk, moments)
-        best = np.full(len(moments), -np.inf)
-        for node in set(range(made.nodes)) - {walk.node}:
-            other = _way(ways[node], moments) if node in ways else made.positions_cm[node]
-            metres = np.hypot(*(own - other).T) / METRE_CM
-            loss = 10 * made.radio.exponent_c * np.log10(np.maximum(metres, 1.0))
-            best = np.maximum(best, made.radio.base_cdb[node * made.nodes + walk.node] - loss)
-        gone = np.flatnonzero(best < made.radio.rssi50_cdb)
-        if len(gone):
-            found.append((made.names[walk.node], moments[gone[0]]))
+        others = [node for node in range(made.nodes) if node != walk.node]
+        for at_us in _moments(walk, made.duration_us):
+            here = _place(walk, at_us)
+            places = (
+                _place(ways[node], at_us) if node in ways else made.positions_cm[node]
+                for node in others
+            )  # fmt: skip
+            pairs = zip(others, places, strict=True)
+            if not any(_hears(made, node, walk.node, dist(here, there)) for node, there in pairs):
+                found.append((at_us, made.names[walk.node]))
+                break
     if not found:
         return []
-    first = min(at for _, at in found) / 1e6
-    who = listed([name for name, _ in found])
-    return [f"out of everybody's reach on the way, first after {first:.3g} s: {who}"]
+    who = listed([name for _, name in found])
+    return [f"out of everybody's reach on the way, first after {min(found)[0] / 1e6:.3g} s: {who}"]
 
 
-def _moments(walk: Walk, until_us: int) -> Path:
+def _hears(made: MeshPlan, node: int, robot: int, far_cm: float) -> bool:
+    """True if a robot so far away receives half of a node's frames."""
+    loss_cdb = 10 * made.radio.exponent_c * log10(max(far_cm / METRE_CM, 1.0))
+    return made.radio.base_cdb[node * made.nodes + robot] - loss_cdb >= made.radio.rssi50_cdb
+
+
+def _moments(walk: Walk, until_us: int) -> list[int]:
     """Times at which a robot is looked at: at every point of its way and between them."""
     times = [min(at, until_us) for at, _, _ in walk.points]
-    legs = [np.linspace(a, b, ON_A_LEG, endpoint=False) for a, b in pairwise(times) if b > a]
-    found = np.unique(np.concatenate([*legs, [times[0], times[-1]]]))
-    return found[:: max(1, len(found) // MOMENTS_MAX)]
+    found = {times[0], times[-1]}
+    for a, b in pairwise(times):
+        found |= {a + (b - a) * k // ON_A_LEG for k in range(ON_A_LEG)}
+    return sorted(found)[:: max(1, len(found) // MOMENTS_MAX)]
 
 
-def _way(walk: Walk, moments: Path) -> Path:
-    """Where a robot is at each of these moments, cm."""
-    at, x, y = (np.array(column, np.float64) for column in zip(*walk.points, strict=True))
-    return np.stack([np.interp(moments, at, x), np.interp(moments, at, y)], axis=1)
+def _place(walk: Walk, at_us: int) -> tuple[float, float]:
+    """Where a robot is at a moment, cm."""
+    after = bisect_right(walk.points, at_us, key=itemgetter(0))
+    _, *here = walk.points[max(after - 1, 0)]
+    if after in (0, len(walk.points)):
+        return here[0], here[1]
+    (since, *_), (until, *there) = walk.points[after - 1 : after + 1]
+    part = (at_us - since) / (until - since)
+    return here[0] + part * (there[0] - here[0]), here[1] + part * (there[1] - here[1])
