@@ -8,7 +8,7 @@ import pytest
 from innervate.networks.mesh.plot import node_report, words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
-PLAN = Of(names=["mast", "n1", "n2"])
+PLAN = Of(names=["mast", "n1", "n2"], ranks=[0, 1, -1])
 
 
 @pytest.mark.parametrize(("action", "said"), [
@@ -120,3 +120,16 @@ def test_nodes_one_by_one_and_many_folded(monkeypatch, count, folded):
     assert (cells[1], cells[3:5]) == ("robot, off", ["unknown", "none"])
     assert (cells[10], cells[12:14]) == ("robot", ["0", "3"])
     assert (f"All {count} nodes" in made) == folded
+
+
+@pytest.mark.parametrize(("node", "depth", "on", "said"), [
+    (0, 0, True, "gateway"), (1, 0, True, "standby, leads"), (1, 1, True, "standby"),
+    (1, 0, False, "standby, off"), (2, 1, True, ""),
+])  # fmt: skip
+def test_a_standby_that_leads_is_told_from_one_that_waits(monkeypatch, node, depth, on, said):
+    one = Of(node=node, on=on, neighbours=2, depth=depth, version=0, control_bytes=1, forwarded=1,
+             share=0.5, suspected=0)  # fmt: skip
+    monkeypatch.setattr(node_report, "nodes", lambda _: [one])
+    monkeypatch.setattr(node_report, "roles", lambda _: {0: "gateway", 1: "standby", 2: ""})
+    cells = re.findall("<td[^>]*>([^<]*)</td>", node_report.section_of(Of(plan=PLAN)))
+    assert cells[1] == said
