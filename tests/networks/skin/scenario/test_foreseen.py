@@ -31,7 +31,7 @@ def apart(count):
     ([(1, "kill", cell(2)), (1, "kill", cell(4))], apart(1)),
     ([(1, "kill", cell(2)), (1, "cut", LAST)], apart(2)),
     ([(1, "kill", cell(2)), (1, "cut", LAST), (1.4, "revive", cell(2))], []),
-    ([(1, "kill", cell(2)), (1, "cut", LAST), (1.4, "restart", cell(2))], []),
+    ([(1, "kill", cell(2)), (1, "cut", LAST), (1.4, "restart", cell(2))], apart(2)),
     ([(1, "kill", cell(number)) for number in range(5)], ["all cells are off at the end"]),
 ])  # fmt: skip
 def test_who_is_left_without_a_cable_that_leads_to_the_pc(events, said):

@@ -6,7 +6,7 @@ from array import array
 from dataclasses import replace
 
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.scenario.actions.cables import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.scenario.actions.cables import CUT, KILL, RESTORE, REVIVE
 from innervate.topology.graph import UNREACHABLE
 from innervate.topology.patch import NOTHING
 
@@ -40,7 +40,7 @@ def _left(made: Plan) -> tuple[set[int], array[int]]:
     off: set[int] = set()
     cut: set[int] = set()
     for fault in made.faults:
-        if fault.action in (KILL, REVIVE, RESTART):
+        if fault.action in (KILL, REVIVE):  # a cell that is off does not restart
             (off.add if fault.action == KILL else off.discard)(fault.node)
         elif fault.action in (CUT, RESTORE):
             end = min(fault.end, graph.peer[fault.end])
