@@ -31,15 +31,25 @@ HEADLESS = "nobody leads at the end: the gateway is off, and "
     ([kill("n0"), kill("n1")], ["n1"], [HEADLESS + "so is every standby"]),
     ([kill("n0"), kill("n1")], ["n1", "n2"], []),
     ([kill("n4")], [], []),
-    ([kill("n3")], [], ["at the end no good links lead to n0, which leads, from n4"]),
+    ([kill("n3")], [], ["at the end no links lead to n0, the gateway, from n4"]),
     ([kill("n0"), kill("n2")], ["n1"],
-     ["at the end no good links lead to n1, which leads, from n3, n4"]),
+     ["at the end no links lead to n1, the gateway, from n3, n4"]),
     ([(10, "cut", {"link": ["n3", "n2"]})], [],
-     ["at the end no good links lead to n0, which leads, from n3, n4"]),
+     ["at the end no links lead to n0, the gateway, from n3, n4"]),
     ([(10, "cut", {"link": ["n3", "n2"]}), (11, "restore", {"link": ["n2", "n3"]})], [], []),
 ])  # fmt: skip
 def test_what_is_left_when_all_has_happened(events, standby, said):
     assert line(*events, standby=standby) == said
+
+
+def test_faint_links_lead_too_as_long_as_most_messages_come_over_them():
+    events = kill("n1"), kill("n2")
+    for quality, said in (
+        (0.4, []),
+        (0.1, ["at the end no links lead to n0, the gateway, from n3"]),
+    ):
+        around = [{"a": "n0", "b": "n3", "quality": quality}]
+        assert line(*events, kill("n4"), link=[*LINE, *around]) == said
 
 
 def test_a_monitor_that_is_off_learns_of_nothing():

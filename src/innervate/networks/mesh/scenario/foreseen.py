@@ -9,11 +9,12 @@ from operator import itemgetter
 
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR
 from innervate.networks.mesh.scenario.nodes import listed
-from innervate.networks.mesh.scenario.plan import MeshPlan, Walk
+from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk
 from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
 from innervate.topology.placement import distances, neighbours
 
 METRE_CM = 100
+HALF = 0.5
 ON_A_LEG = 8  # places that are looked at between two points of a robot's way
 MOMENTS_MAX = 300
 
@@ -42,8 +43,8 @@ def _at_the_end(made: MeshPlan) -> list[str]:
     if leader is None:
         whose = "and so is every standby" if len(leaders) > 1 else "and there is no standby"
         return [*found, f"nobody leads at the end: the gateway is off, {whose}"]
-    good = [(a, b) for a, b in made.good if on[a] and on[b] and (a, b) not in cut]
-    hops = distances(neighbours(made.nodes, good), leader)
+    left = [(a, b) for a, b in _working(made) if on[a] and on[b] and (a, b) not in cut]
+    hops = distances(neighbours(made.nodes, left), leader)
     apart = [
         made.names[node]
         for node, far in enumerate(hops)
@@ -51,7 +52,21 @@ def _at_the_end(made: MeshPlan) -> list[str]:
     ]
     if apart:
         name = made.names[leader]
-        found.append(f"at the end no good links lead to {name}, which leads, from {listed(apart)}")
+        found.append(f"at the end no links lead to {name}, the gateway, from {listed(apart)}")
+    return found
+
+
+def _working(made: MeshPlan) -> list[tuple[int, int]]:
+    """Links over which, with all their tries, most messages come: faint ones too."""
+    params, count, prob = made.params, made.nodes, made.radio.prob_q15
+    tries = params["transmissions"] * (1 + params["e2e_tries"] * params["reliable"])
+    found = []
+    for a in range(count):
+        for b in range(a + 1, count):
+            there, back = prob[a * count + b] / ONE, prob[b * count + a] / ONE
+            once = there * back if params["hop_acks"] else min(there, back)
+            if (1 - once) ** tries <= HALF:
+                found.append((a, b))
     return found
 
 
