@@ -31,11 +31,26 @@ def apart(count):
     ([(1, "kill", cell(2)), (1, "kill", cell(4))], apart(1)),
     ([(1, "kill", cell(2)), (1, "cut", LAST)], apart(2)),
     ([(1, "kill", cell(2)), (1, "cut", LAST), (1.4, "revive", cell(2))], []),
-    ([(1, "kill", cell(2)), (1, "cut", LAST), (1.4, "restart", cell(2))], apart(2)),
+    ([(1, "kill", cell(2)), (1, "cut", LAST), (1.4, "restart", cell(2))],
+     ["at 1.4 s restart p0 r0 c2: it is off, and stays so, so nothing happens", *apart(2)]),
     ([(1, "kill", cell(number)) for number in range(5)], ["all cells are off at the end"]),
 ])  # fmt: skip
 def test_who_is_left_without_a_cable_that_leads_to_the_pc(events, said):
     assert left(*events) == said
+
+
+@pytest.mark.parametrize(("events", "said"), [
+    ([(1, "cut", FIRST), (1.2, "cut", FIRST)], "at 1.2 s cut {}: it is cut already"),
+    ([(1.2, "restore", FIRST)], "at 1.2 s restore {}: it is not cut"),
+    ([(1, "kill", cell(2)), (1.2, "kill", cell(2))], "at 1.2 s kill p0 r0 c2: it is off already"),
+    ([(1.2, "revive", cell(2))], "at 1.2 s revive p0 r0 c2: it is on"),
+    ([(1, "restart", cell(2)), (1.2, "restart", {"pc": True}), (1.3, "cut", FIRST),
+      (1.4, "restore", FIRST), (1.4, "cut", FIRST)], ""),
+    ([(1, "loose", {**FIRST, "loss": 0.5}), (1.2, "lose", FIRST)], ""),
+])  # fmt: skip
+def test_events_that_change_nothing(events, said):
+    cable = "pc.0 - p0 r0 c0 W"
+    assert left(*events) == [f"{said.format(cable)}, so nothing happens"] * bool(said)
 
 
 def test_routes_that_become_too_long():

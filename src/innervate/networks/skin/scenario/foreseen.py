@@ -6,22 +6,32 @@ from array import array
 from dataclasses import replace
 
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.scenario.actions.cables import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.cables import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.scenario.cables import Fault, fault_words
 from innervate.topology.graph import UNREACHABLE
 from innervate.topology.patch import NOTHING
 
+WHY = {
+    CUT: "it is cut already",
+    RESTORE: "it is not cut",
+    KILL: "it is off already",
+    REVIVE: "it is on",
+    RESTART: "it is off, and stays so",
+}
+
 
 def foreseen(made: Plan) -> list[str]:
-    """Cells that have no way when all events have happened, a sentence for each reason."""
+    """Events that change nothing, and cells that have no way when all have happened."""
     if not made.faults or made.script:
         return []
-    off, depths = _left(made)
+    off, cut, idle = _played(made)
+    depths = _depths(made, off, cut)
     on = [depth for cell, depth in enumerate(depths) if cell not in off]
     apart = sum(depth == UNREACHABLE for depth in on)
     most = made.params["max_depth"]
     deep = sum(depth > most for depth in on)
     whole = len(depths)
-    found = []
+    found = [f"{fault_words(made, fault)}: {why}, so nothing happens" for fault, why in idle]
     if not on:
         found.append("all cells are off at the end")
     if apart:
@@ -34,20 +44,35 @@ def foreseen(made: Plan) -> list[str]:
     return found
 
 
-def _left(made: Plan) -> tuple[set[int], array[int]]:
-    """(cells that are off, hops of every cell to the PC) when all events have happened."""
-    graph = made.graph
+def _played(made: Plan) -> tuple[set[int], set[int], list[tuple[Fault, str]]]:
+    """(cells that are off, cables that are cut, by an end, at the end; events in vain, and why)."""
     off: set[int] = set()
     cut: set[int] = set()
+    idle = []
     for fault in made.faults:
-        if fault.action in (KILL, REVIVE):  # a cell that is off does not restart
-            (off.add if fault.action == KILL else off.discard)(fault.node)
-        elif fault.action in (CUT, RESTORE):
-            end = min(fault.end, graph.peer[fault.end])
-            (cut.add if fault.action == CUT else cut.discard)(end)
+        whom, what = off, fault.node
+        if fault.action in (CUT, RESTORE):
+            whom, what = cut, min(fault.end, made.graph.peer[fault.end])
+        if fault.action in (CUT, KILL):
+            why = WHY[fault.action] if what in whom else ""
+            whom.add(what)
+        else:
+            # A cell that is off does not restart.
+            vain = what in off if fault.action == RESTART else what not in whom
+            why = WHY[fault.action] if fault.action in WHY and vain else ""
+            if fault.action in (RESTORE, REVIVE):
+                whom.discard(what)
+        if why:
+            idle.append((fault, why))
+    return off, cut, idle
+
+
+def _depths(made: Plan, off: set[int], cut: set[int]) -> array[int]:
+    """Hops of every cell to the PC, without these cells and cables."""
+    graph = made.graph
     peer = array("i", graph.peer)
     for end in (*cut, *(end for cell in off for end in graph.ends_of(cell))):
         if peer[end] >= 0:
             peer[peer[end]] = NOTHING
             peer[end] = NOTHING
-    return off, replace(graph, peer=peer).depths()
+    return replace(graph, peer=peer).depths()
