@@ -15,6 +15,7 @@ from innervate.networks.mesh.analysis.broadcasts import missed
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     DATA,
+    END_TO_END,
     NO_ACK,
     NO_ROOM,
     NO_ROUTE,
@@ -195,6 +196,7 @@ def _rank(names: Numbers, times: Numbers, name: Numbers, time: Numbers) -> Numbe
 def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     state = np.full(len(at), LOST, np.int64)
     state[at + timeout_us(result.plan) > result.ended_us] = IN_FLIGHT
+    state[_kept(result, at, answer)] = IN_FLIGHT
     rows = result.rows[result.rows["code"] == REPORT_EXPIRED]
     for row in rows:
         # The offer of that handle which was there last.
@@ -208,8 +210,26 @@ def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     return state
 
 
+def _kept(result: Any, at: Numbers, answer: Numbers) -> Flags:
+    """Which messages their senders still keep and try again, unless they said that they gave up.
+
+    Where they wait as long as answers took, that can be longer than `timeout_us`.
+    """
+    plan = result.plan
+    offers = plan.offers[: len(at)]
+    if not plan.params.get("e2e_adapt"):
+        return np.zeros(len(at), np.bool_)
+    forgot = {node: NEVER for node in range(plan.nodes)}
+    for fault in plan.faults:
+        if fault.action in (KILL, RESTART) and fault.at_us < result.ended_us:
+            forgot[fault.node] = max(forgot[fault.node], fault.at_us)
+    safe = [bool(offer.flags & END_TO_END) and offer.at_us > forgot[offer.node] for offer in offers]
+    kept: Flags = np.array(safe, np.bool_) & (answer == REPORT_ACCEPTED)
+    return kept
+
+
 def timeout_us(plan: Any) -> int:
-    """How long a message can be on its way before its sender gives it up, us."""
+    """How long a message can be on its way before its sender gives it up, us; see `_kept`."""
     params = plan.params
     again = params["e2e_us"] * (params["e2e_tries"] + 1) if params["reliable"] else 0
     return max(SETTLE_US, int(again))
@@ -272,7 +292,7 @@ def counted(found: Messages) -> Messages:
     ones among them would count.
     """
     asked = found.only(~found.broadcast & (found.state != UNASKED))
-    undecided = bool((asked.state == IN_FLIGHT).any())
+    undecided = bool(((asked.state == IN_FLIGHT) & asked.young).any())
     return asked.only(~asked.young) if undecided else asked
 
 
