@@ -128,3 +128,9 @@ def test_at_either_end_of_wilsons_interval_the_share_is_z_deviations_off(hits, t
 def test_nonsense_is_refused(wrong):
     with pytest.raises(ValueError, match="need"):
         wrong()
+
+
+def test_values_that_are_all_the_same_have_no_width():
+    same = 2 / 11
+    assert sum([same] * 3) / 3 != same
+    assert mean_interval([same] * 3) == (same, same, same)

@@ -27,6 +27,7 @@ def test_shares():
     assert words.share_words(0.00653) == "0.653 %"
     assert words.share_words(1e-7) == "less than 0.001 %"
     assert words.share_words(0) == "0 %"
+    assert words.ms_words(1_234_500) == "1,234 s"
 
 
 def test_every_kind_of_event_has_words(many):

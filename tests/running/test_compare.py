@@ -83,6 +83,10 @@ def test_what_is_no_run_folder(written, tmp_path):
     (broken / "scenario.toml").write_text("kind =")
     with pytest.raises(RunError, match="damaged"):
         compare(broken, written())
+    nothing = written()
+    (nothing / "summary.json").write_text("{}")
+    with pytest.raises(RunError, match=r"summary\.json is damaged"):
+        compare(nothing, written())
 
 
 @pytest.mark.parametrize("harm", ["flip", "cut short", "missing"])

@@ -20,7 +20,7 @@ class Interval(NamedTuple):
 
 
 def mean_interval(values: Sequence[float], level: float = 0.95) -> Interval:
-    """Mean and Student's confidence interval; one value alone has no width.
+    """Mean and Student's confidence interval; one value, or the same ones, have no width.
 
     Raises:
         ValueError: no values, or a level outside (0, 1).
@@ -28,9 +28,9 @@ def mean_interval(values: Sequence[float], level: float = 0.95) -> Interval:
     count = len(values)
     if count == 0:
         raise ValueError("a mean needs at least one value")
+    if min(values) == max(values):  # their sum is rounded, and its share need not be one of them
+        return Interval(values[0], values[0], values[0])
     mean = sum(values) / count
-    if count == 1:
-        return Interval(mean, mean, mean)
     spread = sqrt(sum((value - mean) ** 2 for value in values) / (count - 1))
     half = t_quantile((1 + level) / 2, count - 1) * spread / sqrt(count)
     return Interval(mean, mean - half, mean + half)

@@ -168,7 +168,8 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     """The state of any network, from what its medium counted.
 
     degraded: frames were lost, messages were given up or not delivered, or a node is off. down: all
-    nodes are off, or frames were sent and none arrived. no data: nothing has happened yet.
+    nodes are off, or of all frames, or of all messages, none came. no data: nothing has happened
+    yet, or nobody said anything.
     A message may be for many: where more are delivered than were given, nobody knows of whom some
     are missing.
 
@@ -185,27 +186,30 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         return Headline(DOWN, f"All {nodes:,} nodes are off.", off)
     if lost and not counts.arrived:
         return Headline(DOWN, f"None of {counts.sent:,} frames arrived.", off)
-    if dropped and not counts.delivered:
+    missing = 0 if goes_on else max(counts.offered - counts.delivered - dropped, 0)
+    if (dropped or missing) and not counts.delivered:
         return Headline(DOWN, f"None of {counts.offered:,} messages was delivered.", off)
-    missing = max(counts.offered - counts.delivered - dropped, 0)
+    if not (counts.sent or counts.offered or off):
+        return Headline(NO_DATA, "No frame was sent.")
     wrong = [
         _part(dropped, counts.offered, "message", "given up"),
-        _part(0 if goes_on else missing, counts.offered, "message", "not delivered"),
+        _part(missing, counts.offered, "message", "not delivered"),
         _part(len(off), nodes, "node", "off"),
         _part(lost, counts.sent, "frame", "lost"),
     ]
     said = ", ".join(filter(None, wrong))
     if said:
         return Headline(DEGRADED, f"{said}.", off)
-    return Headline(OK, _well(counts, missing))
+    return Headline(OK, _well(counts))
 
 
-def _well(counts: Counts, missing: int) -> str:
+def _well(counts: Counts) -> str:
     kept = f"none of {counts.sent:,} frames is lost."
     if counts.delivered > counts.offered > 0:
         return f"{counts.offered:,} messages are delivered {counts.delivered:,} times, {kept}"
-    if missing:
-        return f"{_part(missing, counts.offered, 'message', 'under way')}, {kept}"
+    under_way = counts.offered - counts.delivered
+    if under_way > 0:
+        return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
     if counts.offered:
         return f"All {counts.offered:,} messages are delivered, {kept}"
     return kept.capitalize()

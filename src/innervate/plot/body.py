@@ -13,7 +13,7 @@ from innervate.network import networks
 from innervate.plot import charts, svg
 from innervate.plot.lines import traffic_lines
 from innervate.plot.page import element, figure, headline, pictures, section, table, tiles
-from innervate.plot.words import count_words, number_of
+from innervate.plot.words import count_words, figure_words, number_of
 from innervate.sim.tables import get
 
 SIDE = 420.0
@@ -43,7 +43,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     """What happened, and the figures to know."""
     over = (
         f"{summary['name']}: {summary['kind']}, {number_of(summary['nodes'], 'node')}; "
-        f"{result.ended_us / 1e6:.4g} s, seed {summary['seed']}"
+        f"{figure_words(result.ended_us / 1e6, 4)} s, seed {summary['seed']}"
     )
     frames, messages = summary["frames"], summary["messages"]
     numbers = [

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from innervate.plot.words import headline_line, ms_words, number_of
+from innervate.plot.words import figure_words, headline_line, ms_words, number_of
 
 
 def summary_lines(run: Any) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
-    took = f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s"
+    took = f"{figure_words(run.result.ended_us / 1e6, 4)} s simulated in {summary['wall_s']:.2f} s"
     first = f"{summary['name']}: {number_of(summary['nodes'], 'node')}; {took}, "
     lines = [f"{first}seed {summary['seed']}", headline_line(summary["headline"])]
     lines += [f"{line}." for line in traffic_lines(summary)]

@@ -10,7 +10,7 @@ from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
 from innervate.plot.charts import Bars, Panel, Steps
 from innervate.plot.svg import Drawing, clean
-from innervate.plot.words import count_words
+from innervate.plot.words import count_words, figure_words
 
 ROWS_MAX = 200
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
@@ -123,8 +123,11 @@ def ended_early(summary: Mapping[str, Any]) -> str:
 
 def took(summary: Mapping[str, Any], simulated_s: float) -> tuple[str, str]:
     """The figure on how long the simulation took."""
-    wall = f"{summary['wall_s']:.2g} s" if summary["wall_s"] >= 0.01 else "10 ms"
-    return wall, f"to simulate {simulated_s:.4g} s, {count_words(summary['events'])} events"
+    wall = f"{figure_words(summary['wall_s'], 2)} s" if summary["wall_s"] >= 0.01 else "10 ms"
+    return (
+        wall,
+        f"to simulate {figure_words(simulated_s, 4)} s, {count_words(summary['events'])} events",
+    )
 
 
 def beginning(head: Sequence[str], rows: Sequence[Sequence[str]], rest: str = "") -> str:

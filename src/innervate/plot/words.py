@@ -4,6 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from innervate.analysis.words import figure_words, share_words
+
+__all__ = [
+    "count_words",
+    "figure_words",
+    "headline_line",
+    "ms_words",
+    "number_of",
+    "share_words",
+    "stood_words",
+]
+
 
 def headline_line(found: Mapping[str, object]) -> str:
     """A summary's headline in a line: "degraded: 1 of 91 messages was not delivered."."""
@@ -13,7 +25,7 @@ def headline_line(found: Mapping[str, object]) -> str:
 def ms_words(value_ms: float) -> str:
     """A time: "8.43 ms", "17.0 ms", "1.25 s"."""
     if value_ms >= 1000:
-        return f"{value_ms / 1000:.3g} s"
+        return f"{figure_words(value_ms / 1000)} s"
     return f"{value_ms:.1f} ms" if value_ms >= 10 else f"{value_ms:.3g} ms"
 
 
@@ -32,10 +44,3 @@ def count_words(value: float) -> str:
 def number_of(count: int, thing: str) -> str:
     """A count with its noun: "1 cell", "12 cells"."""
     return f"{count:,} {thing}{'' if count == 1 else 's'}"
-
-
-def share_words(ratio: float) -> str:
-    """A fraction as a percentage: "0.678 %", "less than 0.001 %"."""
-    if 0 < ratio < 1e-5:
-        return "less than 0.001 %"
-    return f"{100 * ratio:.3g} %"

@@ -128,7 +128,10 @@ class _Recorded:
         except (OSError, ValueError):
             raise RunError(f"{path} is damaged; run the scenario again") from None
         self._folder = folder
-        known(self.summary["kind"], folder)
+        kind = self.summary.get("kind")
+        if not isinstance(kind, str):
+            raise RunError(f"{folder / folders.SUMMARY} is damaged; run the scenario again")
+        known(kind, folder)
 
     @property
     def fingerprint(self) -> Any:

@@ -19,7 +19,8 @@ def summary_lines(run: Run) -> list[str]:
 
 def _first(run: Run) -> str:
     summary = run.mesh
+    simulated = words.figure_words(run.result.ended_us / 1e6, 4)
     return (
-        f"{mesh_words.opening(summary)}; {run.result.ended_us / 1e6:.4g} s simulated in "
+        f"{mesh_words.opening(summary)}; {simulated} s simulated in "
         f"{summary['wall_s']:.2f} s, seed {summary['seed']}"
     )

@@ -30,10 +30,11 @@ def _summary(run: Run) -> RadioSummary | SlottedSummary:
 
 def _first(run: Run) -> str:
     summary, plan = _summary(run), run.plan
+    simulated = words.figure_words(run.result.ended_us / 1e6, 4)
     return (
         f"{summary['name']}: {words.number_of(plan.stations, 'station')} on one channel, "
         f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
-        f"{run.result.ended_us / 1e6:.4g} s simulated in {summary['wall_s']:.2f} s, "
+        f"{simulated} s simulated in {summary['wall_s']:.2f} s, "
         f"seed {summary['seed']}"
     )
 

@@ -27,7 +27,7 @@ def _first(run: Run) -> str:
     summary, graph = run.skin, run.plan.graph
     length = f"{summary['duration_s']:g} s"
     if "interrupted_at_s" in summary:
-        length = f"{summary['interrupted_at_s']:.3g} of {length}"
+        length = f"{words.figure_words(summary['interrupted_at_s'])} of {length}"
     return (
         f"{summary['name']}: {words.number_of(graph.cells, 'cell')}, "
         f"{words.number_of(graph.interfaces, 'interface port')}, "

@@ -58,6 +58,8 @@ def test_all_is_well_only_if_nothing_is_missing():
 @pytest.mark.parametrize(("change", "words", "nodes"), [
     ({"delivered": 90, "about": (2,)}, "1 of 91 messages was not delivered", (2,)),
     ({"learned": 1, "about": (3,)}, "The monitor never learned of 1 of 2 crossings", (3,)),
+    ({"broadcasts": 9, "partial": 2, "about": (1,)},
+     "2 of 9 broadcasts did not reach every node that was on", (1,)),
     ({"doubled": 1}, "1 message came twice", ()),
     ({"looped": 31}, "31 packets met a node twice on the way", ()),
 ])  # fmt: skip
@@ -71,14 +73,17 @@ def test_what_was_lost_or_came_twice_is_in_the_headline(change, words, nodes):
 def test_the_worst_news_come_first():
     text = headline(all_well(), WELL._replace(delivered=90, learned=0, looped=1)).text
     assert text == (
-        "The monitor never learned of both crossings of the fence; 1 of 91 messages was not "
+        "The monitor learned of none of 2 crossings of the fence; 1 of 91 messages was not "
         "delivered; 1 packet met a node twice on the way."
     )
 
 
 def test_nothing_delivered_is_down():
     found = headline(all_well(), Traffic(decided=3, delivered=0))
-    assert (found.level, found.text) == (DOWN, "All 3 messages were not delivered.")
+    assert (found.level, found.text) == (DOWN, "None of 3 messages was delivered.")
+    found = headline(all_well(), Traffic(decided=1, crossings=1))
+    assert found.text == ("The monitor never learned of the only crossing of the fence; "
+                          "the only message was not delivered.")  # fmt: skip
 
 
 def test_of_all_that_was_sent_one_alarm_that_came_is_something():
@@ -163,3 +168,16 @@ def test_a_way_is_no_longer_than_a_path_may_be():
     searching = chain([[] for _ in range(count)], line)
     for found in (tables, searching):
         assert found.astray.nonzero()[0].tolist() == [25, 26]
+
+
+def test_broadcasts_that_reached_everybody_are_said_with_what_came():
+    text = headline(all_well(), WELL._replace(broadcasts=2)).text
+    assert "; both broadcasts reached every node that was on; all 4 nodes have" in text
+
+
+def test_a_network_in_two_parts_with_a_gateway_each_is_not_well():
+    halves = chain([[], [0], [3], []], [(0, 1), (2, 3)], leads=(0, 3), ends=[0, 0, 3, 3])
+    assert not halves.without.any()
+    found = headline(halves, WELL)
+    assert found.level == DEGRADED
+    assert found.text.startswith("2 nodes lead as gateways, each followed by a part")

@@ -1,5 +1,7 @@
 """Messages of made-up runs at the edges: of time, of numbers that come round, of each field."""
 
+from dataclasses import replace
+
 import pytest
 
 from innervate.networks.mesh.analysis import messages
@@ -63,6 +65,27 @@ def test_a_message_can_be_on_its_way_until_its_last_try_is_given_up(changes, wai
         assert messages.timeout_us(result.plan) == wait_us
         found = messages.messages(result)
         assert (found.state.tolist(), found.young.tolist()) == ([state], [young])
+
+
+@pytest.mark.parametrize(("more", "state"), [
+    ({}, IN_FLIGHT),
+    ({"rows": [accepted(10 * S), (90 * S, 1, REPORT_EXPIRED, 0, NO_ACK)]}, LOST),
+    ({"delivered": [given(60 * S, 4, 1, 500)]}, DELIVERED),
+    ({"rows": []}, UNASKED),
+    ({"rows": [(10 * S, 1, REPORT_FULL, 0, NO_ROOM)]}, REFUSED),
+    ({"faults": [fault(50 * S, KILL, 1)]}, LOST), ({"faults": [fault(50 * S, RESTART, 1)]}, LOST),
+    ({"faults": [fault(10 * S - 1, RESTART, 1)]}, IN_FLIGHT),
+    ({"faults": [fault(50 * S, KILL, 2)]}, IN_FLIGHT),
+    ({"faults": [fault(END_US, KILL, 1)]}, IN_FLIGHT),
+    ({"offers": [replace(offer(10 * S), flags=0)]}, LOST),
+])  # fmt: skip
+def test_a_sender_that_waits_as_long_as_answers_take_keeps_a_message_longer(more, state):
+    given_ = {"rows": [accepted(10 * S)], "offers": [offer(10 * S)]} | more
+    result = made(**given_, params=params(e2e_adapt=1))
+    found = messages.messages(result)
+    assert (found.state.tolist(), found.young.tolist()) == ([state], [False])
+    # It is as old as others that are known to be lost: it counts, as not delivered.
+    assert len(messages.counted(found).state) == (state != UNASKED)
 
 
 def test_offers_from_the_end_of_a_run_on_were_never_made():

@@ -184,3 +184,12 @@ def test_tables_that_come_at_the_very_moment_count_and_each_node_once():
     ]  # fmt: skip
     # The second to lead dies: from there until the third has served all.
     assert network.takeover_s(made(rows, faults=dies), led) == pytest.approx(5 + 1.004)
+
+
+def test_who_comes_back_after_a_takeover_does_not_make_it_longer():
+    rows = [(S, 0, REPORT_GATEWAY, 0, 1), (20 * S, 1, REPORT_GATEWAY, 1, 2),
+            *tabled(1, 2, 3, 4, at=21 * S, epoch=2), *tabled(0, at=40 * S, epoch=2)]  # fmt: skip
+    faults = [fault(15 * S, KILL, 0), fault(35 * S, REVIVE, 0)]
+    led = network.gateways(made(rows, faults=faults))
+    assert led[1]["tables_s"] == pytest.approx(1.004)
+    assert network.takeover_s(made(rows, faults=faults), led) == pytest.approx(5 + 1.004)

@@ -52,6 +52,12 @@ def test_where_a_robot_walks_is_on_the_map():
     assert sheet.of_cm((10_000, 5_000)) == pytest.approx((760 - MARGIN, MARGIN))
 
 
+def test_a_node_that_is_alone_lies_amidst_some_metres():
+    sheet = Sheet(planned([(3, 4)]), 760, 660)
+    assert sheet.node(0) == pytest.approx((380, MARGIN + 100 * sheet.scale))
+    assert 760 / sheet.scale == pytest.approx(1098, abs=1)  # cm
+
+
 @pytest.mark.parametrize(("count", "dot"), [(100, 5.0), (101, 3.5)])
 def test_nodes_of_a_large_mesh_are_small(count, dot):
     assert Sheet(planned(grid(count))).dot == dot

@@ -8,7 +8,7 @@ import pytest
 from innervate.networks.mesh.plot import node_report, words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
-PLAN = Of(names=["mast", "n1", "n2"])
+PLAN = Of(names=["mast", "n1", "n2"], ranks=[0, 1, -1])
 
 
 @pytest.mark.parametrize(("action", "said"), [
@@ -58,11 +58,27 @@ def test_how_many_messages_came_and_which_had_no_chance():
     _, apart = messages(0.7, joined=8, of_joined=0.875)
     assert apart == ("Of those, 2 had no chance: sender and recipient were not connected, or off; "
                      "of the others 87.5 % were delivered.")  # fmt: skip
-    assert "of the others 0 % were" in messages(0.0, joined=8, of_joined=None)[1]
+    assert "of the others 0 % were" in messages(0.0, joined=8, of_joined=0.0)[1]
+    assert messages(0.0, joined=0, of_joined=None)[1] == (
+        "None had a chance: sender and recipient were not connected, or off."
+    )
+
+
+@pytest.mark.parametrize(("off", "counted", "said"), [
+    (0, 10, []),
+    (1, 9, ["Not counted: 1 message of nodes that were off."]),
+    (0, 8, ["Not counted: 2 messages offered too shortly before the end."]),
+    (3, 0, ["Not counted: 3 messages of nodes that were off, "
+            "7 messages offered too shortly before the end."]),
+])  # fmt: skip
+def test_messages_that_no_ratio_counts_are_told_apart(off, counted, said):
+    found = {"offered": 10, "sender_off": off, "counted": counted}
+    assert words._uncounted(found) == said
 
 
 @pytest.mark.parametrize(("tables_s", "with_tables", "end"), [
-    (2.345, 9, "; every node had its table 2.35 s after the first request."),
+    (2.345, 12, "; every node had its table 2.35 s after the first request."),
+    (2.345, 9, "; 9 of 12 nodes had a table 2.35 s after the first request."),
     (None, 9, "; 9 of 12 nodes got a table."), (None, None, "."),
 ])  # fmt: skip
 def test_what_the_first_round_found(tables_s, with_tables, end):
@@ -104,3 +120,16 @@ def test_nodes_one_by_one_and_many_folded(monkeypatch, count, folded):
     assert (cells[1], cells[3:5]) == ("robot, off", ["unknown", "none"])
     assert (cells[10], cells[12:14]) == ("robot", ["0", "3"])
     assert (f"All {count} nodes" in made) == folded
+
+
+@pytest.mark.parametrize(("node", "depth", "on", "said"), [
+    (0, 0, True, "gateway"), (1, 0, True, "standby, leads"), (1, 1, True, "standby"),
+    (1, 0, False, "standby, off"), (2, 1, True, ""),
+])  # fmt: skip
+def test_a_standby_that_leads_is_told_from_one_that_waits(monkeypatch, node, depth, on, said):
+    one = Of(node=node, on=on, neighbours=2, depth=depth, version=0, control_bytes=1, forwarded=1,
+             share=0.5, suspected=0)  # fmt: skip
+    monkeypatch.setattr(node_report, "nodes", lambda _: [one])
+    monkeypatch.setattr(node_report, "roles", lambda _: {0: "gateway", 1: "standby", 2: ""})
+    cells = re.findall("<td[^>]*>([^<]*)</td>", node_report.section_of(Of(plan=PLAN)))
+    assert cells[1] == said

@@ -130,6 +130,8 @@ def test_the_timeout_grows_with_what_a_turn_takes():
     turn = 26 * 208 + 2 * 104
     assert (few, many) == (8 * turn + 1024 * 208, 80 * turn + 1024 * 208)
     assert slow == few + 8 * 4000
+    seven = timeout_us(radio_plan(2).params | {"per_turn": 7}, 2)
+    assert seven == few + 8 * 6 * 25 * 208
 
 
 # What runs leave.

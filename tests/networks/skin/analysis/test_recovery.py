@@ -79,6 +79,14 @@ def test_never_routed_again(line):
     assert recoveries(recorded(line, rows))[0]["routed_ms"] is None
 
 
+def test_who_is_cut_off_from_the_beginning_on_never_had_a_way(line):
+    rows = [(0, -1, CUT_OFF, -1, 0), (0, -1, UNROUTED, 3, 0), (0, -1, CUT_OFF, 0, 3),
+            (0, -1, APART, 3, 3), (0, -1, JOINED, 0, 0), (0, -1, UNROUTED, 0, 0)]  # fmt: skip
+    events = [{"at_s": 0.0, "action": "cut", "interface": 0}]
+    result = recorded(line, rows, events)
+    assert start_up(result) == {"converged_ms": None, "routed_ms": None}
+
+
 def test_each_event_looks_as_far_as_the_next(line):
     events = [
         {"at_s": 1.0, "action": "cut", "interface": 1},

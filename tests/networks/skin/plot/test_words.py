@@ -54,6 +54,7 @@ OUTCOMES = [
      "2 cells were cut off, as no cable joined them with the PC any more, every other cell had a "
      "way again after 20.0 ms, 3 cells stayed cut off"),
     ({"routed_ms": None}, "some cells still had no way to the PC by the next event or the end"),
+    ({"routed_ms": None, "without_way": 0}, "no cell was on any more"),
     ({"routed_ms": None, "without_way": 1},
      "1 cell still had no way to the PC by the next event or the end"),
     ({"routed_ms": None, "cut_off": 3, "cut_off_total": 3},

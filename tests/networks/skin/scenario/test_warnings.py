@@ -19,7 +19,7 @@ def test_more_samples_than_the_ports_carry():
     (text,) = warned(data={"rate_hz": 500})
     assert text == (
         "80 cells offer 40,000 samples a second, but 2 interface ports carry at most 32,833: "
-        "18 % or more are lost in the long run"
+        "17 % or more are lost in the long run"
     )
     assert warned(data={"rate_hz": 400}) == []
 
@@ -34,7 +34,8 @@ def test_the_share_that_is_said_is_what_gets_lost_at_least():
     counted = simulate(made).counters
     offered, room = 80_000, 2 * port_rate(made)
     assert counted[17] <= counted[16] * room / offered * 1.02  # delivered, offered
-    assert f"{100 * (1 - room / offered):.0f} % or more" in warnings(made)[0]
+    assert 58 < 100 * (1 - room / offered) < 59
+    assert "58 % or more" in warnings(made)[0]
 
 
 def test_cells_behind_a_single_cable():

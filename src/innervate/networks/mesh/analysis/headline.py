@@ -9,7 +9,13 @@ import numpy as np
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
 from innervate.networks.mesh.analysis.alarms import Crossing
-from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, Messages, counted
+from innervate.networks.mesh.analysis.messages import (
+    DELIVERED,
+    NEVER,
+    UNASKED,
+    Messages,
+    counted,
+)
 from innervate.networks.mesh.analysis.reach import Ways
 from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 
@@ -24,6 +30,8 @@ class Traffic(NamedTuple):
         delivered: of those, how many came.
         crossings: of the fence, of which it is known whether the monitor learned of them.
         learned: of those, of how many it did.
+        broadcasts: messages to all of which it is known whom they reached.
+        partial: of those, how many did not reach every other node that was on.
         doubled: messages that came twice.
         looped: packets that met a node twice on their way.
         flows: something came since the newest fault, or there was no fault.
@@ -34,6 +42,8 @@ class Traffic(NamedTuple):
     delivered: int = 0
     crossings: int = 0
     learned: int = 0
+    broadcasts: int = 0
+    partial: int = 0
     doubled: int = 0
     looped: int = 0
     flows: bool = False
@@ -46,9 +56,10 @@ NOTHING_KNOWN = Traffic()
 def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") -> Headline:
     """The state of a mesh.
 
-    degraded: a message or an alarm was lost or came twice, a packet met a node twice, a node is
-    off, cut off or without a way. down: nobody's messages get through to a gateway, nor did
-    anything come to anybody else since. no data: nobody has heard a gateway yet.
+    degraded: a message or an alarm was lost or came twice, a broadcast missed somebody, a packet
+    met a node twice, a node is off, cut off or without a way, the network is in parts. down:
+    nobody's messages get through to a gateway, nor did anything come to anybody else since.
+    no data: nobody has heard a gateway yet.
 
     Args:
         ways: who reaches the gateway now.
@@ -79,13 +90,20 @@ def _is_down(ways: Ways, traffic: Traffic) -> bool:
 def _undelivered(traffic: Traffic) -> list[str]:
     """Sentences on crossings and messages that did not come; none if all did."""
     found = []
-    unheard = traffic.crossings - traffic.learned
-    if unheard:
-        which = _part(unheard, traffic.crossings, "crossing")
+    crossings, decided = traffic.crossings, traffic.decided
+    unheard, lost = crossings - traffic.learned, decided - traffic.delivered
+    if unheard == crossings > 1:
+        found.append(f"the monitor learned of none of {_count(crossings, 'crossing')} of the fence")
+    elif unheard:
+        which = _part(unheard, crossings, "crossing")
         found.append(f"the monitor never learned of {which} of the fence")
-    lost = traffic.decided - traffic.delivered
-    if lost:
-        found.append(f"{_part(lost, traffic.decided, 'message')} {_was(lost)} not delivered")
+    if lost == decided > 1:
+        found.append(f"none of {_count(decided, 'message')} was delivered")
+    elif lost:
+        found.append(f"{_part(lost, decided, 'message')} {_was(lost)} not delivered")
+    if traffic.partial:
+        which = _part(traffic.partial, traffic.broadcasts, "broadcast")
+        found.append(f"{which} did not reach every node that was on")
     return found
 
 
@@ -95,6 +113,11 @@ def _apart(ways: Ways, absent: str) -> list[str]:
     if not ways.leads.any():
         found.append("no node leads as gateway, and what is sent to it does not get through")
     else:
+        leading = int(ways.leads.sum())
+        if leading > 1:
+            found.append(
+                f"{leading} nodes lead as gateways, each followed by a part of the network"
+            )
         cut, astray = int(ways.cut_off.sum()), int(ways.astray.sum())
         if cut:
             found.append(f"{_part(cut, count, 'node')} {_is(cut)} cut off from the gateway: "
@@ -125,6 +148,9 @@ def _came(traffic: Traffic) -> list[str]:
     if traffic.decided and traffic.decided == traffic.delivered:
         which = _part(traffic.decided, traffic.decided, "message")
         said.append(f"{which} {_was(traffic.decided)} delivered")
+    if traffic.broadcasts and not traffic.partial:
+        which = _part(traffic.broadcasts, traffic.broadcasts, "broadcast")
+        said.append(f"{which} reached every node that was on")
     return said
 
 
@@ -133,7 +159,9 @@ def _reached(ways: Ways) -> str:
     count = len(ways.on)
     if int(ways.on.sum()) < count:  # some have not been switched on yet
         return "every node that is on has a way to the gateway"
-    return f"all {count} nodes have a way to the gateway" if count > 1 else "the only node leads"
+    if count == 1:
+        return "the only node leads"
+    return f"{_part(count, count, 'node')} have a way to the gateway"
 
 
 def traffic(
@@ -154,16 +182,20 @@ def traffic(
     learned = [crossing for crossing in closed if crossing.accepted_us != NEVER]
     takes = [fault.at_us for fault in faults if fault.action in (KILL, CUT, JAM, RESTART)]
     late = (found.state == DELIVERED) & (found.offered_us > max(takes, default=NEVER))
+    everybody = found.broadcast & ~found.young & (found.state != UNASKED)
+    missing = [*decided.node[~came].tolist(), *found.node[found.partial].tolist()]
     unheard = {crossing.robot for crossing in closed if crossing.accepted_us == NEVER}
     return Traffic(
         decided=len(decided.state),
         delivered=int(np.count_nonzero(came)),
         crossings=len(closed),
         learned=len(learned),
+        broadcasts=int(np.count_nonzero(everybody)),
+        partial=int(np.count_nonzero(found.partial)),
         doubled=doubled,
         looped=looped,
         flows=bool(late.any()),
-        about=tuple(sorted(unheard | set(decided.node[~came].tolist()))),
+        about=tuple(sorted({*unheard, *missing})),
     )
 
 

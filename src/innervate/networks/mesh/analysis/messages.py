@@ -11,9 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.analysis.summary_common import Percentiles
+from innervate.networks.mesh.analysis.broadcasts import missed
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     DATA,
+    END_TO_END,
     NO_ACK,
     NO_ROOM,
     NO_ROUTE,
@@ -53,6 +55,7 @@ class Messages(NamedTuple):
         state: DELIVERED, IN_FLIGHT (nobody gave it up when the run ended), LOST, REFUSED (the
             node had no room or nobody to send it to), UNASKED (the node was switched off).
         broadcast: to all.
+        partial: a broadcast that somebody missed who was on for as long as it could take.
         young: offered so late that it could still be on its way when the run ended.
     """
 
@@ -67,6 +70,7 @@ class Messages(NamedTuple):
     detoured: Flags
     state: Numbers
     broadcast: Flags
+    partial: Flags
     young: Flags
 
     def only(self, which: Any) -> Messages:
@@ -82,7 +86,9 @@ def messages(result: Any) -> Messages:
         for name in ("at_us", "node", "dest", "flow")
     )
     seq, answer = _accepted(result, at, node)
-    first = _first_deliveries(result, at, node, seq)
+    given = np.flatnonzero(result.delivered["kind"] == DATA)
+    of = _offers_of(result.delivered[given], at, node, seq)
+    first = _first_deliveries(result, at, node, seq, given, of)
     rows = result.delivered[np.maximum(first, 0)] if len(result.delivered) else None
     came = first >= 0
 
@@ -93,6 +99,11 @@ def messages(result: Any) -> Messages:
         return found
 
     state = _states(result, at, came, answer)
+    young = at + timeout_us(result.plan) > result.ended_us
+    broadcast = dest == ALL
+    judged = np.flatnonzero(broadcast & ~young & (state != UNASKED))
+    partial = np.zeros(len(at), np.bool_)
+    partial[judged] = missed(result, at, node, judged, of, timeout_us(result.plan))
     return Messages(
         offered_us=at,
         node=node,
@@ -104,8 +115,9 @@ def messages(result: Any) -> Messages:
         hops=of_first("path_len"),
         detoured=of_first("looped") == 1,
         state=state,
-        broadcast=dest == ALL,
-        young=at + timeout_us(result.plan) > result.ended_us,
+        broadcast=broadcast,
+        partial=partial,
+        young=young,
     )
 
 
@@ -135,11 +147,9 @@ def _key(time: Any, node: Any, handle: Any) -> Numbers:
     return key
 
 
-def _first_deliveries(result: Any, at: Numbers, node: Numbers, seq: Numbers) -> Numbers:
-    """Per offer the row of its first delivery, NEVER if there is none."""
-    found = np.full(len(at), NEVER, np.int64)
-    rows = np.flatnonzero(result.delivered["kind"] == DATA)
-    given = result.delivered[rows]
+def _offers_of(given: Any, at: Numbers, node: Numbers, seq: Numbers) -> Numbers:
+    """Per delivery of a message the offer that it is of, NEVER if of none."""
+    found = np.full(len(given), NEVER, np.int64)
     offered = np.flatnonzero(seq >= 0)
     if len(offered):
         # The newest offer of that number which was there before it: numbers come round again.
@@ -150,13 +160,25 @@ def _first_deliveries(result: Any, at: Numbers, node: Numbers, seq: Numbers) -> 
         last = _rank(names, at[order], mine, given["time"].astype(np.int64)) - 1
         fits = last >= 0
         fits[fits] = names[last[fits]] == mine[fits]
-        which = order[last[fits]]
-        # Backwards, so that the first of several is written last.
-        found[which[::-1]] = rows[fits][::-1]
+        found[fits] = order[last[fits]]
+    return found
+
+
+def _first_deliveries(
+    result: Any, at: Numbers, node: Numbers, seq: Numbers, rows: Any, of: Numbers
+) -> Numbers:
+    """Per offer the row of its first delivery, NEVER if there is none.
+
+    `rows` are the deliveries of messages, `of` says of which offers.
+    """
+    found = np.full(len(at), NEVER, np.int64)
+    fits = of != NEVER
+    # Backwards, so that the first of several is written last.
+    found[of[fits][::-1]] = rows[fits][::-1]
     # What a node sends to itself is handed back at once and has no number of its own.
     own = {
         (int(row["time"]), int(row["node"])): int(i)
-        for i, row in zip(rows, given, strict=True)
+        for i, row in zip(rows, result.delivered[rows], strict=True)
         if row["node"] == row["origin"]
     }
     for i in np.flatnonzero(seq < 0).tolist() if own else ():
@@ -174,6 +196,7 @@ def _rank(names: Numbers, times: Numbers, name: Numbers, time: Numbers) -> Numbe
 def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     state = np.full(len(at), LOST, np.int64)
     state[at + timeout_us(result.plan) > result.ended_us] = IN_FLIGHT
+    state[_kept(result, at, answer)] = IN_FLIGHT
     rows = result.rows[result.rows["code"] == REPORT_EXPIRED]
     for row in rows:
         # The offer of that handle which was there last.
@@ -187,8 +210,26 @@ def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     return state
 
 
+def _kept(result: Any, at: Numbers, answer: Numbers) -> Flags:
+    """Which messages their senders still keep and try again, unless they said that they gave up.
+
+    Where they wait as long as answers took, that can be longer than `timeout_us`.
+    """
+    plan = result.plan
+    offers = plan.offers[: len(at)]
+    if not plan.params.get("e2e_adapt"):
+        return np.zeros(len(at), np.bool_)
+    forgot = {node: NEVER for node in range(plan.nodes)}
+    for fault in plan.faults:
+        if fault.action in (KILL, RESTART) and fault.at_us < result.ended_us:
+            forgot[fault.node] = max(forgot[fault.node], fault.at_us)
+    safe = [bool(offer.flags & END_TO_END) and offer.at_us > forgot[offer.node] for offer in offers]
+    kept: Flags = np.array(safe, np.bool_) & (answer == REPORT_ACCEPTED)
+    return kept
+
+
 def timeout_us(plan: Any) -> int:
-    """How long a message can be on its way before its sender gives it up, us."""
+    """How long a message can be on its way before its sender gives it up, us; see `_kept`."""
     params = plan.params
     again = params["e2e_us"] * (params["e2e_tries"] + 1) if params["reliable"] else 0
     return max(SETTLE_US, int(again))
@@ -251,7 +292,7 @@ def counted(found: Messages) -> Messages:
     ones among them would count.
     """
     asked = found.only(~found.broadcast & (found.state != UNASKED))
-    undecided = bool((asked.state == IN_FLIGHT).any())
+    undecided = bool(((asked.state == IN_FLIGHT) & asked.young).any())
     return asked.only(~asked.young) if undecided else asked
 
 

@@ -123,7 +123,7 @@ def tables(result: Any, since_us: int) -> tuple[int | None, int | None]:
 
 
 def gateways(result: Any) -> list[Gateway]:
-    """Who became gateway, when; and how long later the last node had tables of its epoch."""
+    """Who became gateway, when; how long later the last node that was on had tables of it."""
     rows = result.rows
     led = rows[(rows["code"] == REPORT_GATEWAY) & (rows["a"] == rows["node"])]
     made = rows[rows["code"] == REPORT_TABLE]
@@ -131,10 +131,11 @@ def gateways(result: Any) -> list[Gateway]:
     found: list[Gateway] = []
     for row in led:
         at, epoch = int(row["time"]), int(row["b"])
-        mine = made[(made["b"] == epoch) & (made["time"] >= at)]
-        on = {node for node, there in enumerate(ground.on_at(at)) if there} - {int(row["node"])}
+        on = np.array(ground.on_at(at), np.bool_)
+        mine = made[(made["b"] == epoch) & (made["time"] >= at) & on[made["node"]]]
+        on[row["node"]] = False
         nodes, first = np.unique(mine["node"], return_index=True)
-        served = on <= set(nodes.tolist()) and len(nodes)
+        served = len(nodes) and set(np.flatnonzero(on).tolist()) <= set(nodes.tolist())
         found.append({
             "node": int(row["node"]),
             "at_s": at / 1e6,

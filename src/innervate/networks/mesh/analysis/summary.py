@@ -109,6 +109,7 @@ def _counts(found: Messages) -> Counts:
         "sender_off": counts[-1],
         "counted": len(counted(found).state),
         "broadcasts": int(np.count_nonzero(found.broadcast)),
+        "partial": int(np.count_nonzero(found.partial)),
     }
 
 

@@ -69,6 +69,7 @@ class Counts(TypedDict):
         sender_off: offered to a node that was off.
         counted: what ratios are made of.
         broadcasts: messages to all, in none of the others.
+        partial: broadcasts that did not reach every other node that was on.
     """
 
     offered: int
@@ -79,6 +80,7 @@ class Counts(TypedDict):
     sender_off: int
     counted: int
     broadcasts: int
+    partial: int
 
 
 class Flow(Counts):

@@ -50,7 +50,7 @@ def over_time(result: Any, bins: int = BINS) -> Steps | None:
     x = Axis(low / 1e6, (low + bins * width) / 1e6, "seconds")
     text = (
         f"Of those offered in each {words.ms_words(width / 1e3)}; "
-        f"lowest {share.min():.3g} %, {len(found.state):,} messages in all."
+        f"lowest {words.share_words(share.min() / 100)}, {len(found.state):,} messages in all."
     )
     head = "Messages delivered over time, in %"
     at = (low + width * some) / 1e6
@@ -88,7 +88,11 @@ def airtime(summary: Mapping[str, Any]) -> Bars | None:
     spent = {name: summary["airtime"][f"{name}_s"] for name in USES}
     whole = sum(spent.values())
     bars = [
-        Bar(name, some, f"{some:.3g} s, {100 * some / (whole or 1):.2g} %")
+        Bar(
+            name,
+            some,
+            f"{words.figure_words(some)} s, {words.figure_words(100 * some / (whole or 1), 2)} %",
+        )
         for name, some in spent.items()
     ]
     text = "Summed over all transmitters; acks of hops count for what they acknowledge."

@@ -15,7 +15,7 @@ from innervate.plot import svg
 from innervate.plot.charts import ticks
 from innervate.plot.film import Film
 from innervate.plot.svg import Point
-from innervate.plot.words import ms_words
+from innervate.plot.words import figure_words, ms_words
 
 CYCLE_S = 14.0
 WINDOW_US = 1_500_000  # a film shows no more
@@ -147,7 +147,7 @@ class _Crossing:
             found.append((crossing.raised_us, f"{who} raises the alarm", "alarm heavy"))
         if crossing.accepted_us != NEVER:
             took = ms_words((crossing.accepted_us - crossing.raised_us) / 1e3)
-            out = f"{crossing.overrun_m:.2g} m out"
+            out = f"{figure_words(crossing.overrun_m, 2)} m out"
             found.append((crossing.accepted_us, f"the monitor knows, {took} later: robot {out}",
                           "strong heavy"))  # fmt: skip
         return found

@@ -19,7 +19,9 @@ def section_of(result: Any) -> str:
     plan, role = result.plan, roles(result.plan)
     rows = []
     for node in nodes(result):
-        what = ", ".join(word for word in (role[node.node], "" if node.on else "off") if word)
+        leads = node.on and node.depth == 0 and plan.ranks[node.node] > 0
+        said = (role[node.node], "leads" if leads else "", "" if node.on else "off")
+        what = ", ".join(word for word in said if word)
         rows.append((
             svg.clean(plan.names[node.node]),
             what,

@@ -8,6 +8,7 @@ from typing import Any
 
 from innervate.networks.mesh.analysis.alarms import Crossing, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
+from innervate.networks.mesh.analysis.network import gateways
 from innervate.networks.mesh.analysis.way import copies, way
 from innervate.networks.mesh.plot import charts as mesh_charts
 from innervate.networks.mesh.plot import film as mesh_film
@@ -97,8 +98,11 @@ def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
         number = crossings.index(shown) + 1
         text += (
             f" The alarm of crossing {number}, the slowest, and who was off then: "
-            f"{len(hops)} hops, {'flooded' if shown.flooded else 'routed'}."
+            f"{words.number_of(len(hops), 'hop')}, {'flooded' if shown.flooded else 'routed'}."
         )
+    led = [gateway["node"] for gateway in gateways(result)]
+    if led and result.plan.ranks[led[-1]] != 0:
+        text += f" Roles are those at the start: at the end {result.plan.names[led[-1]]} leads."
     inside = keys(mesh_map.legend(result, crossings, hops))
     return section("The field", f'<div class="wide">{figure(drawing, "", text)}</div>' + inside)
 

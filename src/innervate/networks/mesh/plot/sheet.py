@@ -14,6 +14,7 @@ from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
 
 WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
+LONELY_CM = 500.0, 100.0  # around a node that is alone
 SCALE_PX = 16.0  # below the map, for the bar that says how long metres are
 DOT_PX = 5.0
 NAME_PX, STRONG_PX, LINE_PX = 6.6, 7.6, 12.0  # letters at 11 px, on the safe side
@@ -44,6 +45,8 @@ class Sheet:
             around += [np.array(corners, np.float64)] if corners else []
         everything = np.concatenate([part.reshape(-1, 2) for part in around])
         self._low, self._high = everything.min(axis=0), everything.max(axis=0)
+        if not (self._high - self._low).any():
+            self._low, self._high = self._low - LONELY_CM, self._high + LONELY_CM
         wide, high = (float(value) for value in np.maximum(self._high - self._low, 1.0))
         self.scale = min((width - 2 * MARGIN) / wide, (height_max - 2 * MARGIN) / high)
         self.width = width

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as c
-from innervate.plot.words import ms_words, number_of, share_words
+from innervate.plot.words import figure_words, ms_words, number_of, share_words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PACKETS = {
@@ -91,6 +91,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     found = [
         *_alarms(summary["alarms"]),
         *_messages(summary),
+        *_uncounted(summary["messages"]),
         *_discovery(summary["discovery"], summary["nodes"]),
         *_gateways(result.plan, summary),
         _trouble(summary),
@@ -112,12 +113,12 @@ def _alarms(alarms: Mapping[str, Any]) -> list[str]:
     if came < sent:
         return [
             f"{crossings} of the fence, and the monitor learned of {came:,}; {slowest} {latency}, "
-            f"a robot got {overrun:.2g} m out."
+            f"a robot got {figure_words(overrun, 2)} m out."
         ]
     many = "of it" if sent == 1 else "of all"
     return [
         f"{crossings} of the fence, and the monitor learned {many}: {slowest} {latency}, "
-        f"no robot got farther out than {overrun:.2g} m by then."
+        f"no robot got farther out than {figure_words(overrun, 2)} m by then."
     ]
 
 
@@ -137,7 +138,9 @@ def _messages(summary: Mapping[str, Any]) -> list[str]:
         begin += f", half within {ms_words(latency['p50'])}, 99 % within {ms_words(latency['p99'])}"
     found = [begin + "."]
     joined = summary["connected"]
-    if missing and joined["sent"] < decided:
+    if missing and not joined["sent"]:
+        found.append("None had a chance: sender and recipient were not connected, or off.")
+    elif missing and joined["sent"] < decided:
         apart = decided - joined["sent"]
         found.append(
             f"Of those, {apart:,} had no chance: sender and recipient were not connected, or off; "
@@ -146,15 +149,29 @@ def _messages(summary: Mapping[str, Any]) -> list[str]:
     return found
 
 
+def _uncounted(messages: Mapping[str, Any]) -> list[str]:
+    """Messages that no ratio and no headline has in it."""
+    off = messages["sender_off"]
+    young = messages["offered"] - off - messages["counted"]
+    said = []
+    if off:
+        said.append(f"{number_of(off, 'message')} of nodes that were off")
+    if young:
+        said.append(f"{number_of(young, 'message')} offered too shortly before the end")
+    return [f"Not counted: {', '.join(said)}."] if said else []
+
+
 def _discovery(found: Mapping[str, Any], nodes: int) -> list[str]:
     if found["recall"] is None:
         return ["No discovery round was completed."]
     line = (
         f"The first round found {share_words(found['recall'])} of the good links "
-        f"within {found['complete_s']:.3g} s"
+        f"within {figure_words(found['complete_s'])} s"
     )
     if found["tables_s"] is not None:
-        line += f"; every node had its table {found['tables_s']:.3g} s after the first request"
+        all_, count = found["with_tables"] == nodes, found["with_tables"]
+        who = "every node had its table" if all_ else f"{count:,} of {nodes:,} nodes had a table"
+        line += f"; {who} {figure_words(found['tables_s'])} s after the first request"
     elif found["with_tables"] is not None:
         line += f"; {found['with_tables']:,} of {nodes:,} nodes got a table"
     return [line + "."]
@@ -166,7 +183,11 @@ def _gateways(plan: Any, summary: Mapping[str, Any]) -> list[str]:
         return []
     last, took = led[-1], summary["takeover_s"]
     line = f"Node {plan.names[last['node']]} became gateway at {last['at_s']:.3f} s"
-    after = f"; its tables were everywhere {took:.3g} s after the old one died" if took else ""
+    after = (
+        f"; its tables were everywhere {figure_words(took)} s after the old one died"
+        if took
+        else ""
+    )
     return [f"{line}{after}."]
 
 

@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.scenario.distribution import first_round, graph_nodes_max
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.fence import is_outside
+from innervate.networks.mesh.scenario.foreseen import foreseen
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import RESERVED, listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
@@ -119,7 +120,7 @@ def warnings(made: MeshPlan) -> list[str]:
     found += _distribution(made)
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
-    found += _outside(made)
+    found += [*_outside(made), *foreseen(made)]
     offered = {offer.flow for offer in made.offers}
     found += [
         f"flow.{index} sends nothing: it begins after the end; set start_s or a later duration_s"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.words import figure_words
 
 NAMED = 4  # so many robots are named one by one
 ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through
@@ -68,11 +69,13 @@ def timeout_us(params: Mapping[str, int], stations: int) -> int:
     """How long a channel on which somebody waits may deliver nothing, us.
 
     Args:
-        params: `slot_us`, `packet_slots`, `ta_us`, `dmax_us` of the protocol, as in a plan.
+        params: `slot_us`, `packet_slots`, `ta_us`, `dmax_us` of the protocol, as in a plan;
+            `per_turn` if it has turns of several packets.
         stations: how many share the channel.
     """
     slot_us = params["slot_us"]
-    turn_us = (params["packet_slots"] + 1) * slot_us + 2 * (params["ta_us"] + params["dmax_us"])
+    turn_slots = params["packet_slots"] * params.get("per_turn", 1) + 1
+    turn_us = turn_slots * slot_us + 2 * (params["ta_us"] + params["dmax_us"])
     step_us = max(slot_us, params.get("backoff_us", 0))
     return ROUNDS * stations * turn_us + max(BACKOFF_SLOTS, params.get("cw_max", 0)) * step_us
 
@@ -188,4 +191,4 @@ def _count(count: int, one: str, many: str) -> str:
 
 
 def _time(value_ms: float) -> str:
-    return f"{value_ms / 1000:.3g} s" if value_ms >= 999.5 else f"{value_ms:.3g} ms"
+    return f"{figure_words(value_ms / 1000)} s" if value_ms >= 999.5 else f"{value_ms:.3g} ms"

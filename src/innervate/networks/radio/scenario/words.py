@@ -55,6 +55,7 @@ def warnings(made: RadioPlan) -> list[str]:
             f"{_range(*model.protocol.tau_bounds_us, 'us')} that stations believe; set "
             "protocol.tau_bounds_us to what is true."
         )
+    found += _too_much(made)
     hidden = [f"{i} and {j}" for i, j in made.pairs.hidden]
     if hidden:
         named = ", ".join(hidden[:PAIRS_SHOWN]) + (", ..." if len(hidden) > PAIRS_SHOWN else "")
@@ -63,6 +64,27 @@ def warnings(made: RadioPlan) -> list[str]:
             "stations may starve."
         )
     return found
+
+
+def _too_much(made: RadioPlan) -> list[str]:
+    """Packets that no protocol could deliver."""
+    model: RadioScenario = made.scenario.model
+    traffic, channel = model.traffic, model.channel
+    if channel.loss == 1:
+        return ["Nobody can read any frame: channel.loss is 1."]
+    if traffic.kind == "poisson" and traffic.load > 1:
+        return [
+            f"Stations offer {traffic.load:g} times what the channel carries at most: packets "
+            "wait ever longer, or find a full queue."
+        ]
+    least_us = made.stations * pair(model.packet_slots)[0] * made.params["slot_us"]
+    room_us = made.duration_us - round(1e6 * traffic.start_s)
+    if traffic.kind == "disaster" and channel.level == "event" and least_us > room_us:
+        return [
+            f"The packets alone take {least_us / 1e6:.3g} s, and the run ends "
+            f"{room_us / 1e6:.3g} s after the start: not all can be delivered; raise duration_s."
+        ]
+    return []
 
 
 def traffic_words(model: RadioScenario) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection
 from typing import NamedTuple
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.words import share_words
 
 NAMED_MAX = 3
 
@@ -122,8 +123,7 @@ def _before(facts: SkinFacts) -> list[str]:
 def _samples(facts: SkinFacts) -> list[str]:
     if not facts.lost:
         return []
-    share = 100 * facts.lost / facts.sent if facts.sent else 100.0
-    shown = f"{share:.3g} %" if share >= 0.001 else "less than 0.001 %"
+    shown = share_words(facts.lost / facts.sent if facts.sent else 1.0)
     verb = "was" if facts.lost == 1 else "were"
     return [f"{facts.lost:,} of {facts.sent:,} samples {verb} lost ({shown})"]
 

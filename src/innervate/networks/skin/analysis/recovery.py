@@ -84,10 +84,9 @@ def start_up(result: Any) -> StartUp:
     changes = parent_changes(result)
     window = _window(result, at, 0)
     last = _last(result.rows["time"], changes.row[~changes.balancing], window)
-    return {
-        "converged_ms": _since(0, last),
-        "routed_ms": _since(0, _routed(unrouted_steps(result), window, 0)),
-    }
+    apart = _cut_off(apart_steps(result), window)[1]
+    routed = None if apart else _routed(unrouted_steps(result), window, 0)
+    return {"converged_ms": _since(0, last), "routed_ms": _since(0, routed)}
 
 
 def _window(result: Any, at: Marks, place: int) -> tuple[int, int]:

@@ -186,15 +186,23 @@ class Digest:
         times, cells = self.history.steps()
         end_s = max(self.result.ended_us, 1) / 1e6
         x = charts.Axis(0.0, end_s, "seconds")
-        marks = [
-            charts.Mark(i.at_us / 1e6, ACTIONS[i.fault.action]) for i in self.incidents[:MARKS_MAX]
-        ]
+        marks = self._marked()
         most = 1.08 * max(int(cells.max(initial=0)), 1)
         y = charts.Axis(0.0, most)
         head = "Cells without a way to the PC, whole run"
         panels = [charts.Steps(times / 1e6, cells, x, y, head, "", marks, 165.0)]
         received = self._received(x, marks)
         return panels + ([received] if received else [])
+
+    def _marked(self) -> list[charts.Mark]:
+        """The first moments of events; those of one moment together."""
+        seen: dict[int, list[str]] = {}
+        for incident in self.incidents:
+            seen.setdefault(incident.at_us, []).append(ACTIONS[incident.fault.action])
+        return [
+            charts.Mark(at / 1e6, what[0] if len(what) == 1 else f"{len(what)} events")
+            for at, what in list(seen.items())[:MARKS_MAX]
+        ]
 
     def _received(self, x: charts.Axis, marks: list[charts.Mark]) -> charts.Steps | None:
         """Samples received in each sample period, as a share of the cells."""

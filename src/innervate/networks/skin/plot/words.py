@@ -81,6 +81,8 @@ def outcome(recovery: Mapping[str, Any], still: str = "") -> str:
         parts.append(f"{whom} kept its way to the PC")
         if settled:
             parts.append(f"the last one changed it after {ms_words(settled)}")
+    elif recovery.get("without_way") == 0 and not all_gone:
+        parts.append("no cell was on any more")
     elif not all_gone or recovery.get("without_way"):
         parts.append(still or _lacking(recovery.get("without_way")))
     if all_gone > gone:

@@ -67,7 +67,7 @@ def _load(made: Plan) -> list[str]:
         ports = f"{graph.interfaces:,} interface ports carry"
         if graph.interfaces == 1:
             ports = "the only interface port carries"
-        lost = f"{100 * (1 - room / offered):.0f} % or more are lost in the long run"
+        lost = f"{int(100 * (1 - room / offered))} % or more are lost in the long run"
         return [
             f"{graph.cells:,} cells offer {offered:,.0f} samples a second, but {ports} at most "
             f"{room:,.0f}: {lost}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from innervate.networks.skin.scenario.foreseen import foreseen
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings
 from innervate.scenario.cables import fault_words as fault_words
@@ -16,9 +17,10 @@ def describe(made: Plan) -> str:
     rate_hz = made.scenario.model.data.rate_hz
     data = "off"
     if made.data_period_us:
-        room = graph.interfaces * port_rate(made)
+        room, offered = graph.interfaces * port_rate(made), graph.cells * rate_hz
+        rate = f"{offered:,.0f}" if offered >= 10 else f"{offered:.2g}"
         data = (
-            f"{rate_hz:g} Hz per cell, {graph.cells * rate_hz:,.0f} samples a second; "
+            f"{rate_hz:g} Hz per cell, {rate} samples a second; "
             f"{ports} carr{'y' if graph.interfaces != 1 else 'ies'} at most {room:,.0f}"
         )
     lines = [
@@ -36,4 +38,4 @@ def describe(made: Plan) -> str:
         )
     if made.script:
         lines.append(f"  script     {len(made.script)} steps")
-    return "\n".join([*lines, *told(made, fault_words, warnings(made))])
+    return "\n".join([*lines, *told(made, fault_words, [*warnings(made), *foreseen(made)])])

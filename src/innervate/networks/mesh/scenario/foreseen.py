@@ -1,0 +1,145 @@
+"""What a mesh's own events, messages and robots will do to it, as far as a plan alone tells."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from itertools import pairwise
+from math import dist, log10
+from operator import itemgetter
+
+from innervate.networks.mesh.protocol.constants import ALL, MONITOR
+from innervate.networks.mesh.scenario.nodes import listed
+from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk
+from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.topology.placement import distances, neighbours
+
+METRE_CM = 100
+HALF = 0.5
+ON_A_LEG = 8  # places that are looked at between two points of a robot's way
+MOMENTS_MAX = 300
+
+
+def foreseen(made: MeshPlan) -> list[str]:
+    """A sentence for each; none if all is well."""
+    return [*_at_the_end(made), *_too_much(made), *_out_of_reach(made)]
+
+
+def _at_the_end(made: MeshPlan) -> list[str]:
+    """Who is missing when all events have happened, and who is then cut off."""
+    on = [not absent for absent in made.absent]
+    cut: set[tuple[int, int]] = set()
+    for fault in made.faults:
+        pair = min(fault.node, fault.other), max(fault.node, fault.other)
+        if fault.action in (KILL, REVIVE, RESTART):
+            on[fault.node] = fault.action != KILL
+        elif fault.action in (CUT, RESTORE):
+            (cut.add if fault.action == CUT else cut.discard)(pair)
+    monitor = made.params["monitor"]
+    found = []
+    if monitor != MONITOR and not on[monitor]:
+        found.append(f"the monitor {made.names[monitor]} is off at the end")
+    leaders = [made.ranks.index(rank) for rank in range(max(made.ranks) + 1)]
+    leader = next((node for node in leaders if on[node]), None)
+    if leader is None:
+        whose = "and so is every standby" if len(leaders) > 1 else "and there is no standby"
+        return [*found, f"nobody leads at the end: the gateway is off, {whose}"]
+    left = [(a, b) for a, b in _working(made) if on[a] and on[b] and (a, b) not in cut]
+    hops = distances(neighbours(made.nodes, left), leader)
+    apart = [
+        made.names[node]
+        for node, far in enumerate(hops)
+        if far < 0 and on[node] and not made.robots[node]
+    ]
+    if apart:
+        name = made.names[leader]
+        found.append(f"at the end no links lead to {name}, the gateway, from {listed(apart)}")
+    return found
+
+
+def _working(made: MeshPlan) -> list[tuple[int, int]]:
+    """Links over which, with all their tries, most messages come: faint ones too."""
+    params, count, prob = made.params, made.nodes, made.radio.prob_q15
+    tries = params["transmissions"] * (1 + params["e2e_tries"] * params["reliable"])
+    found = []
+    for a in range(count):
+        for b in range(a + 1, count):
+            there, back = prob[a * count + b] / ONE, prob[b * count + a] / ONE
+            once = there * back if params["hop_acks"] else min(there, back)
+            if (1 - once) ** tries <= HALF:
+                found.append((a, b))
+    return found
+
+
+def _too_much(made: MeshPlan) -> list[str]:
+    """Messages to one node that alone take longer than there is time: it hears one at a time."""
+    if not made.radio.collisions:
+        return []
+    bytes_to: dict[int, int] = {}
+    gateway = made.ranks.index(0)
+    monitor = gateway if made.params["monitor"] == MONITOR else made.params["monitor"]
+    for offer in made.offers:
+        dest = monitor if offer.dest == MONITOR else offer.dest
+        if dest not in (ALL, offer.node):
+            size = made.radio.phy_bytes + offer.length
+            bytes_to[dest] = bytes_to.get(dest, 0) + size
+    if not bytes_to:
+        return []
+    dest, most = max(bytes_to.items(), key=lambda item: item[1])
+    needed_us = most * made.radio.byte_ns / 1000
+    room_us = made.duration_us - made.offers[0].at_us
+    if needed_us <= room_us:
+        return []
+    return [
+        f"messages to {made.names[dest]} alone take {needed_us / 1e6:,.0f} s on the air, without "
+        f"any header or ack, and there are {room_us / 1e6:,.0f} s: most will not come"
+    ]
+
+
+def _out_of_reach(made: MeshPlan) -> list[str]:
+    """Robots that somewhere on their way hear not half of the frames of anybody."""
+    if not made.radio.base_cdb or not made.positions_cm:
+        return []
+    ways = {walk.node: walk for walk in made.walks}
+    found = []
+    for walk in made.walks:
+        others = [node for node in range(made.nodes) if node != walk.node]
+        for at_us in _moments(walk, made.duration_us):
+            here = _place(walk, at_us)
+            places = (
+                _place(ways[node], at_us) if node in ways else made.positions_cm[node]
+                for node in others
+            )  # fmt: skip
+            pairs = zip(others, places, strict=True)
+            if not any(_hears(made, node, walk.node, dist(here, there)) for node, there in pairs):
+                found.append((at_us, made.names[walk.node]))
+                break
+    if not found:
+        return []
+    who = listed([name for _, name in found])
+    return [f"out of everybody's reach on the way, first after {min(found)[0] / 1e6:.3g} s: {who}"]
+
+
+def _hears(made: MeshPlan, node: int, robot: int, far_cm: float) -> bool:
+    """True if a robot so far away receives half of a node's frames."""
+    loss_cdb = 10 * made.radio.exponent_c * log10(max(far_cm / METRE_CM, 1.0))
+    return made.radio.base_cdb[node * made.nodes + robot] - loss_cdb >= made.radio.rssi50_cdb
+
+
+def _moments(walk: Walk, until_us: int) -> list[int]:
+    """Times at which a robot is looked at: at every point of its way and between them."""
+    times = [min(at, until_us) for at, _, _ in walk.points]
+    found = {times[0], times[-1]}
+    for a, b in pairwise(times):
+        found |= {a + (b - a) * k // ON_A_LEG for k in range(ON_A_LEG)}
+    return sorted(found)[:: max(1, len(found) // MOMENTS_MAX)]
+
+
+def _place(walk: Walk, at_us: int) -> tuple[float, float]:
+    """Where a robot is at a moment, cm."""
+    after = bisect_right(walk.points, at_us, key=itemgetter(0))
+    _, *here = walk.points[max(after - 1, 0)]
+    if after in (0, len(walk.points)):
+        return here[0], here[1]
+    (since, *_), (until, *there) = walk.points[after - 1 : after + 1]
+    part = (at_us - since) / (until - since)
+    return here[0] + part * (there[0] - here[0]), here[1] + part * (there[1] - here[1])

@@ -1,0 +1,87 @@
+"""What `check` foresees of a mesh: nobody leads, parts, too many messages, robots out of reach."""
+
+import pytest
+
+from innervate import scenario
+from innervate.networks.mesh.scenario.foreseen import foreseen
+
+LINE = [{"a": f"n{i}", "b": f"n{i + 1}"} for i in range(4)]
+
+
+def line(*events, **more):
+    """Five nodes in a row, the first leads."""
+    happens = [dict(zip(("at_s", "action"), event[:2], strict=True)) | event[2] for event in events]
+    tables = {"kind": "mesh", "link": LINE, "gateway": "n0", "event": happens, **more}
+    return foreseen(scenario.plan(scenario.from_dict(tables)))
+
+
+def kill(node, at_s=10):
+    return at_s, "kill", {"node": node}
+
+
+HEADLESS = "nobody leads at the end: the gateway is off, and "
+
+
+@pytest.mark.parametrize(("events", "standby", "said"), [
+    ([], [], []),
+    ([kill("n0")], [], [HEADLESS + "there is no standby"]),
+    ([kill("n0"), (20, "revive", {"node": "n0"})], [], []),
+    ([kill("n0"), (20, "restart", {"node": "n0"})], [], []),
+    ([kill("n0")], ["n1"], []),
+    ([kill("n0"), kill("n1")], ["n1"], [HEADLESS + "so is every standby"]),
+    ([kill("n0"), kill("n1")], ["n1", "n2"], []),
+    ([kill("n4")], [], []),
+    ([kill("n3")], [], ["at the end no links lead to n0, the gateway, from n4"]),
+    ([kill("n0"), kill("n2")], ["n1"],
+     ["at the end no links lead to n1, the gateway, from n3, n4"]),
+    ([(10, "cut", {"link": ["n3", "n2"]})], [],
+     ["at the end no links lead to n0, the gateway, from n3, n4"]),
+    ([(10, "cut", {"link": ["n3", "n2"]}), (11, "restore", {"link": ["n2", "n3"]})], [], []),
+])  # fmt: skip
+def test_what_is_left_when_all_has_happened(events, standby, said):
+    assert line(*events, standby=standby) == said
+
+
+def test_faint_links_lead_too_as_long_as_most_messages_come_over_them():
+    events = kill("n1"), kill("n2")
+    for quality, said in (
+        (0.4, []),
+        (0.1, ["at the end no links lead to n0, the gateway, from n3"]),
+    ):
+        around = [{"a": "n0", "b": "n3", "quality": quality}]
+        assert line(*events, kill("n4"), link=[*LINE, *around]) == said
+
+
+def test_a_monitor_that_is_off_learns_of_nothing():
+    assert line(kill("n4"), monitor="n4") == ["the monitor n4 is off at the end"]
+    assert line(kill("n4"), (20, "revive", {"node": "n4"}), monitor="n4") == []
+
+
+def test_messages_that_take_longer_than_there_is_time():
+    flow = {"from": "all", "to": "monitor", "every_s": 0.01, "bytes": 44, "start_s": 8}
+    # 400 a second of 50 bytes and 32 us each: 0.64 of the time
+    assert line(duration_s=12, flow=[flow]) == []
+    (said,) = line(duration_s=12, flow=[flow | {"every_s": 0.005, "bytes": 90}])
+    assert said == (
+        "messages to n0 alone take 10 s on the air, without any header or ack, and there are 4 s: "
+        "most will not come"
+    )
+    many = [flow | {"bytes": 90, "every_s": 0.005}]
+    assert line(duration_s=12, flow=many, radio={"profile": "ideal"}) == []
+    assert line(duration_s=12, flow=[many[0] | {"to": "all"}]) == []
+
+
+def walk(*waypoints):
+    tables = {
+        "kind": "mesh", "nodes": 6, "placement": {"side_m": 40}, "duration_s": 30.0,
+        "robot": [{"node": 5, "waypoints": waypoints, "speed_mps": 50.0, "start_s": 10}],
+    }  # fmt: skip
+    return foreseen(scenario.plan(scenario.from_dict(tables)))
+
+
+def test_a_robot_that_leaves_everybody_behind():
+    assert walk((20, 20), (20, 30)) == []
+    (gone,) = walk((20, 20), (20, 900))
+    assert gone.startswith("out of everybody's reach on the way, first after 1")
+    assert gone.endswith(": n5")
+    assert walk((20, 20), (20, 900), (20, 20))  # it comes back in the end
