@@ -14,10 +14,11 @@ OPERATIONS = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("most", [1 << 20, 3])
 @pytest.mark.parametrize("op", OPERATIONS)
-def test_the_solver_computes_as_python_does(op):
+def test_the_solver_computes_as_python_does(op, most):
     terms = Terms()
-    a, b = terms.unknown("a", -70_000, 1 << 20), terms.unknown("b", -129, 255)
+    a, b = terms.unknown("a", -70_000, most), terms.unknown("b", -129, 255)
     if op in ("div", "mod"):
         b = terms.unknown("b", 1, 255)
     elif op in ("shl", "shr"):
@@ -25,8 +26,7 @@ def test_the_solver_computes_as_python_does(op):
     made = getattr(terms, OPERATIONS[op])(a, b)
     question = Question(Formulas(), [])
     draw = random.Random(f"terms {op}")
-    for _ in range(12):
-        x = draw.choice(NUMBERS)
+    for x in dict.fromkeys(min(most, one) for one in NUMBERS):
         y = draw.randint(b.low, b.high)
         found = question.values(terms.same(a, terms.number(x)), terms.same(b, terms.number(y)))
         assert found is not None
@@ -60,6 +60,20 @@ def test_ranges_decide_what_they_can():
     c = terms.less(a, terms.number(5))
     assert terms.any(c, terms.negated(c)) is terms.true
     assert terms.pick(c, terms.pick(c, a, b), b) is terms.pick(c, a, b)
+
+
+def test_what_is_compared_has_one_form_whichever_stands_first():
+    """And what is picked of known numbers is told by what it is picked by."""
+    terms = Terms()
+    a, b = terms.unknown("a", 0, 9), terms.unknown("b", 0, 9)
+    three, four = terms.number(3), terms.number(4)
+    if_ = terms.less(a, b)
+    one = terms.pick(if_, three, four)
+    for same in (terms.same, lambda x, y: terms.same(y, x)):
+        assert same(a, b).args == (a, b)
+        assert same(a, three).args == (a, three)
+        assert same(one, three) is if_
+        assert same(one, four) is terms.negated(if_)
 
 
 @pytest.mark.parametrize(("low", "high"), [
