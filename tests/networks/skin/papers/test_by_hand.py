@@ -2,9 +2,10 @@
 
 from types import SimpleNamespace as Of
 
+import numpy as np
 import pytest
 
-from innervate.networks.skin.papers import fig6, fig8a
+from innervate.networks.skin.papers import fig6, fig8a, loop
 
 
 @pytest.mark.parametrize(("changes", "share"), [
@@ -38,3 +39,17 @@ def test_the_bar_is_asked_for_at_the_highest_rate(monkeypatch, quick):
     assert bands == ["a band"] * len(fig8a.RULES)
     assert asked == [(250, k) for k in fig8a.BAR_K]
     assert bar.claim.startswith("feasible at 250 Hz")
+
+
+@pytest.mark.parametrize(("rows", "counted"), [
+    ([], (0, 0.0, 0)), ([(1_000, 3_500, 3)], (1, 2.5, 3)),
+    ([(1_000, 3_500, 3), (2_000, -1, 2)], (2, 7.0, 3)),
+    ([(1_000, 3_500, 2), (2_000, 3_000, 5)], (2, 2.5, 5)),
+])  # fmt: skip
+def test_a_loop_that_nobody_broke_stood_until_the_end(monkeypatch, rows, counted):
+    columns = np.array(rows, np.int64).reshape(-1, 3).T
+    found = Of(**dict(zip(("opened_us", "closed_us", "length"), columns, strict=True)))
+    monkeypatch.setattr(loop, "loop_episodes", lambda result: found)
+    monkeypatch.setattr(loop, "simulate", lambda plan: Of(ended_us=9_000))
+    told = loop.count(Of(plan=lambda seed: None), 1)
+    assert tuple(told[name] for name in ("episodes", "longest_ms", "cells")) == counted
