@@ -5,12 +5,21 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.mesh.papers import alarms, comparison, gateway, stretch, uplinks
-from innervate.networks.mesh.protocol.constants import DATA
+from innervate.networks.mesh.papers import (
+    alarms,
+    comparison,
+    gateway,
+    lossy,
+    stretch,
+    testbed,
+    uplinks,
+)
+from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, REPORT_TABLE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.scenario.plan import Walk
 from innervate.papers.in_field import MONITOR
 from innervate.scenario.actions.field import KILL, REVIVE
+from innervate.topology import placement
 
 
 def node(depth, first, *heard):
@@ -167,3 +176,41 @@ def test_all_who_live_write_to_the_gateway_and_to_one_another(dead, every_s, sen
     silent = Of(seed=3, nodes=5, offers=[])
     gateway._send(silent, gateway.SILENT, dies_us)
     assert silent.offers == []
+
+
+def test_good_links_lose_so_many_frames_and_others_are_none():
+    radio = Of(prob_q15=[7] * 9, rssi_cdb=[-5_000] * 9)
+    lossy._soften(Of(radio=radio, nodes=3, good=[(0, 2)]), 5)
+    some, none = 32_768 - 32_768 * 5 // 100, placement.UNHEARD
+    assert radio.prob_q15 == [0, 0, some, 0, 0, 0, some, 0, 0]
+    assert radio.rssi_cdb == [none, none, -5_000, none, none, none, -5_000, none, none]
+
+
+def test_wrong_entries_lead_away_or_nowhere(monkeypatch):
+    """On a line 0-1-2 two of six: 2's to 0, and 0's to 2."""
+    none = lossy.NONE
+    tables = [[none, 1, none], [0, none, 2], [2, 1, none]]
+    near = Of(near_at=lambda at_us: [[1], [0, 2], [1]])
+    monkeypatch.setattr(lossy, "Ground", lambda plan: near)
+    monkeypatch.setattr(lossy, "row_of", lambda result, node, name: tables[node])
+    assert lossy._wrong(Of(plan=Of(nodes=3), ended_us=9)) == pytest.approx(2 / 6)
+
+
+def test_tables_that_come_again_are_those_after_the_first():
+    codes = [REPORT_TABLE, REPORT_TABLE, REPORT_TABLE + 1, REPORT_TABLE]
+    rows = np.array([*zip(codes, [7_999_999, 8_000_000, 9_000_000, 9_000_000], strict=True)],
+                    [("code", np.int64), ("time", np.int64)])  # fmt: skip
+    assert lossy._again(Of(rows=rows)) == 2
+
+
+@pytest.mark.parametrize(("reliable", "flags"), [(1, END_TO_END), (0, 0)])
+def test_everyone_sends_anywhere_in_each_span(reliable, flags):
+    plan = Of(seed=2, nodes=4, offers=[], params={"reliable": reliable})
+    testbed.send_anywhere(plan, 8, 68, 2)
+    assert len(plan.offers) == 4 * 30
+    spans = {(offer.node, (offer.at_us - 8_000_000) // 2_000_000) for offer in plan.offers}
+    assert spans == {(node, span) for node in range(4) for span in range(30)}
+    assert plan.offers == sorted(plan.offers, key=lambda offer: offer.at_us)
+    ways = {(offer.node, offer.dest) for offer in plan.offers}
+    assert ways == {(a, b) for a in range(4) for b in range(4) if a != b}
+    assert {(offer.flags, offer.flow) for offer in plan.offers} == {(flags, 0)}
