@@ -5,7 +5,7 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.skin.papers import fig6, fig8a, loop
+from innervate.networks.skin.papers import fig5, fig6, fig8a, loop
 
 
 @pytest.mark.parametrize(("changes", "share"), [
@@ -53,3 +53,21 @@ def test_a_loop_that_nobody_broke_stood_until_the_end(monkeypatch, rows, counted
     monkeypatch.setattr(loop, "simulate", lambda plan: Of(ended_us=9_000))
     told = loop.count(Of(plan=lambda seed: None), 1)
     assert tuple(told[name] for name in ("episodes", "longest_ms", "cells")) == counted
+
+
+def test_a_timeline_says_who_took_whom_as_parent_in_periods_from_the_cut(monkeypatch):
+    """The PC by its port; what came before the cut as at it."""
+    graph = Of(sink=9, peer={4: 36, 5: 21, 8: 17}, node_of=lambda end: end // 4,
+               port_of=lambda end: end % 4, label=lambda node: f"n{node}")  # fmt: skip
+    found = Of(time_us=[1_900_000.0, 2_004_000.0, 2_012_345.6], cell=[1, 1, 2], old=[-1, 0, 0],
+               new=[0, 1, -1])  # fmt: skip
+    asked = []
+    monkeypatch.setattr(
+        fig5,
+        "simulated",
+        lambda tables, seed: asked.append((tables, seed)) or Of(plan=Of(graph=graph)),
+    )
+    monkeypatch.setattr(fig5, "parent_changes", lambda result: found)
+    assert fig5.parents_after_cut() == {"events": [
+        [0.0, "n1", "", "PC 0"], [1.0, "n1", "PC 0", "n5"], [3.086, "n2", "n4", ""]]}  # fmt: skip
+    assert asked == [(fig5.tables(5, 1, True), 1)]
