@@ -106,3 +106,21 @@ def test_which_of_some_truths_hold_is_told_in_their_order():
     assert [question.which([one]) for one in less] == [[False], [False], [True], [True]]
     assert question.which([]) == []
     assert question.which(less[:2]) == [False, False]
+
+
+def test_what_changes_nothing_leaves_a_term_as_it_is():
+    terms = Terms()
+    a, flag = terms.unknown("a", -5, 9), terms.unknown("f", 0, 1)
+    none, one = terms.number(0), terms.number(1)
+    for made in (terms.add(a, none), terms.add(none, a), terms.sub(a, none), terms.mul(a, one),
+                 terms.mul(one, a), terms.div(a, one)):  # fmt: skip
+        assert made is a
+    for made in (terms.sub(a, a), terms.mul(a, none), terms.mul(none, a)):
+        assert made is none
+    assert terms.mul(flag, a) is terms.mul(a, flag) is terms.pick(terms.as_truth(flag), a, none)
+    small = terms.unknown("s", 0, 7)
+    assert terms.mod(small, terms.number(8)) is small
+    assert terms.mod(small, terms.number(7)) is not small
+    assert terms.mod(a, terms.number(100)) is not a  # it may be below 0
+    assert terms.bits_and(small, terms.number(7)) is terms.bits_and(terms.number(7), small) is small
+    assert terms.bits_and(small, terms.number(3)) is not small
