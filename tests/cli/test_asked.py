@@ -1,5 +1,6 @@
 """What a command line asks for, before anything of it is done."""
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 from innervate import network
 from innervate.cli import app, exporting
 from innervate.cli.errors import UserError
-from innervate.cli.options import ExportOptions
+from innervate.cli.options import ExportOptions, UpOptions
 
 
 @pytest.fixture
@@ -113,3 +114,27 @@ def test_a_run_is_exported_as_it_was(tmp_path):
     for sets, seed in ((["seed=1"], None), ([], 0)):
         with pytest.raises(UserError, match=r"was run as it is; export its scenario\.toml"):
             exporting._Source(str(tmp_path), sets, seed)
+
+
+@pytest.mark.parametrize(("given", "cables", "keys"), [
+    ((), "udp", ""), (("pty",), "pty", ""), (("netns",), "netns", ""),
+    (("netns", "pty"), "netns", ""), (("sealed",), "udp", "key"),
+    (("identities",), "udp", "identities"), (("pty", "sealed", "identities"), "pty", "key"),
+])  # fmt: skip
+def test_what_nodes_are_joined_by_and_sealed_with(given, cables, keys):
+    options = UpOptions(**dict.fromkeys(given, True))
+    assert (options.cables, options.keys) == (cables, keys)
+
+
+@pytest.mark.parametrize(("more", "fingerprint"), [
+    ({"fingerprint": "ab"}, "ab"), ({}, ""), ({"fingerprint": "ab", "interrupted_at_s": 0.1}, ""),
+])  # fmt: skip
+def test_a_run_that_was_interrupted_is_not_held_to_its_fingerprint(tmp_path, more, fingerprint):
+    """What is simulated anew for a capture goes on to its end."""
+    (tmp_path / "scenario.toml").write_text('kind = "skin"\nduration_s = 0.1\n[[patch]]\n'
+                                            "columns = 2\nrows = 1\n[[interface]]\nrow = 0\n"
+                                            'column = 0\nport = "W"\n')  # fmt: skip
+    for name, content in (("summary", more), ("provenance", {})):
+        (tmp_path / f"{name}.json").write_text(json.dumps(content))
+    found = exporting._Source(str(tmp_path), [], None)
+    assert (found.fingerprint, found.scenario.duration_s) == (fingerprint, 0.1)

@@ -1,12 +1,15 @@
 """What is said of many: mutants, one of them missed; why runs failed; long comparisons."""
 
 import json
+import signal
+from pathlib import Path
 from types import SimpleNamespace
 
 import polars
 import pytest
 
-from innervate.cli import comparing, sweeping, verifying
+from innervate.cli import comparing, errors, sweeping, verifying, verifying_random
+from innervate.running import fuzz
 
 
 @pytest.mark.parametrize(("by", "code"), [(("a", "b"), 0), (("a", ""), 1), (("", ""), 1)])
@@ -56,3 +59,51 @@ def test_long_comparisons_end_and_long_keys_do_not_push_values_away(capsys):
     assert len(capsys.readouterr().out.splitlines()) == most + 1
     comparing._print("Summary", [("a" * 50, 1, 2), ("b", 0.1234567, 3)])
     assert capsys.readouterr().out.splitlines()[2] == f"  {'b':<40}  0.123457 -> 3"
+
+
+@pytest.fixture
+def attempts(monkeypatch):
+    """Numbers of networks that were tried: from 12 on they break; at the third Ctrl-C comes."""
+    tried = []
+
+    def attempt(seed):
+        tried.append(seed)
+        if seed == 3:
+            signal.raise_signal(signal.SIGINT)
+        return fuzz.Broken(seed, "a loop", {}, 7) if seed >= 12 else None
+
+    monkeypatch.setattr(fuzz, "attempt", attempt)
+    monkeypatch.setattr(fuzz.Broken, "save", lambda self, folder: folder / f"{self.seed}.toml")
+    return tried
+
+
+@pytest.mark.parametrize(("seed", "count", "first", "last"), [
+    (None, 2, 1, 2), (0, 2, 0, 1), (5, 1, 5, 5), (10, 2, 10, 11),
+])  # fmt: skip
+def test_so_many_networks_are_tried_from_a_seed_on(attempts, capsys, seed, count, first, last):
+    for as_json in (False, True):
+        assert verifying_random.search(seed, count, as_json, None) == 0
+    assert attempts == [*range(first, last + 1)] * 2
+    words, told = capsys.readouterr().out.splitlines()
+    assert words == f"Nothing broken in {count} networks, {first} to {last}."
+    assert json.loads(told) == {"first": first, "networks": count, "broken": None}
+
+
+@pytest.mark.parametrize(("out", "file"), [(None, Path("runs/12.toml")), ("o", Path("o/12.toml"))])
+def test_the_first_network_that_breaks_is_the_last(attempts, capsys, out, file):
+    for as_json in (False, True):
+        assert verifying_random.search(10, 0, as_json, out and Path(out)) == 1
+    assert attempts == [10, 11, 12] * 2
+    *words, told = capsys.readouterr().out.splitlines()
+    assert words == ["Network 12 breaks: a loop",
+                     f"Made smaller in 7 tries. Play it: innervate run {file}",
+                     "As drawn: innervate verify --random --seed 12 --count 1"]  # fmt: skip
+    assert json.loads(told) == {"first": 10, "networks": 3, "broken": "a loop", "seed": 12,
+                                "file": str(file)}  # fmt: skip
+
+
+def test_who_is_stopped_has_tried_what_was_under_way(attempts, capsys):
+    assert verifying_random.search(3, 5, False, None) == errors.INTERRUPTED
+    assert verifying_random.search(3, 1, False, None) == 0  # that was all
+    assert attempts == [3, 3]
+    assert capsys.readouterr().out == "Nothing broken in 1 networks, 3 to 3.\n" * 2

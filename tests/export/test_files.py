@@ -11,7 +11,7 @@ import pytest
 from mcap.reader import make_reader
 
 from innervate import run, scenario
-from innervate.export import graphs, recording, schemas, tables
+from innervate.export import files, graphs, recording, schemas, tables
 from innervate.export.errors import ExportError
 from innervate.network import networks
 from tests.export.test_captures import MESH, RADIO, SKIN
@@ -175,3 +175,12 @@ def test_tables_are_the_runs(csv, runs, tmp_path):
             assert polars.read_csv(path, schema=own.schema).equals(own)
         else:
             assert polars.read_parquet(path).equals(own)
+
+
+def test_a_folder_is_made_with_those_above_it_or_it_is_said_why_not(tmp_path):
+    for _ in range(2):
+        files.make_folder(tmp_path / "a" / "b")
+    assert (tmp_path / "a" / "b").is_dir()
+    (tmp_path / "c").write_text("")
+    with pytest.raises(ExportError, match="d cannot be written: Not a directory; choose another"):
+        files.make_folder(tmp_path / "c" / "d")

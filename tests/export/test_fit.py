@@ -3,6 +3,7 @@
 import asyncio
 import json
 import tomllib
+from types import SimpleNamespace as Of
 
 import pytest
 
@@ -174,3 +175,20 @@ def test_what_cannot_be_fitted_is_told_in_one_line(blocks, why, tmp_path):
     with pytest.raises(ExportError, match=why) as told:
         measure.measure(path)
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(("seconds", "duration_s"), [
+    (0.0, 2.0), (2.0, 2.0), (2.00049, 2.0), (3.14159, 3.142), (60.0, 60.0), (1e5, 60.0),
+])  # fmt: skip
+def test_a_scenario_says_what_was_measured_and_leaves_out_what_was_not(
+    monkeypatch, seconds, duration_s
+):
+    """Zeros are numbers that were measured; it lasts as long as the capture, within bounds."""
+    tables = {"gateway": 0, "share": 0.0, "link": [], "name_of": "", "radio": {}, "nodes": 3}
+    fit = Of(tables_of=lambda found: tables)
+    monkeypatch.setattr(fitting, "networks", lambda: {"mesh": Of(fit=fit)})
+    monkeypatch.setattr(fitting.scenarios, "loads", lambda text: text)
+    monkeypatch.setattr(fitting.scenarios, "plan", lambda text: None)
+    found = tomllib.loads(fitting.scenario_of(Of(kind="mesh", seconds=seconds), "mine"))
+    assert found == {"schema": 1, "kind": "mesh", "name": "mine", "duration_s": duration_s,
+                     "seed": 1, "gateway": 0, "share": 0.0, "nodes": 3}  # fmt: skip

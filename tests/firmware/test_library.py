@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.firmware import library
+from innervate.firmware import library, tools
 from innervate.firmware.errors import FirmwareError
+from innervate.networks.mesh.board import node
 
 FILES = SimpleNamespace(library=SimpleNamespace(prefix="own"), texts={"own.h": "int a;\n"})
 
@@ -16,3 +17,30 @@ def test_a_file_is_there_whole_or_not_at_all(tmp_path, full_disk):
     assert list(tmp_path.iterdir()) == []
     assert library.write(FILES, tmp_path) == {"own.h": 1}
     assert [path.name for path in tmp_path.iterdir()] == ["own.h"]
+
+
+def test_a_role_is_of_a_network_and_as_large_as_it_has_to_be():
+    for name, of in (("skin", "skin"), ("csma", "mesh"), ("mesh", "mesh"), ("rpl", "rpl")):
+        network, role = library.role_of(name)
+        assert (network.name, role.name) == (of, name)
+    network, role = library.role_of("mesh", 33)
+    assert (network.name, role) == ("mesh", node(33))
+    assert role != library.role_of("mesh")[1]
+    with pytest.raises(FirmwareError, match="csma: its arrays do not depend on how many nodes"):
+        library.role_of("csma", 33)
+    with pytest.raises(FirmwareError, match="nobody: no folder, and none of skin, radio, "):
+        library.role_of("nobody")
+
+
+@pytest.mark.parametrize(("script", "said"), [
+    ("echo a; echo b >&2", None), ("echo a; echo b >&2; exit 3", "sh: b"),
+    ("echo a; echo b; exit 3", "sh: a"), ("exit 3", "sh: exit code 3"),
+    ("echo a; echo an error; exit 1", "sh: an error"),
+])  # fmt: skip
+def test_a_tool_that_does_not_get_through_says_why_in_a_line(script, said):
+    if said is None:
+        assert tools.run("sh", "-c", script) == "a\n"
+        return
+    with pytest.raises(FirmwareError) as error:
+        tools.run("sh", "-c", script)
+    assert str(error.value) == said

@@ -40,6 +40,15 @@ def test_what_counts_are_messages_whose_ends_are_joined():
     assert found["airtime"] == 2.0, "of the four seconds from since_us on"
 
 
+def test_what_is_joined_changes_in_the_order_of_the_faults():
+    """Whatever order their times have in a set."""
+    faults = [(7 * SECOND + 1, REVIVE, 1), (5 * SECOND + 7, KILL, 1)]
+    sent = [Sent(at, 3, 0, "all") for at in (
+        5 * SECOND + 6, 5 * SECOND + 7, 7 * SECOND, 7 * SECOND + 1)]  # fmt: skip
+    world = line(4, sorted(faults), sent)
+    assert in_field._counted(world) == [True, False, False, True]
+
+
 def test_an_alarm_counts_though_nobody_is_there_to_hear_it():
     world = line(3, [(5 * SECOND, KILL, 0)], [Sent(6 * SECOND, 2, MONITOR, "alarms")])
     assert figures(world, [NEVER], 0) | {"airtime": 0} == {

@@ -118,6 +118,9 @@ def test_whose_claim_it_is_stands_everywhere_in_the_same_words(tmp_path):
         counted, "  ours, 2: in some", "      measured: 0 of 4", "      because: so",
     ]  # fmt: skip
     assert output.columns(rows)[-1] == "source"
+    tables = output.as_tables(HEADING, FIGURE, output.Made({"fig3": rows}), ORIGIN)
+    assert '| the document, 2: "as it is": in all | 4 of 4 | holds |  |' in tables
+    assert "| ours, 2: in some | 0 of 4 | does not hold | so |" in tables
     assert "| 2 | in some | 0 of 4 | does not hold | so | ours |" in output.as_markdown(
         HEADING, rows, ORIGIN
     )

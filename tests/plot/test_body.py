@@ -152,3 +152,22 @@ def test_what_was_delivered_so_far_and_how_fast():
     assert made.axes[0].get_xlim() == (0, 2.0)
     with pytest.raises(ValueError, match='no figure "x"; there are delivered, latency'):
         figures.draw(None, "x")
+
+
+def test_a_table_says_what_each_node_was_at_the_end(monkeypatch):
+    """In single numbers that it declares, but for those of its generator; of few nodes."""
+    state = (("number", 0, 0, 9, "", "who"), ("dist", 0, 0, 9, "hops", "how <far>"),
+             ("row", 3, 0, 9, "", "a list"), ("up", 0, 0, 1, "flag", "on"))  # fmt: skip
+    cells = np.array([(1, 4, 0), (2, 7, 1)], [(n, np.int64) for n in ("number", "dist", "up")])
+    names = [("a<b", ""), ("c", "")]
+    network = Of(graph=lambda plan: Of(nodes=names), has=lambda part: True, fields=Of(STATE=state))
+    monkeypatch.setattr(body, "networks", lambda: {"babel": network})
+    for kept in ("cells", "stations"):
+        told = body._nodes(Of(plan=Of(kind="babel"), world=Of(**{kept: cells})))
+        rows = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in told.split("<tr")[1:]]
+        assert rows == [["node", '<span title="how &lt;far&gt;">dist</span>, hops',
+                         '<span title="on">up</span>, flag'],
+                        ["a&lt;b", "4", "0"], ["c", "7", "1"]]  # fmt: skip
+    assert body._nodes(Of(plan=Of(kind="babel"), world=Of())) == ""
+    names *= body.NAMED_MAX
+    assert body._nodes(Of(plan=Of(kind="babel"), world=Of(cells=cells))) == ""

@@ -21,6 +21,8 @@ def test_a_distribution_has_as_many_steps_as_one_can_see(count, steps):
 
 def test_ticks_are_where_they_were_asked_for_but_for_a_last_digit():
     assert charts.ticks(0.5, 1.1, 6) == [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1]
+    assert charts.ticks(0.07, 0.12) == [0.07, 0.08, 0.09, 0.1, 0.11, 0.12]  # 0.07 / 0.01 is above 7
+    assert charts.ticks(0.1, 0.3, 2) == [0.1, 0.2, 0.3]  # 0.3 / 0.1 is below 3
 
 
 def test_many_bars_are_an_outline_from_the_largest_on(parse):

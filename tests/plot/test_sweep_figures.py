@@ -70,3 +70,9 @@ def test_so_many_lines_are_drawn():
     columns = {"x": list(range(12)), "y": [1.0] * 12, "by": list(range(12))}
     for over in ({}, None):
         assert len(draw(columns, Shown("x", "y", "by"), over).axes[0].lines) == sweeps.LINES_MAX
+
+
+def test_numbers_stand_at_themselves_and_words_one_after_another():
+    assert sweeps._scale([3, 1.5, 3, None, 2]) == ([1.5, 2, 3], {1.5: 1.5, 2: 2.0, 3: 3.0})
+    assert sweeps._scale(["b", "a", "b"]) == (["b", "a"], {"b": 0.0, "a": 1.0})
+    assert sweeps._scale([True, False]) == ([False, True], {False: 0.0, True: 1.0})

@@ -157,6 +157,22 @@ def behind_returns(s, n, m, out):
         return 0
     return s.list[n]
 
+def behind_one_return(s, n, m, out):
+    if m > 2:
+        n = 0
+    else:
+        if n > 3:
+            return 0
+    return s.list[n]
+
+def behind_the_other(s, n, m, out):
+    if m > 2:
+        if n > 3:
+            return 0
+    else:
+        n = 0
+    return s.list[n]
+
 def behind_break(s, n, m, out):
     for i in range(8):
         if i == m:
@@ -264,8 +280,9 @@ def test_what_is_not_come_to_need_not_hold(name):
     assert bad.startswith(INDEX)
 
 
-def test_what_has_returned_goes_on_nowhere():
-    assert refuted("behind_returns", (0, 9)) == set()
+@pytest.mark.parametrize("name", ["behind_returns", "behind_one_return", "behind_the_other"])
+def test_what_has_returned_goes_on_nowhere(name):
+    assert refuted(name, (0, 9)) == set()
 
 
 def test_every_field_that_leaves_its_range_is_told():

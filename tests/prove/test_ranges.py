@@ -52,6 +52,18 @@ def test_what_an_operation_comes_to_lies_in_its_range(op):
             assert made.low <= found <= made.high, (op, a.low, a.high, b.low, b.high, x, y)
 
 
+@pytest.mark.parametrize("op", ["div", "mod", "shl", "shr"])
+def test_a_range_is_one_whatever_it_may_be_divided_or_shifted_by(op):
+    """And what it may be, and comes to something, lies in it."""
+    for (low, high), (b_low, b_high) in itertools.product(RANGES, RANGES):
+        terms = Terms()
+        a, b = terms.unknown("a", low, high), terms.unknown("b", b_low, b_high)
+        made = getattr(terms, OPERATIONS[op])(a, b)
+        assert made.low <= made.high
+        for x, y in itertools.product(range(low, high + 1), range(max(b_low, 1), b_high + 1)):
+            assert made.low <= KNOWN[op](x, y) <= made.high, (op, a.low, a.high, b.low, b.high)
+
+
 @pytest.mark.parametrize("op", ["add", "sub", "mul", "div", "shl", "shr"])
 def test_the_range_of_an_operation_is_no_wider_than_what_it_comes_to(op):
     for terms, a, b, values in cases(op):

@@ -14,10 +14,11 @@ OPERATIONS = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("most", [1 << 20, 3])
 @pytest.mark.parametrize("op", OPERATIONS)
-def test_the_solver_computes_as_python_does(op):
+def test_the_solver_computes_as_python_does(op, most):
     terms = Terms()
-    a, b = terms.unknown("a", -70_000, 1 << 20), terms.unknown("b", -129, 255)
+    a, b = terms.unknown("a", -70_000, most), terms.unknown("b", -129, 255)
     if op in ("div", "mod"):
         b = terms.unknown("b", 1, 255)
     elif op in ("shl", "shr"):
@@ -25,8 +26,7 @@ def test_the_solver_computes_as_python_does(op):
     made = getattr(terms, OPERATIONS[op])(a, b)
     question = Question(Formulas(), [])
     draw = random.Random(f"terms {op}")
-    for _ in range(12):
-        x = draw.choice(NUMBERS)
+    for x in dict.fromkeys(min(most, one) for one in NUMBERS):
         y = draw.randint(b.low, b.high)
         found = question.values(terms.same(a, terms.number(x)), terms.same(b, terms.number(y)))
         assert found is not None
@@ -62,6 +62,20 @@ def test_ranges_decide_what_they_can():
     assert terms.pick(c, terms.pick(c, a, b), b) is terms.pick(c, a, b)
 
 
+def test_what_is_compared_has_one_form_whichever_stands_first():
+    """And what is picked of known numbers is told by what it is picked by."""
+    terms = Terms()
+    a, b = terms.unknown("a", 0, 9), terms.unknown("b", 0, 9)
+    three, four = terms.number(3), terms.number(4)
+    if_ = terms.less(a, b)
+    one = terms.pick(if_, three, four)
+    for same in (terms.same, lambda x, y: terms.same(y, x)):
+        assert same(a, b).args == (a, b)
+        assert same(a, three).args == (a, three)
+        assert same(one, three) is if_
+        assert same(one, four) is terms.negated(if_)
+
+
 @pytest.mark.parametrize(("low", "high"), [
     (1, 4), (-3, 3), (0, 5), (2, 9), (-4, 3), (0, 7), (-1, 0), (-8, -5), (1, 2),
 ])  # fmt: skip
@@ -92,3 +106,21 @@ def test_which_of_some_truths_hold_is_told_in_their_order():
     assert [question.which([one]) for one in less] == [[False], [False], [True], [True]]
     assert question.which([]) == []
     assert question.which(less[:2]) == [False, False]
+
+
+def test_what_changes_nothing_leaves_a_term_as_it_is():
+    terms = Terms()
+    a, flag = terms.unknown("a", -5, 9), terms.unknown("f", 0, 1)
+    none, one = terms.number(0), terms.number(1)
+    for made in (terms.add(a, none), terms.add(none, a), terms.sub(a, none), terms.mul(a, one),
+                 terms.mul(one, a), terms.div(a, one)):  # fmt: skip
+        assert made is a
+    for made in (terms.sub(a, a), terms.mul(a, none), terms.mul(none, a)):
+        assert made is none
+    assert terms.mul(flag, a) is terms.mul(a, flag) is terms.pick(terms.as_truth(flag), a, none)
+    small = terms.unknown("s", 0, 7)
+    assert terms.mod(small, terms.number(8)) is small
+    assert terms.mod(small, terms.number(7)) is not small
+    assert terms.mod(a, terms.number(100)) is not a  # it may be below 0
+    assert terms.bits_and(small, terms.number(7)) is terms.bits_and(terms.number(7), small) is small
+    assert terms.bits_and(small, terms.number(3)) is not small

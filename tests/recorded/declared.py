@@ -26,6 +26,7 @@ from innervate.networks.radio.verify.grid import Grid
 from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.sizing import Question
 from innervate.networks.skin.verify.system import Budget as SkinBudget
+from innervate.papers.jobs import entries, jobs
 from innervate.running import simulating
 from innervate.scenario.declared.cables import CablesScenario
 from innervate.scenario.declared.channel import ChannelScenario
@@ -60,6 +61,8 @@ def found() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "options of commands", lambda: dict(options(app, "innervate"))
     yield "record with nothing said", lambda: record(Network("kind", "package"))
     yield "keys of plan files", partial(keys, PlanFile)
+    for job in jobs():
+        yield f"who does the job of {job}", partial(entered, job)
     yield "tables of any run", lambda: plain([told(table) for table in simulating.TABLES])
     for nodes in (1, 32, 33, 254):
         yield f"live mesh of {nodes}", partial(live, mesh_parameters, nodes)
@@ -87,6 +90,16 @@ def usual(made: Any) -> dict[str, str]:
     """What of a record holds where nothing else is said."""
     fields = dataclasses.fields(made)
     return {f.name: str(f.default) for f in fields if f.default is not dataclasses.MISSING}
+
+
+def entered(job: str) -> Any:
+    """The settings of each entry of a comparison, and about how long a run of it takes."""
+    found = {}
+    for one in entries(job):
+        run = one.measure if isinstance(one.measure, partial) else partial(one.measure)
+        made = [run.func.__qualname__, *run.args, dict(run.keywords)]
+        found[one.name] = plain([made, one.cost_s, one.does.__name__])
+    return found
 
 
 def live(parameters: Callable[..., Any], *given: Any) -> Any:

@@ -138,6 +138,8 @@ def test_pieces_of_any_length(cuts):
     assert (a["time"], b["time"]) == (4, 9)
     a, b = first([1, 2, 3, 4, 5], [1, 2, 3])
     assert (a["time"], b) == (4, None)
+    a, b = first([1, 2], [1, 2, 3])
+    assert (a, b["time"]) == (None, 3)
 
 
 @pytest.mark.parametrize("name", FIELDS)

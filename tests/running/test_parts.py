@@ -1,6 +1,7 @@
 """Where runs go, what two differ in, where code breaks, what is shown of work under way."""
 
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,6 +16,7 @@ from innervate.running.compare import Divergence, differences
 from innervate.running.exploring import named
 
 compares = sys.modules[compare.__module__]
+runs = sys.modules[compares.Run.__module__]
 RADIO = {"kind": "radio", "stations": 3, "name": "team"}
 
 
@@ -281,3 +283,39 @@ def test_in_a_cell_a_bar_is_shown_now_and_then_and_gone_in_the_end(monkeypatch):
     assert cell.shown[-1] == ("ring", 4, 0)
     bar.__exit__(None, None, None)
     assert cell.shown[-1] == {"text/plain": "", "text/html": ""}
+
+
+@pytest.mark.parametrize(("summary", "ended_us"), [
+    ({"duration_s": 1.1}, 1_100_000), ({"duration_s": 3}, 3_000_000),
+    ({"duration_s": 3, "interrupted_at_s": 1.1}, 1_100_000),
+    ({"duration_s": 3, "interrupted_at_s": 0.0}, 0),
+])  # fmt: skip
+def test_a_run_came_to_a_whole_microsecond(summary, ended_us):
+    """1e6 * 1.1 is not one."""
+    recorded = object.__new__(compares._Recorded)
+    recorded.summary, recorded.called = summary, "a run"
+    assert (recorded.ended_us, type(recorded.ended_us)) == (ended_us, int)
+    for damaged in ({}, {"duration_s": "3"}):
+        recorded.summary = damaged
+        with pytest.raises(RunError, match="a run: its summary is damaged"):
+            _ = recorded.ended_us
+
+
+@pytest.mark.parametrize("is_told", [True, False])
+def test_who_wants_to_be_told_how_far_a_run_is_is_told_and_else_a_bar_is_shown(
+    monkeypatch, is_told
+):
+    shown, told, given = [], [], []
+    bar = SimpleNamespace(simulated=lambda *now: shown.append(now))
+
+    def simulate(plan, *, progress, **how):
+        given.append(how)
+        progress(1, 2)
+
+    room = SimpleNamespace(simulate=simulate, summarize=lambda result: {})
+    monkeypatch.setattr(runs, "Bar", lambda: nullcontext(bar))
+    monkeypatch.setattr(runs, "networks", lambda: {"radio": SimpleNamespace(run=room)})
+    how = {"progress": lambda *now: told.append(now)} if is_told else {}
+    runs.run(RADIO, checks=False, received=True, **how)
+    assert (told, shown) == (([(1, 2)], []) if is_told else ([], [(1, 2)]))
+    assert given == [{"plain": False, "checks": False, "received": True}]

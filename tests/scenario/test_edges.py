@@ -2,12 +2,13 @@
 
 import os
 import re
+from types import SimpleNamespace as Of
 
 import pytest
 
 from innervate.scenario import ScenarioError, bundled, dump, from_dict, load, loads, plan
 from innervate.scenario.cables import describe
-from innervate.scenario.declared.shared import check_values
+from innervate.scenario.declared.shared import Input, check_values, inputs_of
 from innervate.scenario.events import in_time, told
 from innervate.scenario.overrides import parse_value
 from innervate.scenario.source import Source, shown
@@ -77,6 +78,22 @@ def test_an_input_is_repeated_up_to_the_end_and_not_at_it(at_s, every_s, times):
     assert [one.at_us for one in inputs] == [
         round(1e6 * (at_s + k * every_s)) for k in range(times)
     ]
+
+
+def test_what_happens_to_a_node_is_told_it_as_its_network_says():
+    """Among inputs, in order of time; what the medium does itself is none."""
+    model = Of(duration_s=4.0, input=[Of(at_s=1.0, every_s=0.0, node=None, kind=1, item={"v": 2})],
+               event=[Of(action="warm", at_s=2.5, node=0, value=9),
+                      Of(action="kill", at_s=0.2, node=0, value=0),
+                      Of(action="cool", at_s=0.5, node=1, value=4)])  # fmt: skip
+    network = Of(happenings={
+        "warm": lambda node, value: (3, {"node": node, "value": value}),
+        "cool": lambda node, value: (5, {"of": (node, value)}),
+    })  # fmt: skip
+    assert inputs_of(model, network, 2, ("kill",)) == [
+        Input(500_000, 1, 5, {"of": (1, 4)}), Input(1_000_000, 0, 1, {"v": 2}),
+        Input(1_000_000, 1, 1, {"v": 2}), Input(2_500_000, 0, 3, {"node": 0, "value": 9}),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("node", "there"), [(0, True), (3, True), (4, False), (-1, False)])

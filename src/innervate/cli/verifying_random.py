@@ -15,7 +15,7 @@ def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int
     from innervate.kernel.stop import Stop
     from innervate.running import fuzz
 
-    first, done, broken = seed or 1, 0, None
+    first, done, broken = 1 if seed is None else seed, 0, None
     with Stop() as stop, Display(as_json) as display:
         for number in numbers(first):
             display.show(f"network {number}: {done} fine so far", done, count, None)

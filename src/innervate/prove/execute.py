@@ -100,8 +100,6 @@ class Machine(Expressions):
         end = self.block(function.node.body, state, call)
         if end is not None:
             call.returned.append((end, None))
-        if not call.returned:
-            return store, terms.number(0)
         state, value = call.returned[-1]
         for before, result in reversed(call.returned[:-1]):
             value = either(terms, before.path, result, value)
@@ -178,9 +176,7 @@ class Machine(Expressions):
         under = self.terms.all(call.under, state.path)
         for taken, way in ((True, test), (False, self.terms.negated(test))):
             here = self.ways.setdefault((call.function.name, node.lineno, taken), [])
-            guard = self.terms.all(under, way)
-            if guard is not self.terms.false:
-                here.append(guard)
+            here.append(self.terms.all(under, way))
 
     def loop(self, node: ast.For, state: State, call: Call) -> State | None:
         """Unroll a loop over a range."""

@@ -57,7 +57,7 @@ def nearest(word: str, known: list[str]) -> str:
     return f"; it knows {', '.join(known)}"
 
 
-def _structs(kind: inspect.Type) -> Iterator[inspect.StructType]:
+def _structs(kind: inspect.Type | None) -> Iterator[inspect.StructType]:
     """The struct types a value of this type may have."""
     if isinstance(kind, inspect.Metadata):
         yield from _structs(kind.type)
@@ -68,7 +68,7 @@ def _structs(kind: inspect.Type) -> Iterator[inspect.StructType]:
             yield from _structs(inner)
 
 
-def _items(kind: inspect.Type, index: int) -> inspect.Type | None:
+def _items(kind: inspect.Type | None, index: int) -> inspect.Type | None:
     """Type of element `index` if the type is a list or tuple."""
     if isinstance(kind, inspect.Metadata):
         return _items(kind.type, index)
@@ -84,12 +84,10 @@ def _items(kind: inspect.Type, index: int) -> inspect.Type | None:
     return None
 
 
-def _refuse_unknown(source: Source, value: Any, kind: inspect.Type, key: Key) -> None:
+def _refuse_unknown(source: Source, value: Any, kind: inspect.Type | None, key: Key) -> None:
     if isinstance(value, list | tuple):
         for index, inner in enumerate(value):
-            item = _items(kind, index)
-            if item is not None and isinstance(inner, dict | list | tuple):
-                _refuse_unknown(source, inner, item, (*key, index))
+            _refuse_unknown(source, inner, _items(kind, index), (*key, index))
     elif isinstance(value, dict):
         for struct in _structs(kind):
             fields = {field.encode_name: field.type for field in struct.fields}
@@ -98,8 +96,7 @@ def _refuse_unknown(source: Source, value: Any, kind: inspect.Type, key: Key) ->
                     hint = nearest(name, list(fields))
                     message = f"{table_name(key)} has no key {shown(name)}{hint}"
                     raise source.error((*key, name), message)
-                if isinstance(inner, dict | list | tuple):
-                    _refuse_unknown(source, inner, fields[name], (*key, name))
+                _refuse_unknown(source, inner, fields[name], (*key, name))
 
 
 def _in_words(source: Source, raw: Any, model: type, text: str) -> ScenarioError:

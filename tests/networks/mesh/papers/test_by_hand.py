@@ -2,12 +2,24 @@
 
 from types import SimpleNamespace as Of
 
+import numpy as np
 import pytest
 
-from innervate.networks.mesh.papers import comparison, uplinks
+from innervate.networks.mesh.papers import (
+    alarms,
+    comparison,
+    gateway,
+    lossy,
+    stretch,
+    testbed,
+    uplinks,
+)
+from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, REPORT_TABLE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
+from innervate.networks.mesh.scenario.plan import Walk
 from innervate.papers.in_field import MONITOR
 from innervate.scenario.actions.field import KILL, REVIVE
+from innervate.topology import placement
 
 
 def node(depth, first, *heard):
@@ -95,3 +107,110 @@ def test_through_an_outage_messages_and_alarms_go_by_turns():
     assert {one.dest for one in messages} == set(range(1, 10))
     for some, before, after in ((messages, "peers", "peers after"), (alarms, "alarms", "after")):
         assert [one.part for one in some] == [before] * 200 + [after] * 200
+
+
+@pytest.mark.parametrize(("there", "back", "gone", "good", "is_joined"), [
+    (0, 0, [], [(0, 1)], True), (0, -1, [], [(0, 1)], False), (-1, 0, [], [(0, 1)], False),
+    (0, 0, [1], [(0, 1)], False), (0, 0, [], [], False), (0, 0, [], [(0, 2), (1, 2)], True),
+    (0, 0, [2], [(0, 2), (1, 2)], False),
+    (0, 0, [2], [(0, 1)], True),
+])  # fmt: skip
+def test_a_robot_is_joined_by_a_node_that_it_hears_and_that_hears_it(
+    there, back, gone, good, is_joined
+):
+    """Robot 3 crosses 10 m from node 1, and far from all others; 20 dB are lost on 10 m."""
+    base = [-100_000] * 16
+    least = -9_000 + 300 + 2 * 1000
+    base[3 * 4 + 1], base[1 * 4 + 3] = least + there, least + back
+    radio = Of(base_cdb=base, exponent_c=200, rssi50_cdb=-9_000)
+    plan = Of(radio=radio, nodes=4, walks=[Walk(3, ((0, 0, 0), (10, 10_000, 0)))], good=good,
+              positions_cm=[(90_000, 0), (5_000, 1_000), (90_000, 9), (0, 0)])  # fmt: skip
+    assert alarms._joined(plan, gone, 5) == is_joined
+
+
+def test_ways_by_tables_are_counted_against_the_shortest(monkeypatch):
+    """A line 0-1-2-3 and a node apart; 1 sends what is for 3 back to 0, 3 has no table."""
+    loud = [-16_000] * 25
+    for a, b in ((0, 1), (1, 2), (2, 3)):
+        loud[5 * a + b] = loud[5 * b + a] = -9_050
+    loud[5 * 0 + 2], loud[5 * 2 + 0] = -9_000, -9_051  # too faint one way
+    none = stretch.NONE
+    tables = {
+        "next": [[none, 1, 1, 1, none], [0, none, 2, 0, none], [1, 1, none, 3, none], [none] * 5,
+                 [none] * 5],
+        "alt": [[none, 2, 2, none, none], [none] * 5, [none, 3, none, 1, none], [none] * 5,
+                [none] * 5],
+    }  # fmt: skip
+    plan = Of(nodes=5, radio=Of(rssi_cdb=loud), params={"min_rssi": -90})
+    run = Of(plan=plan)
+    monkeypatch.setattr(stretch, "row_of", lambda result, node, name: tables[name][node])
+    found = stretch.measure(Of(run=lambda seed: run), 1)
+    assert found == {"stretch": 1.0, "p99": 1.0, "pairs": 12, "broken": 5, "bare": 5,
+                     "kinds": [1, 1, 2, 5]}  # fmt: skip
+
+
+def test_a_message_that_two_gateways_were_given_is_counted():
+    rows = [(DATA, 5, 1, 0), (DATA, 5, 1, 1), (DATA, 5, 2, 1), (DATA, 6, 1, 0), (DATA, 6, 1, 0),
+            (DATA + 1, 7, 1, 0), (DATA + 1, 7, 1, 1)]  # fmt: skip
+    kinds = [(name, np.int64) for name in ("kind", "origin", "seq", "node")]
+    assert gateway._at_both(Of(delivered=np.array(rows, kinds))) == 1
+    assert gateway._at_both(Of(delivered=np.array(rows[1:], kinds))) == 0
+
+
+@pytest.mark.parametrize(("dead", "every_s", "senders"), [((0,), 10, 4), ((0, 1), 10, 3)])
+def test_all_who_live_write_to_the_gateway_and_to_one_another(dead, every_s, senders):
+    plan = Of(seed=3, nodes=5, offers=[])
+    dies_us = 25_000_000
+    gateway._send(plan, gateway.Setting("", (1,), dead, every_s), dies_us)
+    spans = (10 + 60) // every_s
+    assert len(plan.offers) == 2 * senders * spans
+    assert plan.offers == sorted(plan.offers, key=lambda offer: offer.at_us)
+    live = set(range(5)) - set(dead)
+    for flow in (0, 1):
+        mine = [offer for offer in plan.offers if offer.flow == flow]
+        assert {offer.node for offer in mine} == live
+        assert {(offer.at_us - 15_000_000) // 10_000_000 for offer in mine} == set(range(spans))
+        wanted = {gateway.MONITOR} if flow == 0 else live
+        assert {offer.dest for offer in mine} == wanted
+        assert all(offer.dest != offer.node for offer in mine)
+    silent = Of(seed=3, nodes=5, offers=[])
+    gateway._send(silent, gateway.SILENT, dies_us)
+    assert silent.offers == []
+
+
+def test_good_links_lose_so_many_frames_and_others_are_none():
+    radio = Of(prob_q15=[7] * 9, rssi_cdb=[-5_000] * 9)
+    lossy._soften(Of(radio=radio, nodes=3, good=[(0, 2)]), 5)
+    some, none = 32_768 - 32_768 * 5 // 100, placement.UNHEARD
+    assert radio.prob_q15 == [0, 0, some, 0, 0, 0, some, 0, 0]
+    assert radio.rssi_cdb == [none, none, -5_000, none, none, none, -5_000, none, none]
+
+
+def test_wrong_entries_lead_away_or_nowhere(monkeypatch):
+    """On a line 0-1-2 two of six: 2's to 0, and 0's to 2."""
+    none = lossy.NONE
+    tables = [[none, 1, none], [0, none, 2], [2, 1, none]]
+    near = Of(near_at=lambda at_us: [[1], [0, 2], [1]])
+    monkeypatch.setattr(lossy, "Ground", lambda plan: near)
+    monkeypatch.setattr(lossy, "row_of", lambda result, node, name: tables[node])
+    assert lossy._wrong(Of(plan=Of(nodes=3), ended_us=9)) == pytest.approx(2 / 6)
+
+
+def test_tables_that_come_again_are_those_after_the_first():
+    codes = [REPORT_TABLE, REPORT_TABLE, REPORT_TABLE + 1, REPORT_TABLE]
+    rows = np.array([*zip(codes, [7_999_999, 8_000_000, 9_000_000, 9_000_000], strict=True)],
+                    [("code", np.int64), ("time", np.int64)])  # fmt: skip
+    assert lossy._again(Of(rows=rows)) == 2
+
+
+@pytest.mark.parametrize(("reliable", "flags"), [(1, END_TO_END), (0, 0)])
+def test_everyone_sends_anywhere_in_each_span(reliable, flags):
+    plan = Of(seed=2, nodes=4, offers=[], params={"reliable": reliable})
+    testbed.send_anywhere(plan, 8, 68, 2)
+    assert len(plan.offers) == 4 * 30
+    spans = {(offer.node, (offer.at_us - 8_000_000) // 2_000_000) for offer in plan.offers}
+    assert spans == {(node, span) for node in range(4) for span in range(30)}
+    assert plan.offers == sorted(plan.offers, key=lambda offer: offer.at_us)
+    ways = {(offer.node, offer.dest) for offer in plan.offers}
+    assert ways == {(a, b) for a in range(4) for b in range(4) if a != b}
+    assert {(offer.flags, offer.flow) for offer in plan.offers} == {(flags, 0)}

@@ -165,3 +165,24 @@ def test_a_legend_has_what_the_map_shows():
     assert words(calm, [], [hop(5, ALL, True)])[-1] == "flooded it"
     bare = result_of(robot=[], fence=None, standby=[], event=[])
     assert words(bare, [], []) == ["gateway", "good link between nodes that stay"]
+
+
+def test_room_for_names_is_where_no_node_and_no_ring_is(monkeypatch):
+    """Those with a part are named first, and whoever has one or a ring at some distance."""
+    monkeypatch.setattr(mesh_map, "roles", lambda plan: {0: "", 1: "gateway", 2: ""})
+    blocked, put, drawn = [], [], []
+    names = SimpleNamespace(
+        block=lambda *given: blocked.append(given),
+        put=lambda at, words, gap, strong: put.append((at, words, gap, strong)) or (at, "end"),
+    )
+    drawing = SimpleNamespace(text=lambda *given: drawn.append(given))
+    monkeypatch.setattr(mesh_map, "symbol", lambda *given: None)
+    plan = SimpleNamespace(nodes=3, names=["a", "b", "c"])
+    places = {0: (1, 1), 1: (2, 2), 2: (3, 3)}
+    field = mesh_map.Field(drawing, plan, SimpleNamespace(dot=5.0), names, [True] * 3)
+    mesh_map.nodes(field, places, ringed=[2])
+    assert blocked == [((1, 1), 7.0), ((2, 2), 7.0), ((3, 3), 9.0)]
+    assert put == [((2, 2), "b gateway", 14.0, True), ((1, 1), "a", 9.0, False),
+                   ((3, 3), "c", 14.0, False)]  # fmt: skip
+    assert drawn == [((2, 2), "b gateway", "small strong", "end"), ((1, 1), "a", "small", "end"),
+                     ((3, 3), "c", "small", "end")]  # fmt: skip

@@ -1,6 +1,8 @@
 """Fences, names and walks of a mesh, from tables that are written here."""
 
 import itertools
+import re
+from contextlib import nullcontext
 from types import SimpleNamespace as Of
 
 import pytest
@@ -8,7 +10,7 @@ import pytest
 import innervate
 from innervate.networks.mesh.protocol.fields import POINTS
 from innervate.networks.mesh.scenario import fence as fences
-from innervate.networks.mesh.scenario import robots
+from innervate.networks.mesh.scenario import params, robots
 from innervate.networks.mesh.scenario.model import FenceTable, RobotTable
 from innervate.networks.mesh.scenario.nodes import (
     Nodes,
@@ -272,3 +274,35 @@ def test_a_robot_without_a_place_is_refused():
     assert walked(points=[(5, 6)]) == [(0, 5, 6)]
     with pytest.raises(ScenarioError, match="changes its way more than 100,000 times"):
         walked(random=True, area=(0.0, 0.0, 0.01, 0.01), speed_mps=100.0)
+
+
+@pytest.mark.parametrize(("name", "value", "says"), [
+    ("mtu", 1201, "mtu:protocol.mtu is out of range; it can be 64 to 1200 bytes"),
+    ("e2e_tries", 16, "e2e_tries:protocol.e2e_tries is out of range; it can be 0 to 15 tries"),
+    ("jitter_us", -1, "jitter_s:protocol.jitter_s is out of range; it can be 0 to 16777215 us"),
+    ("job_us", 0, "table_retry_s:protocol.table_retry_s is out of range; it can be 1 to 67108863 "),
+    ("job_tries", 16, "table_tries:protocol.table_tries is out of range; it can be 0 to 15 tries"),
+    ("faint", 128, "min_rssi_dbm:protocol.min_rssi_dbm is out of range; it can be -128 to 127 dBm"),
+    ("tick_us", 999, "beacon_s:protocol.beacon_s is out of range; it can be 1000 to 16777215 us"),
+    ("period", 0, "period_s:protocol.period_s is out of range; it can be at most 32767.5 s at this "
+     "protocol.beacon_s"),
+    ("dead_step", -1, "dead_step_s:protocol.dead_step_s is out of range; it can be at most 32767.5 "
+     "s at this protocol.beacon_s"),
+    ("forget", 256, "forget_s:protocol.forget_s is out of range; it can be at most 127.5 s at this "
+     "protocol.beacon_s"),
+    ("period_max", 9, "period_max_s:protocol.period_max_s is below period_s; make it as long or "
+     "longer"),
+    ("period_max", 10, ""), ("collect_us", 1_000_001, ""),
+    ("collect_us", 1_000_000, "collect_s:protocol.collect_s must be more than listen_s, 1 s: "
+     "before that nobody responds"),
+])  # fmt: skip
+def test_what_is_out_of_range_is_told_by_the_key_that_a_scenario_has(name, value, says):
+    fine = {one: low for one, _, low, *_ in params.PARAMS} | {
+        "tick_us": 500_000, "period": 10, "period_max": 20, "listen_us": 1_000_000,
+        "collect_us": 2_000_000,
+    }  # fmt: skip
+    params._check(fine)
+    with pytest.raises(ValueError, match=re.escape(says)) if says else nullcontext():
+        params._check(fine | {name: value})
+    alone = fine | {"collect_us": 1_000_000, "discovery": params.w.EACH}
+    params._check(alone)  # who answers at once has nothing to collect

@@ -3,14 +3,17 @@
 import pytest
 
 from innervate.dialect import plain
-from innervate.dialect.access import CLOCK, PACKET
+from innervate.dialect.access import CLOCK, FORCE, PACKET
 from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import DELIVER
+from innervate.dialect.outbox import SEND as SEND_IT
 from innervate.dialect.rng import seeded
-from innervate.networks.radio.baselines import passing
+from innervate.networks.radio.baselines import passing, tree
 from innervate.networks.radio.baselines import station as entry
 from innervate.networks.radio.baselines.common import LISTEN, SEND
 from innervate.networks.radio.baselines.fields import BASELINE
 from innervate.networks.radio.protocol import fields
+from innervate.networks.radio.protocol.station import enqueue
 from innervate.networks.radio.scenario.baselines import NUMBERS
 
 Station = plain.make("Station", fields.STATION, BASELINE)
@@ -50,9 +53,10 @@ def test_a_slot_began_so_long_ago_as_the_clock_says(mac):
     assert (station.mark, station.step) == (970, 3)
 
 
+@pytest.mark.parametrize("kind", [PACKET, FORCE])
 @pytest.mark.parametrize("mac", ["csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "dcf"])
-def test_a_packet_for_an_idle_channel_is_sent_at_once_whatever_was_waited_for_before(mac):
-    station = Alone(mac, open=1, due=9000).given(5000, PACKET, slots=5)
+def test_a_packet_for_an_idle_channel_is_sent_at_once_whatever_was_waited_for_before(mac, kind):
+    station = Alone(mac, open=1, due=9000).given(5000, kind, slots=5)
     assert (station.mode, station.start) == (SEND, 5020)
     waiting = Alone(mac, open=0, due=9000).given(5000, PACKET, slots=5)
     assert (waiting.mode, waiting.queued) == (LISTEN, 1)
@@ -66,6 +70,27 @@ def test_only_who_throws_dice_stops_waiting_when_a_carrier_comes(mac, armed):
     alone.given(1000, CLOCK, handle=0, ago=0)
     assert alone.given(1010, PACKET, slots=5).armed == 1
     assert alone.carrier(1020, 1).armed == armed
+
+
+@pytest.mark.parametrize("mac", NUMBERS)
+def test_a_turn_that_a_frame_names_is_taken_where_turns_are_handed_on(mac):
+    """By whom it is for; a packet in the frame is handed up, whatever the protocol."""
+    has_turns = mac in ("token-ring", "polling")
+    item = Item()
+    item.slots = 5
+    for span, count in ((3, 0), (3, 1), (4, 1)):
+        alone = Alone(mac, decoded=0, heard=0)
+        enqueue(alone.station, item, alone.out)
+        before = alone.out.count[0]
+        frame = plain.make("Frame", fields.FRAME)()
+        frame.span, frame.count = span, count
+        entry.on_frame(alone.station, alone.params, 1_000, 0, frame, alone.out)
+        assert (alone.station.decoded, alone.station.heard) == (1, tree.READ)
+        takes = has_turns and span == 3
+        assert (alone.station.mode == SEND) == takes
+        kinds = [alone.out.action[k].kind for k in range(before, alone.out.count[0])]
+        assert kinds.count(DELIVER) == count
+        assert (SEND_IT in kinds) == takes
 
 
 @pytest.mark.parametrize(("queued", "most", "count"), [(0, 2, 0), (1, 0, 0), (1, 2, 1)])

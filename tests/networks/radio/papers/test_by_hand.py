@@ -1,9 +1,11 @@
 """Plans and curves that figures of the radio are made of."""
 
+from types import SimpleNamespace as Of
+
 import numpy as np
 import pytest
 
-from innervate.networks.radio.papers import common, delay
+from innervate.networks.radio.papers import common, delay, fairness, members
 from innervate.plot import style
 
 
@@ -56,3 +58,48 @@ def test_spread_is_from_5_to_95_of_100_runs(draw):
         corners = [path.vertices for shape in ax.collections for path in shape.get_paths()]
     heights = {round(y, 6) for part in corners for x, y in part if x in (3, 7)}
     assert heights == {5.0, 50.0, 95.0, 950.0}
+
+
+@pytest.mark.parametrize(("least", "most"), [(1, 60.0), (0, 900.0)])
+def test_who_got_nothing_has_waited_all_the_time(monkeypatch, least, most):
+    """Percentiles are over the packets of all runs, indices means over the runs."""
+    made = [
+        Of(elapsed_slots=900.0, successes=[4, least], delay_slots=np.array([10.0, 20.0, 60.0]),
+           jain_round=0.5, order=[0, 1, 2, 0, 1, 2]),
+        Of(elapsed_slots=5000.0, successes=[3, 3], delay_slots=np.array([30.0]), jain_round=0.9,
+           order=[0, 1, 0, 0]),
+        Of(elapsed_slots=70.0, successes=[2, 1], delay_slots=np.array([40.0]), jain_round=1.0,
+           order=[0, 1, 0, 1]),
+    ]  # fmt: skip
+    asked = []
+
+    def slotted(*given, seed, **more):
+        asked.append((given, more))
+        return made[seed - 1]
+
+    monkeypatch.setattr(fairness, "seeds", lambda quick: range(1, 4))
+    monkeypatch.setattr(fairness, "slotted", slotted)
+    found = fairness.waits("dcf", 0.4, True)
+    assert found["delay"] == [*np.percentile([10, 20, 60, 30, 40], fairness.SHARES), most]
+    assert found["jain_round"] == pytest.approx(0.8)
+    assert found["longest"] == pytest.approx((1 + 0.5 + 1) / 3)
+    usual = {"packets": fairness.packets(True), "load": 0.4}
+    assert asked == [(("dcf", fairness.N, fairness.SIZE, "poisson"), usual)] * 3
+    asked.clear()
+    fairness.waits("dcf", None, True)
+    assert {given[3] for given, _ in asked} == {"saturated"}
+
+
+def test_moments_at_which_another_loses_a_packet_are_drawn_hollow():
+    found = {"at_us": [0.0, 1000.0, 2000.0, 3000.0], "lost": [0.0, 1.0, 0.0, -1.0],
+             "left": [0.0, 0.0, 2.0, 0.0], "extra": [1.0, 2.0, 3.0, 4.0]}  # fmt: skip
+    with style.house():
+        _, (ax,) = style.panels(1, 1)
+        members._dots(ax, found, "paper")
+        fine, bad = ax.get_lines()
+        members._dots(ax, found | {"lost": [0.0] * 4, "left": [0.0] * 4}, "paper")
+        (other,) = ax.get_lines()[2:]
+    assert (fine.get_xdata().tolist(), fine.get_ydata().tolist()) == ([0.0, 3.0], [1.0, 4.0])
+    assert (bad.get_xdata().tolist(), bad.get_ydata().tolist()) == ([1.0, 2.0], [2.0, 3.0])
+    assert bad.get_markerfacecolor() == "none"
+    assert other.get_xdata().tolist() == [0.0, 1.0, 2.0, 3.0]

@@ -1,5 +1,6 @@
 """What a report says of a radio run in sentences, of figures that are written here."""
 
+import re
 from types import SimpleNamespace as Of
 
 import numpy as np
@@ -89,3 +90,57 @@ def test_what_is_said_of_the_slotted_level(monkeypatch, kind, delivered, said):
                "delivered": delivered, "throughput": 0.5, "duration_slots": 123.46, "jain": 1.0,
                "collisions": 0}  # fmt: skip
     assert f"<p>{said}</p>" in slotted_report.top(run, summary)
+
+
+def summary_of(**changes):
+    return {"throughput": 0.5, "delay_slots": {"p50": 8.5, "p99": 131.0}, "jain": 0.25,
+            "collisions": 1_200, "wall_s": 0.5, "events": 1_000, **changes}  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "left_out"), [
+    ({}, 0), ({"throughput": None}, 1), ({"jain": None}, 1),
+    ({"delay_slots": {"p50": None, "p99": None}}, 2),
+])  # fmt: skip
+def test_figures_are_of_what_is_known(changes, left_out):
+    found = report._figures(run_of(), summary_of(**changes))
+    assert len(found) == 6 - left_out
+    assert found[-1][1].startswith("to simulate 2 s, ")
+    assert found[-2] == ("1,200", "collisions")
+
+
+def test_figures_are_in_their_order():
+    found = report._figures(run_of(), summary_of())
+    assert [one for one, _ in found[:4]] == ["50.0 %", "8.5 slots", "131 slots", "0.250"]
+    assert found[1][1] == "median delay, 1.77 ms"  # 8.5 slots of 208 us
+
+
+def test_what_happens_in_a_scene_is_listed_in_order_of_time(monkeypatch):
+    """Frames begin and end, and stations report, from the scene's beginning to before its end."""
+    monkeypatch.setattr(report.told, "report_words", lambda protocol, *what: f"{protocol} {what}")
+    boxes = [
+        Of(words=Of(name="data"), collided=True, start_us=1_000, end_us=1_520, station=1),
+        Of(words=Of(name="CR-R"), collided=False, start_us=1_104, end_us=1_208, station=0),
+    ]
+    kinds = [(name, np.int64) for name in ("time", "node", "code", "a", "b")]
+    rows = np.array([(999, 0, 9, 9, 9), (1_000, 0, 1, 2, 3), (1_519, 2, 4, 5, 6),
+                     (1_520, 0, 9, 9, 9)], kinds)  # fmt: skip
+    result = Of(rows=rows, plan=Of(protocol="p"))
+    shown = Of(window=(1_000, 1_520, 896), boxes=boxes, slot_us=208)
+    found = report._listing(result, shown)
+    listed = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in found.split("<tr")[1:]]
+    assert [row for row in listed if row] == [
+        ["0.104", "0.50", "0", "p (1, 2, 3)"], ["0.104", "0.50", "1", "data (collides) begins"],
+        ["0.208", "1.00", "0", "CR-R begins"], ["0.312", "1.50", "0", "CR-R ends"],
+        ["0.623", "3.00", "2", "p (4, 5, 6)"], ["0.624", "3.00", "1", "data (collides) ends"],
+    ]  # fmt: skip
+
+
+def test_reports_and_what_became_of_frames_are_counted():
+    rows = np.array([(999, 0), (999, 1), (998, 0)], [("code", np.int64), ("b", np.int64)])
+    summary = {"frame_errors": 5, "partial": 0, "duplicates": 1}
+    found = report._reports(Of(rows=rows), summary)
+    assert re.findall(r"<td[^>]*>(.*?)</td>", found) == [
+        "frame unreadable at one receiver", "5", "report 999", "2", "report 998", "1",
+        "packet received a second time", "1"]  # fmt: skip
+    none = dict.fromkeys(summary, 0)
+    assert report._reports(Of(rows=rows[:0]), none) == ""

@@ -87,3 +87,22 @@ def test_a_sheet_is_wide_from_seven_by_five_on(monkeypatch, extent, wide):
     most = sheet.WIDE if wide else sheet.TALL
     assert made.width <= most[0] + 1e-6
     assert made.height <= most[1] + 1e-6
+
+
+@pytest.mark.parametrize(("interfaces", "fills"), [
+    (1, ["bar", "bar"]), (2, ["p0", "p1"]), (8, ["p0", "p1"]), (9, ["bar", "bar"]),
+])  # fmt: skip
+def test_bars_of_ports_have_their_colours_where_cells_have_them(interfaces, fills):
+    """In cells, with the even share and how far from it they are."""
+    digest = object.__new__(Digest)
+    digest.graph = Of(interfaces=interfaces)
+    digest.summary = {"port_loads": [1_200, 300], "balance_factor": 0.64}
+    shown = digest.loads()
+    assert [bar.kind for bar in shown.bars] == fills
+    assert [(bar.name, bar.value, bar.words) for bar in shown.bars] == [
+        ("port 0", 1_200, "1,200 cells"), ("port 1", 300, "300 cells")]  # fmt: skip
+    assert (shown.text, shown.even) == ("Balance factor 0.640; 1 is even.", 750.0)
+    digest.summary = {"port_loads": [9], "balance_factor": None}
+    assert (digest.loads().text, digest.loads().even) == ("", None)
+    digest.summary = {"port_loads": []}
+    assert digest.loads() is None

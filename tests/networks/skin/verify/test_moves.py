@@ -206,6 +206,15 @@ def test_a_tick_takes_in_as_many_frames_as_it_is_said_to():
         assert tiny.port(1, 0)[:2] == [GOOD, *TWO][variant][:2]
 
 
+def test_the_pcs_period_takes_in_as_many_frames_as_it_is_said_to():
+    for variant in range(3):
+        tiny = whole(faults={}, counts=2, **PERIODIC).pc(PC_SQ=30, PC_FLAGS=1)
+        tiny.queue(0, PC, *TWO)
+        assert tiny.ways(PC_TICK) == 3
+        tiny.step(PC_TICK, variant=variant)
+        assert tiny.queue(0, PC) == TWO[variant:]
+
+
 def test_a_ticks_beacons_go_out_over_cables_that_are_up():
     for is_cut in (False, True):
         tiny = whole()
