@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.live.contact import ANSWERED, OLD_US, Answer, Contact
+from innervate.live.contact import ANSWERED, KEY_BYTES, MAC_BYTES, OLD_US, Answer, Contact
 from innervate.live.engine import clock_us
 from innervate.live.identity import revoke
 from innervate.live.keyring import About, read_about
@@ -88,6 +88,23 @@ async def test_who_has_been_heard_stays_when_an_answer_is_forgotten():
     assert contact.session_of(77) is None
     assert contact.session_of(known[0].own) is known[0]
     assert len(contact._answered) == ANSWERED
+
+
+@pytest.mark.parametrize(("key", "length", "marked", "said"), [
+    (1, 0, True, ""), (1, 1, True, ""), (1, -1, True, "wrong key or damaged"),
+    (1, 0, False, "wrong key or damaged"), (2, 0, True, "unknown key"),
+])  # fmt: skip
+def test_a_first_message_that_was_answered_is_answered_the_same_again(key, length, marked, said):
+    """Whatever else is in it: it has a key of its own, and a mark."""
+    contact = object.__new__(Contact)
+    sent, own = [], bytes(range(KEY_BYTES))
+    ring = SimpleNamespace(keys={1: b""}, is_marked=lambda number, data: marked)
+    contact.sealer = SimpleNamespace(ring=ring)
+    contact.send = sent.append
+    contact._answered = {own: Answer(b"reply", 3, None, None, 1)}
+    data = (bytes((1,)) + own + bytes(MAC_BYTES + 1))[: 1 + KEY_BYTES + MAC_BYTES + length]
+    assert contact._first(data, key) == said
+    assert sent == ([] if said else [b"reply"])
 
 
 class Repeating(Machine):

@@ -106,3 +106,16 @@ def test_a_broken_mesh_is_made_small():
     assert found.tables["nodes"] < 15
     assert [flow["count"] for flow in found.tables["flow"]] == [1]
     assert found.tables["duration_s"] < 2 * found.tables["event"][0]["at_s"] + 2
+
+
+def test_an_event_of_a_drawn_skin_is_of_a_cable_only_where_there_are_some():
+    drawn = [skin_fuzz._skin_event(random.Random(seed), 2.0, *size) for seed in range(300)
+             for size in ((1, 1, False), (3, 2, True))]  # fmt: skip
+    alone, several = drawn[::2], drawn[1::2]
+    assert {"cell", "interface"} <= {key for event in alone for key in event}
+    assert not [event for event in alone if "link" in event]
+    links = [event["link"] for event in several if "link" in event]
+    assert len(links) > 50
+    for a, b in links:
+        assert abs(a["row"] - b["row"]) + abs(a["column"] - b["column"]) == 1
+    assert all(0.1 <= event["at_s"] <= 1.8 for event in drawn)

@@ -6,6 +6,7 @@ import pytest
 
 from innervate.network import networks
 from innervate.networks.mesh.prove import theories
+from innervate.networks.mesh.prove import twins as mesh_twins
 from innervate.networks.mesh.prove.twins import twins
 from innervate.prove.faults import faults_of, hunt
 from innervate.prove.theory import prove
@@ -43,6 +44,19 @@ def test_drawn_calls_leave_the_same_state():
     assert [one.calls(300, 1) for one in twins()] == ["", ""]
     fault = next(one for one in faults_of(MESH) if one.name == "what is behind is not noted")
     assert "in the formula" in twins((fault.old, fault.new))[0].calls(4_000, 1)
+
+
+def test_a_formula_has_what_its_function_reads_and_no_path_or_body(monkeypatch):
+    made = []
+    monkeypatch.setattr(mesh_twins, "twin", lambda *given: made.append(given))
+    mesh_twins.twins()
+    (_, accept, _, one, _), (_, record, _, other, _) = made
+    assert (accept, record) == ("accept", "record_packet")
+    names = {name: {field[0] for field in fields} for name, fields in (one | other).items()}
+    assert names["params"] == {"forget"}
+    assert {"kind", "origin", "seq"} <= names["frame"]
+    assert not {"path", "body"} & names["frame"]
+    assert all(name.startswith(("done_", "skip_")) for name in names["node"])
 
 
 @pytest.mark.slow

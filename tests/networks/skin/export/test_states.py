@@ -24,6 +24,9 @@ def test_a_skin_step_by_step():
         "outages": pl.DataFrame({"time_us": [99_999], "unrouted": [2], "cut_off": [1]}),
         "received": pl.DataFrame(sample | {f"force_{i}": [i * 100] for i in range(3)}),
     }
+    first = States(made, tables, 100_000)
+    assert (first.parent, first.force, first.proximity) == ([-1, -1], [0, 0], [0, 0])
+    assert (first.known(0), first.unrouted, first.cut_off) == ([False, False], 0, 0)
     seen = [
         (at, [*here.force], [*here.proximity], here.known(at), here.hops, here.unrouted)
         for at, here in States(made, tables, 100_000).snapshots()
