@@ -88,7 +88,7 @@ class Choice:
             return 1
         if folder == ("recorded",):
             name = test.stem.removeprefix("test_")
-            is_first = name in {"named", *(RECORDED.get(part) for part in inside.parts[:-1])}
+            is_first = name in {RECORDED.get(part) for part in inside.parts[:-1]}
             return 2 if is_first else 4 if name == "kept" else 6
         if is_beside or steps <= STEPS_MAX:
             return 3 if is_beside else 3 + steps

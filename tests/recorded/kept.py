@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.recorded import declared, files, named, plans, simulated, wire
+from tests.recorded import declared, files, plans, simulated, wire
 from tests.recorded.data import tidy
 from tests.recorded.record import differences
 
@@ -23,12 +23,10 @@ FOLDER = Path(__file__).resolve().parent / "kept"
 SUBJECTS = {
     "plans": plans.found,
     "declared": declared.found,
-    "named": named.found,
     "wire": wire.found,
     "files": files.found,
     "simulated": simulated.found,
 }
-GROWS = {"named"}  # of which some may be new, and some gone, while the others are as they were
 
 
 @cache
@@ -47,11 +45,7 @@ def kept(subject: str) -> dict[str, Any]:
 def compared(subject: str, name: str) -> list[str]:
     """What differs from what was recorded, one line each: key, was, is."""
     found = json.loads(json.dumps(measures(subject)[name]()))
-    before = kept(subject).get(name, "(nothing)")
-    if subject in GROWS:
-        before, found = ({key: one[key] for key in before if key in found}
-                         for one in (before, found))  # fmt: skip
-    return differences(name, before, found)
+    return differences(name, kept(subject).get(name, "(nothing)"), found)
 
 
 def main() -> int:

@@ -9,11 +9,10 @@ from innervate.network import networks
 from tests.recorded import declared, kept
 from tests.recorded.data import plain, shortened, tidy
 
-SUBJECTS = [subject for subject in kept.SUBJECTS if subject != "named"]  # test_named.py
-EVERYTHING = [(subject, name) for subject in SUBJECTS for name in kept.measures(subject)]
+EVERYTHING = [(subject, name) for subject in kept.SUBJECTS for name in kept.measures(subject)]
 
 
-@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("subject", kept.SUBJECTS)
 def test_everything_is_kept(subject):
     assert list(kept.kept(subject)) == list(kept.measures(subject))
 
