@@ -56,8 +56,7 @@ def executed(script: Path, folder: Path, kernel: Any = None) -> Any:
     """
     made = notebook(script)
     if kernel is not None:
-        # Its own folder first: the one that it was in may be gone.
-        forget = f"import os\nos.chdir({str(folder)!r})\n%reset -f"
+        forget = f"%reset -f\nimport os\nos.chdir({str(folder)!r})\ndel os"
         made.cells.insert(0, nbformat.v4.new_code_cell(forget))
     where = {"metadata": {"path": str(folder)}}
     NotebookClient(made, km=kernel, timeout=300, resources=where, coalesce_streams=True).execute()

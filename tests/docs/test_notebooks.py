@@ -61,8 +61,9 @@ def shown(notebook):
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=STEMS)
-def test_the_notebook_runs_in_jupyter_and_shows_what_it_showed(script, tmp_path, kernel):
-    fresh = notebooks.executed(script, tmp_path, kernel)
+def test_the_notebook_runs_in_jupyter_and_shows_what_it_showed(script, tmp_path_factory, kernel):
+    # Not tmp_path, which is gone with the test: what the kernel has started stays in its folder.
+    fresh = notebooks.executed(script, tmp_path_factory.mktemp("notebook"), kernel)
     assert said(fresh) == said(kept(script))
     assert shown(fresh) == shown(kept(script))
 
