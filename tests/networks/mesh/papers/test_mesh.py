@@ -2,7 +2,6 @@
 
 import re
 
-import matplotlib.image
 import numpy as np
 import pytest
 
@@ -22,6 +21,7 @@ from innervate.papers.experiment import FAILS, HOLDS, Measured
 from innervate.plot import style
 from tests.fixtures.papers import read
 from tests.networks.mesh.papers.test_edges import results
+from tests.plot.ink import measured
 from tests.plot.labels import covered, legends_over_panels, over_panels
 from tests.plot.self_contained import check_paper
 
@@ -71,11 +71,9 @@ MUST_FAIL = (
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_is_drawn(mesh_made, name):
-    picture = matplotlib.image.imread(mesh_made.folder / f"{name}.png")
-    height, width = picture.shape[:2]
+    (width, height), ink = measured(mesh_made.folder / f"{name}.png")
     assert width >= 1000
     assert 0.3 < height / width < 1.5
-    ink = (picture[..., :3].min(axis=2) < 0.9).mean()
     assert 0.01 < ink < 0.6
 
 

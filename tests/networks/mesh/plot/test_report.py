@@ -1,7 +1,6 @@
 import re
 from types import SimpleNamespace
 
-import matplotlib.image
 import pytest
 
 from innervate import run
@@ -13,6 +12,7 @@ from innervate.networks.mesh.plot import report as mesh_report
 from innervate.networks.mesh.plot.sheet import Labels, Sheet
 from innervate.plot import style
 from tests.networks.mesh.tables_runs import mesh_tables, without_fence
+from tests.plot.ink import measured
 
 
 @pytest.fixture(scope="module")
@@ -133,8 +133,8 @@ def test_each_figure_draws(which, figure, request, tmp_path):
     made = mesh_figures.draw(request.getfixturevalue(which), figure)
     with style.house():
         style.save(made, tmp_path, figure)
-    picture = matplotlib.image.imread(tmp_path / f"{figure}.png")
-    assert 0.003 < (picture[..., :3].min(axis=2) < 0.97).mean() < 0.97
+    _, ink = measured(tmp_path / f"{figure}.png", 0.97)
+    assert 0.003 < ink < 0.97
 
 
 def test_an_unknown_figure_is_refused(plain):

@@ -2,7 +2,6 @@
 
 import re
 
-import matplotlib.image
 import numpy as np
 import pytest
 
@@ -13,6 +12,7 @@ from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS
 from innervate.papers.words import spans
 from tests.fixtures.papers import made_of_rows
+from tests.plot.ink import measured
 from tests.plot.labels import covered
 from tests.plot.self_contained import check_paper
 
@@ -60,11 +60,9 @@ MUST_FAIL = (
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_is_drawn(radio_made, name):
-    picture = matplotlib.image.imread(radio_made.folder / f"{name}.png")
-    height, width = picture.shape[:2]
+    (width, height), ink = measured(radio_made.folder / f"{name}.png")
     assert width >= 1000
     assert 0.3 < height / width < 1.5
-    ink = (picture[..., :3].min(axis=2) < 0.9).mean()
     assert 0.01 < ink < 0.6
     assert (radio_made.folder / f"{name}.svg").read_text().startswith("<?xml")
 

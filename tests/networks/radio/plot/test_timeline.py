@@ -1,6 +1,5 @@
 from types import SimpleNamespace
 
-import matplotlib.image
 import pytest
 
 from innervate import scenario
@@ -26,6 +25,7 @@ from innervate.plot import page, style
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from tests.networks.radio.runs import START_US, run
 from tests.networks.skin.plot.test_report import read
+from tests.plot.ink import measured
 
 FAULTS = [
     RadioFault(50_000, KILL, 1, 0, 0), RadioFault(60_000, GARBLE, 2, 1, 1),
@@ -201,8 +201,8 @@ def test_each_figure_draws(runs, name, figure, tmp_path):
     made = radio_figures.draw(SimpleNamespace(result=runs[name]), figure)
     with style.house():
         style.save(made, tmp_path, figure)
-    picture = matplotlib.image.imread(tmp_path / f"{figure}.png")
-    assert 0.003 < (picture[..., :3].min(axis=2) < 0.97).mean() < 0.97
+    _, ink = measured(tmp_path / f"{figure}.png", 0.97)
+    assert 0.003 < ink < 0.97
 
 
 def test_an_unknown_figure_is_refused(runs):

@@ -1,6 +1,5 @@
 import re
 
-import matplotlib.image
 import numpy as np
 import pytest
 
@@ -8,6 +7,7 @@ from innervate.networks.skin.papers import FIGURES, experiment
 from innervate.papers.experiment import FAILS, HOLDS, reading
 from innervate.plot import style
 from tests.fixtures.papers import CHEAP
+from tests.plot.ink import measured
 from tests.plot.labels import covered, noted
 from tests.plot.self_contained import check_paper
 
@@ -16,11 +16,9 @@ VERDICT = re.compile(r"holds|does not hold|holds with reading [EF]\d+(, [EF]\d+)
 
 @pytest.mark.parametrize("name", CHEAP)
 def test_a_figure_is_drawn(made, name):
-    picture = matplotlib.image.imread(made.folder / f"{name}.png")
-    height, width = picture.shape[:2]
+    (width, height), ink = measured(made.folder / f"{name}.png")
     assert width >= 1000
     assert 0.3 < height / width < 1.5
-    ink = (picture[..., :3].min(axis=2) < 0.9).mean()
     assert 0.01 < ink < 0.6
     assert (made.folder / f"{name}.svg").read_text().startswith("<?xml")
 

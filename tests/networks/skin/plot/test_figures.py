@@ -4,13 +4,13 @@ import re
 from dataclasses import replace
 from types import SimpleNamespace
 
-import matplotlib.image
 import numpy as np
 import pytest
 
 from innervate import run
 from innervate.networks.skin.plot import figures
 from innervate.plot import style
+from tests.plot.ink import measured
 
 TABLES = {
     "kind": "skin",
@@ -42,8 +42,8 @@ def words(figure):
 def test_each_figure_draws(skin, name, tmp_path):
     made = skin.plot(name)
     style.save(made, tmp_path, name)
-    picture = matplotlib.image.imread(tmp_path / f"{name}.png")
-    assert 0.003 < (picture[..., :3].min(axis=2) < 0.9).mean() < 0.9
+    _, ink = measured(tmp_path / f"{name}.png")
+    assert 0.003 < ink < 0.9
 
 
 @pytest.mark.parametrize("name", figures.FIGURES)
