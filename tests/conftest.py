@@ -29,7 +29,7 @@ NEEDS = {
 
 # What a worker has gathered stays to its end, and is not looked through again for what is in use:
 # that took a fifteenth of all time, and of livesim's runs at the end of a long day half.
-gc.set_threshold(20_000, 20, 20)
+gc.set_threshold(100_000, 20, 20)
 
 
 def pytest_configure():
