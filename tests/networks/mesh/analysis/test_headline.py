@@ -175,6 +175,11 @@ def test_broadcasts_that_reached_everybody_are_said_with_what_came():
     assert "; both broadcasts reached every node that was on; all 4 nodes have" in text
 
 
+def test_where_there_is_nobody_else_no_broadcast_reached_everybody():
+    found = headline(chain([[]], []), Traffic(broadcasts=1))
+    assert (found.level, found.text) == (OK, "The only node leads.")
+
+
 def test_a_network_in_two_parts_with_a_gateway_each_is_not_well():
     halves = chain([[], [0], [3], []], [(0, 1), (2, 3)], leads=(0, 3), ends=[0, 0, 3, 3])
     assert not halves.without.any()

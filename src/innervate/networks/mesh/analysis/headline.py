@@ -71,11 +71,11 @@ def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") 
         return Headline(NO_DATA, "No node leads as gateway yet.")
     said = [*_undelivered(traffic), *_apart(ways, absent), *_twice(traffic)]
     if not said:
-        return Headline(OK, _sentence([*_came(traffic), _reached(ways)]))
+        return Headline(OK, _sentence([*_came(traffic, len(ways.on)), _reached(ways)]))
     about = np.flatnonzero(ways.without | ways.off).tolist()
     nodes = tuple(sorted({*about, *traffic.about}))
     level = DOWN if _is_down(ways, traffic) else DEGRADED
-    return Headline(level, _sentence([*said, *_came(traffic)]), nodes)
+    return Headline(level, _sentence([*said, *_came(traffic, len(ways.on))]), nodes)
 
 
 def _is_down(ways: Ways, traffic: Traffic) -> bool:
@@ -139,8 +139,8 @@ def _twice(traffic: Traffic) -> list[str]:
     return found
 
 
-def _came(traffic: Traffic) -> list[str]:
-    """What came, as far as it all did."""
+def _came(traffic: Traffic, nodes: int) -> list[str]:
+    """What came, as far as it all did; where there is nobody else, no broadcast did."""
     said = []
     if traffic.crossings and traffic.crossings == traffic.learned:
         which = _part(traffic.crossings, traffic.crossings, "crossing")
@@ -148,7 +148,7 @@ def _came(traffic: Traffic) -> list[str]:
     if traffic.decided and traffic.decided == traffic.delivered:
         which = _part(traffic.decided, traffic.decided, "message")
         said.append(f"{which} {_was(traffic.decided)} delivered")
-    if traffic.broadcasts and not traffic.partial:
+    if traffic.broadcasts and not traffic.partial and nodes > 1:
         which = _part(traffic.broadcasts, traffic.broadcasts, "broadcast")
         said.append(f"{which} reached every node that was on")
     return said
