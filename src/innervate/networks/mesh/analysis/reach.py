@@ -25,6 +25,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLES,
 )
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
+from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.sim.field.powers import CAPTURE_ONE
 from innervate.sim.field.states import ALIVE, DEAD
@@ -190,8 +191,7 @@ def carries(world: Any, plan: Any) -> Flags:
         power = np.asarray(world.power).reshape(shape)
         heard = heard * (power * CAPTURE_ONE // capture >= noise[None, :])
     acked = heard * heard.T if params["hop_acks"] else heard
-    tries = params["transmissions"] * (1 + params["e2e_tries"] * params["reliable"])
-    found: Flags = (1 - acked) ** tries <= HALF
+    found: Flags = (1 - acked) ** sent_at_most(params) <= HALF
     return found & ~np.eye(count, dtype=np.bool_)
 
 

@@ -9,6 +9,7 @@ from operator import itemgetter
 
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR
 from innervate.networks.mesh.scenario.nodes import listed
+from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk
 from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
 from innervate.topology.placement import distances, neighbours
@@ -59,7 +60,7 @@ def _at_the_end(made: MeshPlan) -> list[str]:
 def _working(made: MeshPlan) -> list[tuple[int, int]]:
     """Links over which, with all their tries, most messages come: faint ones too."""
     params, count, prob = made.params, made.nodes, made.radio.prob_q15
-    tries = params["transmissions"] * (1 + params["e2e_tries"] * params["reliable"])
+    tries = sent_at_most(params)
     found = []
     for a in range(count):
         for b in range(a + 1, count):

@@ -111,6 +111,12 @@ def parameters(
     return params
 
 
+def sent_at_most(params: Any) -> int:
+    """How often a message goes over one hop, with all retries of the hop and of its origin."""
+    again = params["e2e_tries"] * params["reliable"]
+    return int(params["transmissions"] * (1 + again))
+
+
 def _takes_best(settings: Any) -> bool:
     """Whether the next hop to the gateway is the best [A2]; as a rule with what was heard [A1]."""
     if settings.uplink is None:
