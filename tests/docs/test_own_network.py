@@ -41,7 +41,7 @@ def carried_out(command, capfd):
         with subprocess.Popen([sys.executable, "-c", WATCH, *words[1:]],
                               stdout=subprocess.PIPE, text=True) as page:  # fmt: skip
             line = page.stdout.readline()
-            page.terminate()
+            page.kill()  # asked to end, it would first have compiled the loop
         return line
     if words[0] == "innervate":
         assert main(words[1:]) in (0, 1, 2), command

@@ -132,7 +132,7 @@ def test_every_call_of_a_cell_does_what_it_does_in_python():
 
 
 def test_so_does_every_call_of_a_router():
-    play("mesh", 700, 300)
+    play("mesh", 350, 150)
 
 
 @pytest.mark.slow
