@@ -337,6 +337,12 @@ def test_repeats_are_decided_on_in_batches(until, blocks):
     assert make_plan(SKIN, repeat=4, until="x.ci=5%").first_block == 4
 
 
+def test_repeats_are_a_thousand_at_most_if_nobody_says_how_many():
+    """docs/sweeps.md: `--repeat` is then the most, 1,000 if left out."""
+    assert make_plan(SKIN, until="x.ci=5%").repeat == 1000
+    assert make_plan(SKIN).repeat == 1
+
+
 def test_how_many_runs_there_will_be_is_no_more_than_may_be():
     plan = make_plan(SKIN, repeat=50, until="x.ci=1")
     made = Scheduler(plan, SimpleNamespace(), SimpleNamespace())

@@ -15,7 +15,7 @@ from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.scenario.cables import Fault
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
-from innervate.topology.layout import cell_places
+from innervate.topology.layout import PITCH_MM, cell_places
 from innervate.web.cables import Cables
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused, WatchError
@@ -24,7 +24,6 @@ from innervate.web.live_view import shown_fields
 from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
-PITCH_MM = 14.0
 NODES_MAX = 1_000
 
 

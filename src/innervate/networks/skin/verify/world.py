@@ -22,19 +22,18 @@ HELD, RISING, STEADY = range(17, 20)
 SETTINGS = 20
 
 # A cell's head; then PORT_BYTES for each cabled port.
-FLAGS, SQ_OWN, FD_SQ, FD_DIST, HOLD, SENT_DIST, SENT_SQ, WAIT, TICKS = range(9)
-HEAD_BYTES = 9
+HEAD_BYTES, PORT_BYTES = 9, 3
+FLAGS, SQ_OWN, FD_SQ, FD_DIST, HOLD, SENT_DIST, SENT_SQ, WAIT, TICKS = range(HEAD_BYTES)
 ANY = 127  # ticks: as many as it takes
-DIST, SQ, SAYS = range(3)
-PORT_BYTES = 3
+DIST, SQ, SAYS = range(PORT_BYTES)
 
 # The PC.
-PC_SQ, PC_FLAGS, PC_PERIODS, PC_LISTEN, PC_COUNTS = range(5)
 PC_BYTES = 5
+PC_SQ, PC_FLAGS, PC_PERIODS, PC_LISTEN, PC_COUNTS = range(PC_BYTES)
 
 # Budgets of faults: one each, and all together.
-LOSS, CUT, HEAL, FALSE, RESTART, TOTAL = range(6)
 BUDGETS = 6
+LOSS, CUT, HEAL, FALSE, RESTART, TOTAL = range(BUDGETS)
 
 FRAME_BYTES = 3
 
