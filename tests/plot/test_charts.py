@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -105,6 +107,13 @@ def test_bars_of_zeros_have_no_length(parse):
     drawing = parse(charts.bar_chart([Bar("a", 0, "0"), Bar("b", 0, "0")], "zeros"))
     bars = [n.get("d") for n in drawing.iter() if n.get("class") == "bar"]
     assert [bar.partition("h")[2] for bar in bars] == ["0v18h0z", "0v18h0z"]
+
+
+def test_bars_beside_words_that_leave_no_room_are_still_60_wide(parse):
+    bars = [Bar("n" * 150, 4, "w" * 150), Bar("n", 1, "w")]
+    drawn = [n.get("d") for n in parse(charts.bar_chart(bars, "long")).iter()
+             if n.get("class") == "bar"]  # fmt: skip
+    assert [re.search(r"h([0-9.]+)v18", d)[1] for d in drawn] == ["60", "15"]
 
 
 def test_many_bars_become_a_profile(texts):

@@ -11,6 +11,7 @@ from innervate.networks.mesh.verify import fuzz as mesh_fuzz
 from innervate.networks.radio.verify import fuzz as radio_fuzz
 from innervate.networks.skin.verify import fuzz as skin_fuzz
 from innervate.running import fuzz
+from innervate.scenario.errors import ScenarioError
 
 EVERYTHING = [
     (skin_fuzz, lambda tables: tables["protocol"]["k"], range(1, 9)),
@@ -89,6 +90,24 @@ def test_a_broken_network_is_made_small_and_can_be_played(tmp_path):
     assert path.read_text().startswith("# there is a cut\n")
     again = scenario.load(str(path))
     assert len(again.model.event) == 1
+
+
+def test_what_cannot_be_planned_any_more_is_passed_over_while_a_network_is_made_small():
+    """Of four events each alone cannot be; two of them break it."""
+    tried = []
+
+    def breaks(tables):
+        at = [event["at_s"] for event in tables["event"]]
+        tried.append(at)
+        if len(tried) in (1, 3) or len(at) < 2:
+            raise ScenarioError("there is no such cable")
+        return "both" if {0.2, 0.3} <= set(at) else ""
+
+    events = [{"at_s": at, "action": "cut", "interface": 0} for at in (0.1, 0.2, 0.3, 0.4)]
+    begun = {"kind": "skin", "duration_s": 1.0, "patch": [{"rows": 2, "columns": 2}]}
+    small, tries = fuzz.shrink(begun | {"event": events}, breaks)
+    assert [event["at_s"] for event in small["event"]] == [0.2, 0.3]
+    assert tries == len(tried) > 4
 
 
 def test_a_broken_mesh_is_made_small():

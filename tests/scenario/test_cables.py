@@ -6,6 +6,7 @@ import pytest
 
 from innervate import scenario as scenarios
 from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.cables import CablesPlan
 from innervate.scenario.errors import ScenarioError
 
 RING = {"kind": "babel", "nodes": 4, "duration_s": 2.0}
@@ -34,6 +35,15 @@ def test_shapes(shape, nodes, joined):
     made = planned(shape=shape, nodes=nodes)
     assert made.graph.cells == nodes
     assert cables(made) == joined
+
+
+def test_cables_of_which_nothing_is_said_are_the_same_in_a_file_and_in_code():
+    made = planned()
+    bare = CablesPlan(made.scenario, made.graph, "babel", made.seed, 1, made.params)
+    for one in (made, bare):
+        assert (one.start_us, one.latency_us, one.wire_us) == (1_000, (80, 160), 60)
+        assert (one.queue_frames, one.loss_q15, one.data_period_us) == (8, 0, 0)
+        assert not one.latency_per_frame
 
 
 @pytest.mark.parametrize("nodes", [2, 9, 10, 16, 17, 40])
