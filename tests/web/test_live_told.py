@@ -10,6 +10,7 @@ from innervate.web.errors import Refused
 from innervate.web.history import LOG, SERIES
 from innervate.web.live import EXPECTED_S, POLL_S, SOON_S, Live
 from innervate.web.live_poll import Poller
+from innervate.web.live_scene import Drawn
 from innervate.web.messages import Cut, Heal, Kill, Revive
 
 RING = [(0, 1), (1, 2), (2, 0)]
@@ -199,6 +200,19 @@ def test_nodes_are_asked_more_often_while_somebody_has_no_way(nodes):
     nodes.now += SOON_S
     nodes.told = all_of_them()
     assert source.work() == pytest.approx(POLL_S)
+
+
+@pytest.mark.parametrize("names", ["abc", "ab"])
+def test_metres_and_fence_are_a_scenarios_where_it_has_everybodys_place(nodes, names):
+    places = {name: (10.0 * at, -5.0) for at, name in enumerate(names)}
+    fence = [[[0.0, 0.0], [30.0, 0.0], [30.0, 30.0]]]
+    nodes.source._drawn = Drawn("yard", places, {"b": "mast"}, fence, metres=True)
+    scene = nodes.source.scene()
+    has_all = len(names) == 3
+    assert (scene["metres"], scene["fence"]) == (has_all, fence if has_all else None)
+    found = {one["label"]: (one["x"], one["y"]) for one in scene["nodes"]}
+    assert (found == places) == has_all
+    assert [one["also"] for one in scene["nodes"]] == ["", "mast", ""]
 
 
 def test_a_link_that_is_new_needs_another_scene_and_one_that_nobody_names_stays(nodes):

@@ -20,6 +20,14 @@ RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning
 ROOM = const.MTU - const.HEADER_BYTES - const.CRC_BYTES
 
 
+@pytest.mark.parametrize(("fields", "form"), [(wire.COMMON, wire.PACKET_STRUCT),
+                                              (wire.HOP_ACK, wire.ACK_STRUCT)])  # fmt: skip
+def test_what_struct_reads_are_the_fields_behind_version_and_kind(fields, form):
+    letters = {(8, 0): "B", (16, 0): "H", (8, 1): "b"}
+    assert form == ">B" + "".join(letters[bits, signed] for _, _, bits, signed in fields)
+    assert not any(many for _, many, _, _ in fields)
+
+
 def new(kind, path=(), body=b"", **values):
     frame = Frame()
     frame.kind = kind
@@ -233,8 +241,8 @@ def test_layouts_hold_exactly_the_declared_ranges():
             low = -(1 << (bits - 1)) if is_signed else 0
             high = const.PATH_MAX if name == "path_len" else low + (1 << bits) - 1
             assert RANGES[name] == (0, low, high), name
-    in_frames = {name for name, *_ in wire.HEAD + wire.COMMON + wire.HOP_ACK} - {"version"}
-    assert in_frames | {"path", "length", "body"} == set(RANGES)
+    in_frames = {name for name, *_ in wire.COMMON + wire.HOP_ACK}
+    assert in_frames | {"kind", "path", "length", "body"} == set(RANGES)
 
 
 def names_in(fields):

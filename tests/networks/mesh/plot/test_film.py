@@ -99,6 +99,19 @@ def test_others_on_the_air_are_seen_as_lines_and_rings_for_a_hundredth_of_it(par
     assert [node.tag.rpartition("}")[2] for _, node in found["other"]] == ["path", "circle"]
 
 
+def test_time_runs_below_from_20_of_the_left_edge_to_20_of_the_right_one(parse):
+    result = result_of()
+    sheet = Sheet(result.plan)
+    drawing = parse(film.film(result, crossing(), sheet))
+    lines = [one for one in drawing.iter() if one.get("class") == "axis" and one.get("x1")]
+    across = [(float(one.get("x1")), float(one.get("x2"))) for one in lines]
+    assert (20.0, sheet.width - 20.0) in across
+    ticks = sorted(left for left, right in across if left == right)
+    shares = [(ms * 1e3 + 12_500) / 132_500 for ms in range(0, 121, 20)]
+    width = sheet.width - 40.0
+    assert ticks == pytest.approx([20.0 + width * share for share in shares], abs=0.06)
+
+
 def test_without_any_copy_of_the_alarm_neither_alarms_nor_acks_are_others(parse):
     found = seen(parse, ROWS[:5], row=NEVER, raised_us=NEVER, accepted_us=NEVER)
     assert [first for first, _ in times(found, "other")] == [-40.0, 1.0, 3.0]

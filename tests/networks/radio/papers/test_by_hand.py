@@ -5,7 +5,7 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.radio.papers import common, delay, fairness, members
+from innervate.networks.radio.papers import common, delay, fairness, medium, members
 from innervate.plot import style
 
 
@@ -32,6 +32,14 @@ def test_an_answer_comes_after_both_ways_and_a_slot():
     assert params["ta_us"] == 2_000
     assert params["answer_us"] == 2 * (2_000 + params["dmax_us"]) + 208
     assert offered(delay.DCF).params | {"answer_us": params["answer_us"]} == params
+
+
+@pytest.mark.parametrize(("saturated", "completed", "left"), [
+    (True, 0, 6), (True, 5, 1), (True, 6, 0), (True, 9, 0), (False, 0, 3), (False, 3, 0),
+])  # fmt: skip
+def test_what_is_open_is_what_was_offered_or_wanted_and_not_completed(saturated, completed, left):
+    plan = Of(saturated=saturated, wanted=6, arrivals=[[1, 2], [], [3]])
+    assert medium.unfinished(plan, completed) == left
 
 
 def test_a_curve_has_marks_at_some_of_its_places_and_looks_as_its_protocol_does():

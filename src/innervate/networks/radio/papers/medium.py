@@ -124,13 +124,18 @@ def measure(channel: Channel, seed: int) -> dict[str, Any]:
         "jain_round": radio.jain_round(result),
         "fifo": radio.fifo(result),
         "ordered": is_ordered(result) if radio.traffic_of(result.plan) == "disaster" else None,
-        "open": sum(len(times) for times in result.plan.arrivals) - result.counts["completed"]
-        if not result.plan.saturated
-        else result.plan.wanted - min(result.plan.wanted, result.counts["completed"]),
+        "open": unfinished(result.plan, result.counts["completed"]),
         "delay": radio.delay_slots(result),
         "waits": waits(result) if result.plan.saturated else None,
         **{name: result.counts[name] for name in ("completed", "silent")},
     }
+
+
+def unfinished(plan: Any, completed: int) -> int:
+    """Packets that were still to be completed at the end; saturated, none after the last wanted."""
+    if plan.saturated:
+        return max(0, int(plan.wanted) - completed)
+    return sum(map(len, plan.arrivals)) - completed
 
 
 def waits(result: Any) -> list[float]:
