@@ -34,6 +34,25 @@ def test_an_answer_comes_after_both_ways_and_a_slot():
     assert offered(delay.DCF).params | {"answer_us": params["answer_us"]} == params
 
 
+@pytest.mark.parametrize(("mode", "least", "most"), [("paper", 104, 104), ("practical", 52, 104)])
+def test_delays_of_a_channel_are_the_papers_or_from_half_of_it_on(mode, least, most):
+    plan = medium.Channel(mode, 20, traffic="saturated", packets=7).plan(5)
+    pairs = [plan.delays_us[i][j] for i in range(20) for j in range(20) if i != j]
+    assert (min(pairs), max(pairs)) == (least, most)
+    assert all(plan.delays_us[i][j] == plan.delays_us[j][i] for i in range(20) for j in range(20))
+    assert (plan.wanted, plan.duration_us) == (140, 200_000_000 + 400_000 * 140)
+
+
+def test_a_channel_offers_its_load():
+    """Of all stations together, packets in a packet's time: 1,500 in 6,000 of them at 0.25."""
+    plan = medium.Channel("practical", 5, 25, 2_000, "poisson", packets=300, load=0.25).plan(5)
+    packet_us = 25 * plan.params["slot_us"]
+    ends = [times[-1] / packet_us for times in plan.arrivals]
+    assert ends == pytest.approx([6_000] * 5, rel=0.2)
+    assert sum(ends) / 5 == pytest.approx(6_000, rel=0.08)
+    assert all(times == sorted(times) and times[0] > 0 for times in plan.arrivals)
+
+
 @pytest.mark.parametrize(("saturated", "completed", "left"), [
     (True, 0, 6), (True, 5, 1), (True, 6, 0), (True, 9, 0), (False, 0, 3), (False, 3, 0),
 ])  # fmt: skip
