@@ -80,6 +80,15 @@ def test_what_is_lost_is_drawn_from_a_stream_of_the_mediums_own(seed):
     assert run_of(world)["rng"] == seeded(drawn)
 
 
+@pytest.mark.parametrize("sense_db", [0.0, 3.5, 20.0])
+def test_a_carrier_is_sensed_so_many_db_below_what_half_of_all_frames_need(sense_db):
+    air = AirTable(sense_db=sense_db)
+    sense = run_of(build(plan_of(air=air), network_of(), False, Recorded()))["sense"]
+    by_cdb = [powers.strength(powers.strength_table(), -9_500 - round(100 * sense_db) - extra)
+              for extra in (0, 20)]  # fmt: skip
+    assert sense == by_cdb[0] > by_cdb[1]
+
+
 def test_what_no_radio_could_sense_is_one_at_least():
     air = AirTable(sense_db=60.0)
     assert run_of(build(plan_of(air=air), network_of(), False, Recorded()))["sense"] == 1

@@ -34,6 +34,16 @@ def test_an_answer_comes_after_both_ways_and_a_slot():
     assert offered(delay.DCF).params | {"answer_us": params["answer_us"]} == params
 
 
+def test_what_it_costs_the_others_is_told_without_who_moves():
+    """Of four, of which 2 moves: 0 and 1 send, nobody hears 1's, 3's is left over."""
+    packets = np.zeros(3, [("node", int), ("receivers", int), ("end", int)])
+    packets["node"], packets["receivers"] = [0, 1, 2], [3, 0, 3]
+    packets["end"] = [900, 5_000, 9_000]
+    plan = Of(arrivals=[[100], [500], [60], [300]], params={"slot_us": 200})
+    found = members.others(Of(plan=plan, packets=packets), 2)
+    assert found == (1, 1, 4.0)
+
+
 @pytest.mark.parametrize(("mode", "least", "most"), [("paper", 104, 104), ("practical", 52, 104)])
 def test_delays_of_a_channel_are_the_papers_or_from_half_of_it_on(mode, least, most):
     plan = medium.Channel(mode, 20, traffic="saturated", packets=7).plan(5)
