@@ -80,6 +80,12 @@ def test_what_is_lost_is_drawn_from_a_stream_of_the_mediums_own(seed):
     assert run_of(world)["rng"] == seeded(drawn)
 
 
+@pytest.mark.parametrize(("sense_db", "cdb"), [(0.0, -9_500), (30.0, -12_500), (12.5, -10_750)])
+def test_what_is_sensed_lies_so_far_below_what_is_received(sense_db, cdb):
+    run = run_of(build(plan_of(air=AirTable(sense_db=sense_db)), network_of(), False, Recorded()))
+    assert run["sense"] == powers.strength(powers.strength_table(), cdb)
+
+
 def test_what_no_radio_could_sense_is_one_at_least():
     air = AirTable(sense_db=60.0)
     assert run_of(build(plan_of(air=air), network_of(), False, Recorded()))["sense"] == 1

@@ -6,7 +6,7 @@ from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.cases import SHORT
 from innervate.networks.mesh.verify.local import GRAIN_US, NEVER
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
-from innervate.networks.mesh.verify.net import Net, Nets
+from innervate.networks.mesh.verify.net import DEAD, DIE, REVIVE, Net, Nets
 
 BUDGET = MeshBudget(deaths=1, revivals=2, frames=3, acks=4, ticks=5)
 
@@ -43,3 +43,16 @@ def test_a_state_comes_back_from_its_bytes(nets, net):
     row = nets.pack(net)
     assert nets.unpack(row) == net
     assert len(row) == 4 * 15
+
+
+def test_who_dies_or_is_switched_on_again_uses_up_what_is_left_of_that_alone(nets, first):
+    died = {move.node: after for move, after, _ in nets.faults(first) if move.kind == DIE}
+    assert {node: after.left for node, after in died.items()} == dict.fromkeys(
+        range(3), (0, 2, 3, 4)
+    )
+    assert [node for node in range(3) if died[1].nodes[node] == DEAD] == [1]
+    ((move, after, broken),) = nets.faults(died[1])
+    assert (move.kind, move.node, broken) == (REVIVE, 1, 0)
+    assert after.left == (0, 1, 3, 4)
+    assert DEAD not in after.nodes
+    assert nets.faults(after._replace(left=(0, 0, 3, 4))) == []
