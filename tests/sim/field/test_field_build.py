@@ -11,6 +11,7 @@ from innervate.dialect.rng import FIXED_POINT, seeded
 from innervate.scenario.actions.field import CUT, JAM, KILL
 from innervate.scenario.declared.field import AirTable, Fault, FieldPlan, Heard
 from innervate.sim import heap, taps
+from innervate.sim.cables.declared import Unfit
 from innervate.sim.counts import Counts
 from innervate.sim.field import access, declared, listening, medium, powers, queue
 from innervate.sim.field.build import build
@@ -333,3 +334,10 @@ def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_cloc
     check(world, None, 0, MASK30)
     assert (run.broken, run.broken_node) == (broken, 0)
     assert seen == ([99] if broken == 64 else [])
+
+
+@pytest.mark.parametrize("network", [Of(has=lambda _: False), Of(has=lambda _: True, frames=Of())])
+def test_frames_of_no_known_length_are_said(network, monkeypatch):
+    monkeypatch.setattr(declared, "networks", lambda: {"flood": network})
+    with pytest.raises(Unfit, match="LAYOUTS is missing: it says how long a frame is on the air"):
+        declared.simulation(plan_of())

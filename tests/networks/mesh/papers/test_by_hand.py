@@ -14,7 +14,7 @@ from innervate.networks.mesh.papers import (
     testbed,
     uplinks,
 )
-from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, REPORT_TABLE
+from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, PRIORITY, REPORT_TABLE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.scenario.plan import Walk
 from innervate.papers.in_field import MONITOR
@@ -79,6 +79,19 @@ def test_a_world_has_the_plans_radio(small):
     }  # fmt: skip
     assert (small.nodes, small.gateway, small.since_us) == (10, 0, 20_000_000)
     assert small.duration_us == 20_000_000 + 20 * 100_000 + 3_000_000
+
+
+@pytest.mark.parametrize(("reliable", "flags"), [(True, END_TO_END), (False, 0)])
+def test_a_mesh_is_given_what_a_world_sends_and_who_dies_in_it(small, reliable, flags):
+    given = {"nodes": 10, "rounds": 2, "dead": 3}
+    _, plan = comparison.planned((("reliable", reliable),), (), given, 1)
+    assert [(one.at_us, one.node, one.dest) for one in plan.offers] == [
+        (one.at_us, one.source, one.dest) for one in small.sent
+    ]
+    assert {(one.flags, one.length, one.flow) for one in plan.offers} == {(flags, 16, 0)}
+    assert [(one.at_us, one.action, one.node) for one in plan.faults] == small.faults
+    _, plan = comparison.planned((("reliable", reliable),), (), given | {"alarms": 1}, 1)
+    assert {(one.dest, one.flags) for one in plan.offers} == {(254, flags | PRIORITY)}
 
 
 def test_in_each_round_all_who_live_write_to_another_one(small):

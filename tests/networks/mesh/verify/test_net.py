@@ -1,12 +1,16 @@
 """The state that an exploration of a mesh starts from, and states as bytes."""
 
+from types import SimpleNamespace as Of
+
 import pytest
 
 from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify.cases import SHORT
 from innervate.networks.mesh.verify.local import GRAIN_US, NEVER
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import DEAD, DIE, REVIVE, Net, Nets
+from innervate.verify.explore import Tally
 
 BUDGET = MeshBudget(deaths=1, revivals=2, frames=3, acks=4, ticks=5)
 
@@ -56,3 +60,21 @@ def test_who_dies_or_is_switched_on_again_uses_up_what_is_left_of_that_alone(net
     assert after.left == (0, 1, 3, 4)
     assert DEAD not in after.nodes
     assert nets.faults(after._replace(left=(0, 0, 3, 4))) == []
+
+
+def test_whoever_watches_is_asked_once_a_second_at_most(nets, first, monkeypatch):
+    times = iter([0.0, 1.0, 1.1, 2.0, 3.0, 3.5, 4.0, 9.0])
+    monkeypatch.setattr(mesh_search, "wall_s", lambda: next(times))
+    monkeypatch.setattr(mesh_search, "CHUNK", 2)
+    found, asked = mesh_search.Found(nets.model, nets, Tally()), []
+    search = Of(rows=[nets.pack(first)] * 9, tally=found.tally)
+
+    def progress(tally):
+        asked.append(found.fair)
+        return len(asked) == 2
+
+    mesh_search._look_ahead(found, search, progress)
+    assert asked == [3, 7]
+    assert (found.fair, found.broken) == (7, 0)
+    mesh_search._look_ahead(found, search, None)
+    assert found.fair == 9

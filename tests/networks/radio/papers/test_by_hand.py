@@ -1,11 +1,12 @@
 """Plans and curves that figures of the radio are made of."""
 
+import math
 from types import SimpleNamespace as Of
 
 import numpy as np
 import pytest
 
-from innervate.networks.radio.papers import common, delay, fairness, members
+from innervate.networks.radio.papers import common, delay, fairness, medium, members
 from innervate.plot import style
 
 
@@ -103,3 +104,30 @@ def test_moments_at_which_another_loses_a_packet_are_drawn_hollow():
     assert (bad.get_xdata().tolist(), bad.get_ydata().tolist()) == ([1.0, 2.0], [2.0, 3.0])
     assert bad.get_markerfacecolor() == "none"
     assert other.get_xdata().tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_delays_of_pairs_are_all_there_may_be_or_one_for_all():
+    for mode, found in (("practical", range(52, 105)), ("paper", [104])):
+        delays = medium.Channel(mode, 40).plan(3).delays_us
+        assert {delays[i][j] for i in range(40) for j in range(i)} == set(found)
+        assert all(delays[i][j] == delays[j][i] for i in range(40) for j in range(i))
+        assert {delays[i][i] for i in range(40)} == {0}
+
+
+def test_gaps_between_packets_are_as_long_as_the_draw_is_seldom(monkeypatch):
+    """The greatest draw is no gap at all, the least 30 ln 2 of the mean."""
+    draws = np.array([0, (1 << 29) - 1, (1 << 30) - 1])
+    monkeypatch.setattr(medium, "uniform", lambda seed, name, count, below: draws)
+    channel = medium.Channel("paper", 2, 10, traffic="poisson", packets=3, load=0.5)
+    mean_us = 2 * 10 * 208 / 0.5
+    times = [100_000 + int(many * math.log(2) * mean_us) for many in (30, 31, 31)]
+    assert channel._arrivals(1, 208) == [times, times]
+
+
+def test_what_becomes_of_the_packets_of_those_who_stay():
+    fields = [(name, np.int64) for name in ("node", "receivers", "end")]
+    rows = np.array([(0, 3, 1_100), (1, 0, 1_500), (3, 3, 2_000)], fields)
+    plan = Of(arrivals=[[100], [300], [200], [50]], params={"slot_us": 10})
+    assert members.others(Of(plan=plan, packets=rows), 3) == (1, 1, 100.0)
+    assert members.others(Of(plan=plan, packets=rows), 2) == (1, 0, 195.0)
+    assert members.others(Of(plan=plan, packets=rows[1:2]), 3) == (1, 2, 0)
