@@ -10,6 +10,7 @@ from innervate.web.errors import Refused
 from innervate.web.history import LOG, SERIES
 from innervate.web.live import EXPECTED_S, POLL_S, SOON_S, Live
 from innervate.web.live_poll import Poller
+from innervate.web.live_scene import Drawn
 from innervate.web.messages import Cut, Heal, Kill, Revive
 
 RING = [(0, 1), (1, 2), (2, 0)]
@@ -215,3 +216,18 @@ def test_a_link_that_is_new_needs_another_scene_and_one_that_nobody_names_stays(
     nodes.now += 1.0
     source.work()
     assert (source.scenes, len(source.scene()["links"])) == (2, 3)
+
+
+def test_metres_and_a_fence_are_of_nodes_that_stand_where_their_scenario_has_them(nodes):
+    places, fence = {"a": (0.0, 0.0), "b": (3.0, 0.0), "c": (3.0, 4.0)}, [[[0, 0], [5, 0], [5, 5]]]
+    shown = []
+    for known in (places, {"a": (0.0, 0.0)}):
+        nodes.source._drawn = Drawn("yard", known, fence=fence, metres=True)
+        shown.append(nodes.source.scene())
+    whole, part = shown
+    assert [(node["x"], node["y"]) for node in whole["nodes"]] == list(places.values())
+    assert (whole["name"], whole["fence"], whole["metres"]) == ("yard", fence, True)
+    assert (part["name"], part["fence"], part["metres"]) == ("yard", None, False)
+    nodes.source._drawn = None
+    alone = nodes.source.scene()
+    assert (alone["name"], alone["fence"], alone["metres"]) == ("live", None, False)

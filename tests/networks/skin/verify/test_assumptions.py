@@ -110,3 +110,12 @@ def test_a_mistake_in_what_is_forgotten_is_refuted_by_its_own_lemma(name):
     whole = known[lemma.get(name, name)]
     own = replace(whole, steps=whole.steps[BEFORE.get(name, 0) :])
     assert prove(own, first_only=True).is_refuted
+
+
+def test_what_is_refuted_is_told_and_what_holds_is_not_tried_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    said = ["refuted: a lemma", "", "refuted: not asked for"]
+    monkeypatch.setattr(assumptions, "_refuted", lambda rule, change: said.pop(0))
+    tried = assumptions.refuted.__wrapped__
+    assert [tried("feasible") for _ in range(3)] == ["refuted: a lemma", "", ""]
+    assert len(said) == 1
