@@ -1,6 +1,7 @@
 """Recordings, graphs and tables are read back by the tools' own libraries."""
 
 import json
+import os
 from collections import Counter
 from itertools import pairwise
 
@@ -184,3 +185,14 @@ def test_a_folder_is_made_with_those_above_it_or_it_is_said_why_not(tmp_path):
     (tmp_path / "c").write_text("")
     with pytest.raises(ExportError, match="d cannot be written: Not a directory; choose another"):
         files.make_folder(tmp_path / "c" / "d")
+
+
+@pytest.mark.parametrize("umask", [0o022, 0o027, 0o077])
+def test_a_file_may_be_read_by_those_who_may_read_any_new_one(umask, tmp_path):
+    before = os.umask(umask)
+    try:
+        files.write_text(tmp_path / "a", "text")
+    finally:
+        assert os.umask(before) == umask  # as it was
+    assert (tmp_path / "a").stat().st_mode & 0o777 == 0o666 & ~umask
+    assert [one.name for one in tmp_path.iterdir()] == ["a"]

@@ -78,3 +78,15 @@ def test_what_is_known_of_an_expression(text, a, b, fact):
 @pytest.mark.parametrize("fact", VALUES)
 def test_of_a_call_is_known_what_the_function_returns(fact):
     assert known("inner(a, b)", returned=fact) == fact
+
+
+@pytest.mark.parametrize(("text", "fact"), [
+    ("range(b)", NATURAL), ("range(a)", NATURAL), ("range(a, b)", NONE), ("range(b, a)", NATURAL),
+    ("range(2, a)", NATURAL), ("range(LESS, b)", NONE),
+])  # fmt: skip
+def test_what_counts_is_negative_only_where_it_begins_so(text, fact):
+    made, facts = Made({}), Facts(Of(handlers=[], functions=list, records={}))
+    facts._nodes = {made: ast.parse(f"for i in {text}: pass").body}
+    facts.variables = {(made, "a"): NONE, (made, "b"): NATURAL}
+    facts._look(made)
+    assert facts.variables[made, "i"] == fact

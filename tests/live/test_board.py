@@ -1,42 +1,40 @@
-"""What of a network runs on a board, if it says nothing of that itself."""
+"""What of a network of one's own runs on a board."""
 
 from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.live import board
-from innervate.network import networks
+from innervate.live.board import PLAIN, roles_of
 
-FRAME = (("kind", 0, 1, 3, "", "of a frame"),)
-LAYOUTS = ((1, "hello", (("who", 0, 8, 0),)),)
+STATE, PARAMS, FRAME = ((name, 0, 0, 9, "", "") for name in ("seen", "hops", "kind"))
+LAYOUTS = ((1, "hello", (("seq", 0, 8, 0), ("", 0, 4, 0), ("list", 3, 4, 1))),)
 
 
-def network(medium, without=(), **frames):
+def network_of(medium="cables", lacks="", **more):
     parts = {
-        "protocol": Of(__name__="gossip.protocol"), "frames": Of(LAYOUTS=LAYOUTS, **frames),
-        "fields": Of(STATE=FRAME, PARAMS=FRAME, FRAME=FRAME),
-    }  # fmt: skip
-    parts = {name: part for name, part in parts.items() if name not in without}
-    return Of(name="gossip", medium=medium, has=lambda part: part in parts, **parts)
+        "protocol": Of(__name__="talk.protocol", OUTBOX=5, TIMERS=2),
+        "fields": Of(STATE=(STATE,), PARAMS=(PARAMS,), FRAME=(FRAME,)),
+        "frames": Of(LAYOUTS=LAYOUTS),
+    } | more  # fmt: skip
+    parts.pop(lacks, None)
+    return Of(name="talk", medium=medium, has=parts.__contains__, **parts)
 
 
-@pytest.mark.parametrize("medium", ["cables", "channel", "field"])
-def test_a_plain_protocol_does_and_over_cables_by_the_program_for_small_boards(medium):
-    (role,) = board.roles_of(network(medium))
-    assert (role.name, role.kinds) == ("gossip", {1: board.on_wire(LAYOUTS[0][2])})
-    assert role.program is (board.PLAIN if medium == "cables" else None)
-    assert role.watched.table == ("cells" if medium == "cables" else "stations")
+@pytest.mark.parametrize(("medium", "program", "table"), [
+    ("cables", PLAIN, "cells"), ("channel", None, "stations"), ("field", None, "stations"),
+])  # fmt: skip
+def test_a_plain_protocol_is_one_role_and_over_cables_a_program(medium, program, table):
+    (role,) = roles_of(network_of(medium))
+    assert (role.name, role.entry, role.room, role.timers) == ("talk", "talk.protocol", 5, 2)
+    assert (role.state, role.params, role.frame, role.item) == (
+        (STATE,), (PARAMS,), (FRAME,), (FRAME,),
+    )  # fmt: skip
+    assert role.kinds == {1: (("seq", 0), ("list", 3))}
+    assert (role.program, role.watched.table) == (program, table)
 
 
-@pytest.mark.parametrize("part", ["protocol", "fields", "frames"])
-def test_without_one_of_its_parts_nothing_does(part):
-    assert board.roles_of(network("cables", without=[part])) == ()
-
-
-def test_frames_that_are_coded_by_hand_do_not():
-    assert board.roles_of(network("cables", encode=bytes)) == ()
-
-
-def test_what_a_network_says_itself_counts():
-    mesh = networks()["mesh"]
-    assert board.roles_of(mesh) is mesh.boards
+def test_what_says_its_own_roles_or_has_a_coder_of_its_own_is_not_plain():
+    assert roles_of(network_of(boards=("mine",))) == ("mine",)
+    assert roles_of(network_of(frames=Of(LAYOUTS=LAYOUTS, encode=print))) == ()
+    for part in ("protocol", "fields", "frames"):
+        assert roles_of(network_of(lacks=part)) == ()

@@ -1,7 +1,9 @@
 """How long `live up` keeps a network, what it says of it, and what is left of it."""
 
 import asyncio
+import io
 import json
+import sys
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -130,6 +132,10 @@ def test_events_are_said_as_they_happen_and_what_is_not_played_at_once(
         assert json.loads(out) == {"at_s": 0.5, "event": "cut n0 - n1"}
     else:
         assert out == "0.5 s: cut n0 - n1\n"
+    raw = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(raw))
+    player.tell(happening[0])
+    assert raw.getvalue().decode() == out  # at once, into a pipe as well
 
 
 def test_frames_are_told_in_order_and_in_lines_of_a_bounded_length():

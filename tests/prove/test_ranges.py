@@ -150,7 +150,8 @@ def test_more_that_is_known_of_a_range_narrows_what_was_picked():
     terms = Terms()
     p = terms.less(terms.unknown("p", 0, 1), terms.number(1))
     picked = terms.pick(p, terms.unknown("x", 0, 9), terms.number(20))
-    assert terms.bounded(picked, 0, 20) is picked
+    for low, high in ((0, 20), (-1, 20), (0, 21)):
+        assert terms.bounded(picked, low, high) is picked
     found = terms.bounded(picked, 2, 20)
     assert (found.low, found.high) == (2, 20)
     assert (terms.bounded(picked, 0, 9).low, terms.bounded(picked, 0, 9).high) == (0, 9)

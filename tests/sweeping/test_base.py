@@ -381,3 +381,16 @@ def test_with_a_worker_all_batches_under_way_may_be_lost(monkeypatch, together, 
     assert [job.repeat for job in made._suspects] == lost
     assert len(made._running) == 2 - len(lost)
     assert made.left_s is None, "nothing has run yet"
+
+
+@pytest.mark.parametrize(("line", "says"), [
+    (f"name = {'[' * 400}{']' * 400}", "3: name.0.0... is nested too deeply"),
+    (f"vary.a = {'[' * 18}{']' * 18}", "3: vary.a.0... is nested too deeply"),
+    (f"seed = {2**63}", "3: seed must be a number below 2^63"),
+    ("set.duration_s = nan", "3: set.duration_s must be a finite number, not nan"),
+])  # fmt: skip
+def test_what_no_scenario_can_hold_is_refused_in_a_plan_file_too(line, says):
+    with pytest.raises(ScenarioError) as caught:
+        planfile.read(f'scenario = "a.toml"\n\n{line}\n', "p.toml")
+    assert str(caught.value) == f"p.toml:{says}"
+    assert planfile.read(f'scenario = "a.toml"\nseed = {2**63 - 1}\n', "").seed == 2**63 - 1

@@ -6,6 +6,7 @@ import re
 import statistics
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 
 from innervate.cli import live_table
 from innervate.cli.live_table import LiveTable
+from innervate.sweeping.engines import Pool
 from innervate.sweeping.flat import flat
 from innervate.sweeping.until import parse
 from tests.sweeping.conftest import TIMEOUT_S, environment
@@ -143,3 +145,20 @@ def test_time_left_in_words(left, words):
     conducted = Conducted()
     conducted.left_s = left
     assert live_table._left(conducted) == words
+
+
+def test_new_workers_take_the_place_of_all_that_were_there():
+    made = []
+
+    def make():
+        made.append(ThreadPoolExecutor(1))
+        return made[-1]
+
+    pool = Pool(make, 1)
+    assert pool.submit(len, "ab").result() == 2
+    pool.renew()
+    old, new = made
+    with pytest.raises(RuntimeError, match="after shutdown"):
+        old.submit(len, "")
+    assert pool.submit(len, "abc").result() == new.submit(len, "abc").result() == 3
+    pool.close()

@@ -109,6 +109,7 @@ def test_a_formula_has_a_length():
 
 
 def test_lists_and_tables_have_a_length():
+    assert (LIST_MAX, TABLES_MAX) == (64, 16)
     lists = {"short": list(range(LIST_MAX)), "long": list(range(LIST_MAX + 1)), "none": []}
     assert set(flat(lists)) == {"short", "none"}
     tables = [{"a": i} for i in range(TABLES_MAX + 1)]

@@ -39,6 +39,18 @@ def test_many_patches_stand_in_rows_of_a_square(patch, across, wide, high):
     assert {y for _, y in row[:: patch[0] * patch[1]]} == {0.0}
 
 
+@pytest.mark.parametrize("place", [0, 7, CABLED_PATCHES_MAX])
+def test_of_many_patches_the_widest_and_the_highest_say_how_far_apart_all_are(place):
+    patches = [(1, 1, "Z")] * (CABLED_PATCHES_MAX + 2)
+    patches[place], patches[place + 1] = (1, 3, "Z"), (3, 1, "Z")
+    wide, high = 2 * PITCH_MM + GAP_MM, 2 * ROW_MM + GAP_MM
+    places = cell_places(from_patches(patches))
+    first = 0
+    for i, (columns, rows, _) in enumerate(patches):
+        assert places[first] == pytest.approx((wide * (i % 8), high * (i // 8)))
+        first += columns * rows
+
+
 def joined(*cables, cells=3):
     """Patches of one cell, and (cell, port, cell, port) joined."""
     graph = from_patches([(1, 1, "Z")] * cells)

@@ -202,19 +202,6 @@ def test_nodes_are_asked_more_often_while_somebody_has_no_way(nodes):
     assert source.work() == pytest.approx(POLL_S)
 
 
-@pytest.mark.parametrize("names", ["abc", "ab"])
-def test_metres_and_fence_are_a_scenarios_where_it_has_everybodys_place(nodes, names):
-    places = {name: (10.0 * at, -5.0) for at, name in enumerate(names)}
-    fence = [[[0.0, 0.0], [30.0, 0.0], [30.0, 30.0]]]
-    nodes.source._drawn = Drawn("yard", places, {"b": "mast"}, fence, metres=True)
-    scene = nodes.source.scene()
-    has_all = len(names) == 3
-    assert (scene["metres"], scene["fence"]) == (has_all, fence if has_all else None)
-    found = {one["label"]: (one["x"], one["y"]) for one in scene["nodes"]}
-    assert (found == places) == has_all
-    assert [one["also"] for one in scene["nodes"]] == ["", "mast", ""]
-
-
 def test_a_link_that_is_new_needs_another_scene_and_one_that_nobody_names_stays(nodes):
     source = nodes.source
     nodes.now += 1.0
@@ -229,3 +216,18 @@ def test_a_link_that_is_new_needs_another_scene_and_one_that_nobody_names_stays(
     nodes.now += 1.0
     source.work()
     assert (source.scenes, len(source.scene()["links"])) == (2, 3)
+
+
+def test_metres_and_a_fence_are_of_nodes_that_stand_where_their_scenario_has_them(nodes):
+    places, fence = {"a": (0.0, 0.0), "b": (3.0, 0.0), "c": (3.0, 4.0)}, [[[0, 0], [5, 0], [5, 5]]]
+    shown = []
+    for known in (places, {"a": (0.0, 0.0)}):
+        nodes.source._drawn = Drawn("yard", known, fence=fence, metres=True)
+        shown.append(nodes.source.scene())
+    whole, part = shown
+    assert [(node["x"], node["y"]) for node in whole["nodes"]] == list(places.values())
+    assert (whole["name"], whole["fence"], whole["metres"]) == ("yard", fence, True)
+    assert (part["name"], part["fence"], part["metres"]) == ("yard", None, False)
+    nodes.source._drawn = None
+    alone = nodes.source.scene()
+    assert (alone["name"], alone["fence"], alone["metres"]) == ("live", None, False)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -34,11 +33,10 @@ def beside(path: Path) -> Iterator[Path]:
     try:
         if path.is_dir():
             raise ExportError(f"{path} is a folder; name a file")
-        handle, name = tempfile.mkstemp(prefix=f".{path.name[:40]}-", dir=path.parent)
-        fresh = Path(name)
-        os.close(handle)
+        place = path.with_name(f".{path.name[:40]}-{secrets.token_hex(4)}")
+        place.touch(exist_ok=False)
+        fresh = place
         yield fresh
-        fresh.chmod(0o666 & ~_umask())
         fresh.replace(path)
     except OSError as error:
         why = error.strerror or type(error).__name__
@@ -70,9 +68,3 @@ def make_folder(path: Path) -> None:
     except OSError as error:
         why = error.strerror or type(error).__name__
         raise ExportError(f"{path} cannot be written: {why}; choose another place") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)
-    os.umask(mask)
-    return mask

@@ -6,8 +6,8 @@ import hashlib
 import json
 import os
 import re
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
@@ -109,8 +109,9 @@ def replacing(folder: str | os.PathLike[str]) -> Iterator[Path]:
     fresh: Path | None = None
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        fresh = Path(tempfile.mkdtemp(prefix=f".{target.name[:40]}-", dir=target.parent))
-        fresh.chmod(0o777 & ~_umask())
+        place = target.with_name(f".{target.name[:40]}-{secrets.token_hex(4)}")
+        place.mkdir()
+        fresh = place
         yield fresh
         _swap(fresh, target)
     except OSError as error:
@@ -192,12 +193,6 @@ def _swap(fresh: Path, target: Path) -> None:
         old.rename(target)
         raise
     shutil.rmtree(old, ignore_errors=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)
-    os.umask(mask)
-    return mask
 
 
 def _shown(path: Path) -> str:

@@ -39,8 +39,6 @@ def convert(source: Source, raw: dict[str, Any], model: type[Model]) -> Model:
         return msgspec.convert(raw, model)
     except msgspec.ValidationError as error:
         raise _in_words(source, raw, model, str(error)) from None
-    except (OverflowError, RecursionError) as error:
-        raise source.error((), f"a value is too large: {error}") from None
 
 
 @lru_cache(maxsize=32)

@@ -40,7 +40,7 @@ from innervate.scenario import ScenarioError
 from innervate.scenario.emit import to_toml
 from innervate.scenario.explain import convert
 from innervate.scenario.lines import key_lines
-from innervate.scenario.source import Source
+from innervate.scenario.source import Source, check_plain
 from innervate.sweeping.errors import SweepError
 from innervate.sweeping.vary import Axis, Named, axis, plain, split, values_of
 
@@ -99,7 +99,9 @@ def read(text: str, path: str) -> PlanFile:
         raw = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise ScenarioError(f"not valid TOML: {error}", path) from None
-    return convert(Source(path, "", key_lines(text)), raw, PlanFile)
+    source = Source(path, "", key_lines(text))
+    check_plain(source, raw)
+    return convert(source, raw, PlanFile)
 
 
 def scenario_of(plan: PlanFile, folder: str) -> str:

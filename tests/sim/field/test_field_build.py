@@ -11,6 +11,7 @@ from innervate.dialect.rng import FIXED_POINT, seeded
 from innervate.scenario.actions.field import CUT, JAM, KILL
 from innervate.scenario.declared.field import AirTable, Fault, FieldPlan, Heard
 from innervate.sim import heap, taps
+from innervate.sim.cables.declared import Unfit
 from innervate.sim.counts import Counts
 from innervate.sim.field import access, declared, listening, medium, powers, queue
 from innervate.sim.field.build import build
@@ -80,13 +81,10 @@ def test_what_is_lost_is_drawn_from_a_stream_of_the_mediums_own(seed):
     assert run_of(world)["rng"] == seeded(drawn)
 
 
-@pytest.mark.parametrize("sense_db", [0.0, 3.5, 20.0])
-def test_a_carrier_is_sensed_so_many_db_below_what_half_of_all_frames_need(sense_db):
-    air = AirTable(sense_db=sense_db)
-    sense = run_of(build(plan_of(air=air), network_of(), False, Recorded()))["sense"]
-    by_cdb = [powers.strength(powers.strength_table(), -9_500 - round(100 * sense_db) - extra)
-              for extra in (0, 20)]  # fmt: skip
-    assert sense == by_cdb[0] > by_cdb[1]
+@pytest.mark.parametrize(("sense_db", "cdb"), [(0.0, -9_500), (30.0, -12_500), (12.5, -10_750)])
+def test_what_is_sensed_lies_so_far_below_what_is_received(sense_db, cdb):
+    run = run_of(build(plan_of(air=AirTable(sense_db=sense_db)), network_of(), False, Recorded()))
+    assert run["sense"] == powers.strength(powers.strength_table(), cdb)
 
 
 def test_what_no_radio_could_sense_is_one_at_least():
@@ -336,3 +334,10 @@ def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_cloc
     check(world, None, 0, MASK30)
     assert (run.broken, run.broken_node) == (broken, 0)
     assert seen == ([99] if broken == 64 else [])
+
+
+@pytest.mark.parametrize("network", [Of(has=lambda _: False), Of(has=lambda _: True, frames=Of())])
+def test_frames_of_no_known_length_are_said(network, monkeypatch):
+    monkeypatch.setattr(declared, "networks", lambda: {"flood": network})
+    with pytest.raises(Unfit, match="LAYOUTS is missing: it says how long a frame is on the air"):
+        declared.simulation(plan_of())

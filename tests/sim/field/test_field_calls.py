@@ -6,8 +6,7 @@ import pytest
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
-from innervate.sim.cables.declared import Unfit
-from innervate.sim.field import calls, declared, queue
+from innervate.sim.field import calls, queue
 from innervate.sim.field.medium import BROKEN_OUTBOX
 from innervate.sim.field.timers import set_timer
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_TIMER
@@ -131,11 +130,3 @@ def test_a_node_is_told_the_time_of_its_clock(do, time):
     now = (time + OFFSET) & MASK30
     assert do.said == [("on_input", 1, now, 6), ("on_frame", 1, now, frame)]
     assert [(row.handler, row.port) for row in world.trail] == [(ON_INPUT, 6), (ON_FRAME, 4)]
-
-
-@pytest.mark.parametrize("parts", [{}, {"frames": Of()}])
-def test_without_layouts_nobody_knows_how_long_a_frame_is_on_the_air(monkeypatch, parts):
-    network = Of(has=lambda part: part in parts, **parts)
-    monkeypatch.setattr(declared, "networks", lambda: {"talk": network})
-    with pytest.raises(Unfit, match=r"frames\.LAYOUTS is missing"):
-        declared.simulation(Of(kind="talk"))

@@ -63,3 +63,9 @@ def test_a_formula_has_what_its_function_reads_and_no_path_or_body(monkeypatch):
 @pytest.mark.parametrize("number", range(2))
 def test_a_hundred_thousand_drawn_calls_do(number):
     assert twins()[number].calls(50_000, 2) == ""
+
+
+def test_every_distance_from_the_newest_is_looked_at_once():
+    ends = [-1, *(high for _, high in theories.AHEAD)]
+    assert [low for low, _ in theories.AHEAD] == [end + 1 for end in ends[:-1]]
+    assert ends[-1] == 65_535

@@ -1,12 +1,16 @@
 """The state that an exploration of a mesh starts from, and states as bytes."""
 
+from types import SimpleNamespace as Of
+
 import pytest
 
 from innervate.networks.mesh.verify import model as mesh_model
+from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify.cases import SHORT
 from innervate.networks.mesh.verify.local import GRAIN_US, NEVER
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
-from innervate.networks.mesh.verify.net import Net, Nets
+from innervate.networks.mesh.verify.net import DEAD, DIE, REVIVE, Net, Nets
+from innervate.verify.explore import Tally
 
 BUDGET = MeshBudget(deaths=1, revivals=2, frames=3, acks=4, ticks=5)
 
@@ -43,3 +47,34 @@ def test_a_state_comes_back_from_its_bytes(nets, net):
     row = nets.pack(net)
     assert nets.unpack(row) == net
     assert len(row) == 4 * 15
+
+
+def test_who_dies_or_is_switched_on_again_uses_up_what_is_left_of_that_alone(nets, first):
+    died = {move.node: after for move, after, _ in nets.faults(first) if move.kind == DIE}
+    assert {node: after.left for node, after in died.items()} == dict.fromkeys(
+        range(3), (0, 2, 3, 4)
+    )
+    assert [node for node in range(3) if died[1].nodes[node] == DEAD] == [1]
+    ((move, after, broken),) = nets.faults(died[1])
+    assert (move.kind, move.node, broken) == (REVIVE, 1, 0)
+    assert after.left == (0, 1, 3, 4)
+    assert DEAD not in after.nodes
+    assert nets.faults(after._replace(left=(0, 0, 3, 4))) == []
+
+
+def test_whoever_watches_is_asked_once_a_second_at_most(nets, first, monkeypatch):
+    times = iter([0.0, 1.0, 1.1, 2.0, 3.0, 3.5, 4.0, 9.0])
+    monkeypatch.setattr(mesh_search, "wall_s", lambda: next(times))
+    monkeypatch.setattr(mesh_search, "CHUNK", 2)
+    found, asked = mesh_search.Found(nets.model, nets, Tally()), []
+    search = Of(rows=[nets.pack(first)] * 9, tally=found.tally)
+
+    def progress(tally):
+        asked.append(found.fair)
+        return len(asked) == 2
+
+    mesh_search._look_ahead(found, search, progress)
+    assert asked == [3, 7]
+    assert (found.fair, found.broken) == (7, 0)
+    mesh_search._look_ahead(found, search, None)
+    assert found.fair == 9

@@ -370,6 +370,8 @@ def test_summary_terminal_and_report_say_the_same(tables, level, warning):
     assert head["level"].startswith(level)
     lines, page = summary_lines(done), report.render(done)
     assert f"{head['level']}: {head['text']}" in lines
+    said = [line.split("(Jain) ")[1] for line in lines if "fairness (Jain)" in line]
+    assert said == [f"{one:.3f}." for one in [done.summary["jain"]] if one is not None]
     assert f"<h1>{head['text']}</h1>" in page
     beginnings = ("One station alone", "Stations that do not hear")
     assert [line for line in lines if line.startswith(beginnings)] == [warning] * bool(warning)

@@ -110,3 +110,8 @@ def test_moments_of_baselines_are_of_a_clock_of_30_bits():
     moments = {name: (low, high) for name, _, low, high, unit, _ in BASELINE if unit == "us"}
     assert set(moments) == {"start", "since", "due", "mark"}
     assert set(moments.values()) == {(0, MASK30)}
+
+
+def test_a_station_remembers_as_many_packets_as_a_frame_can_have():
+    (ours,) = (row[2:4] for row in BASELINE if row[0] == "count")
+    assert ours == next(row[2:4] for row in fields.FRAME if row[0] == "count") == (0, 15)

@@ -1,5 +1,6 @@
 """Plans and curves that figures of the radio are made of."""
 
+import math
 from types import SimpleNamespace as Of
 
 import numpy as np
@@ -32,43 +33,6 @@ def test_an_answer_comes_after_both_ways_and_a_slot():
     assert params["ta_us"] == 2_000
     assert params["answer_us"] == 2 * (2_000 + params["dmax_us"]) + 208
     assert offered(delay.DCF).params | {"answer_us": params["answer_us"]} == params
-
-
-def test_what_it_costs_the_others_is_told_without_who_moves():
-    """Of four, of which 2 moves: 0 and 1 send, nobody hears 1's, 3's is left over."""
-    packets = np.zeros(3, [("node", int), ("receivers", int), ("end", int)])
-    packets["node"], packets["receivers"] = [0, 1, 2], [3, 0, 3]
-    packets["end"] = [900, 5_000, 9_000]
-    plan = Of(arrivals=[[100], [500], [60], [300]], params={"slot_us": 200})
-    found = members.others(Of(plan=plan, packets=packets), 2)
-    assert found == (1, 1, 4.0)
-
-
-@pytest.mark.parametrize(("mode", "least", "most"), [("paper", 104, 104), ("practical", 52, 104)])
-def test_delays_of_a_channel_are_the_papers_or_from_half_of_it_on(mode, least, most):
-    plan = medium.Channel(mode, 20, traffic="saturated", packets=7).plan(5)
-    pairs = [plan.delays_us[i][j] for i in range(20) for j in range(20) if i != j]
-    assert (min(pairs), max(pairs)) == (least, most)
-    assert all(plan.delays_us[i][j] == plan.delays_us[j][i] for i in range(20) for j in range(20))
-    assert (plan.wanted, plan.duration_us) == (140, 200_000_000 + 400_000 * 140)
-
-
-def test_a_channel_offers_its_load():
-    """Of all stations together, packets in a packet's time: 1,500 in 6,000 of them at 0.25."""
-    plan = medium.Channel("practical", 5, 25, 2_000, "poisson", packets=300, load=0.25).plan(5)
-    packet_us = 25 * plan.params["slot_us"]
-    ends = [times[-1] / packet_us for times in plan.arrivals]
-    assert ends == pytest.approx([6_000] * 5, rel=0.2)
-    assert sum(ends) / 5 == pytest.approx(6_000, rel=0.08)
-    assert all(times == sorted(times) and times[0] > 0 for times in plan.arrivals)
-
-
-@pytest.mark.parametrize(("saturated", "completed", "left"), [
-    (True, 0, 6), (True, 5, 1), (True, 6, 0), (True, 9, 0), (False, 0, 3), (False, 3, 0),
-])  # fmt: skip
-def test_what_is_open_is_what_was_offered_or_wanted_and_not_completed(saturated, completed, left):
-    plan = Of(saturated=saturated, wanted=6, arrivals=[[1, 2], [], [3]])
-    assert medium.unfinished(plan, completed) == left
 
 
 def test_a_curve_has_marks_at_some_of_its_places_and_looks_as_its_protocol_does():
@@ -140,3 +104,38 @@ def test_moments_at_which_another_loses_a_packet_are_drawn_hollow():
     assert (bad.get_xdata().tolist(), bad.get_ydata().tolist()) == ([1.0, 2.0], [2.0, 3.0])
     assert bad.get_markerfacecolor() == "none"
     assert other.get_xdata().tolist() == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_delays_of_pairs_are_all_there_may_be_or_one_for_all():
+    for mode, found in (("practical", range(52, 105)), ("paper", [104])):
+        delays = medium.Channel(mode, 40).plan(3).delays_us
+        assert {delays[i][j] for i in range(40) for j in range(i)} == set(found)
+        assert all(delays[i][j] == delays[j][i] for i in range(40) for j in range(i))
+        assert {delays[i][i] for i in range(40)} == {0}
+
+
+def test_gaps_between_packets_are_as_long_as_the_draw_is_seldom(monkeypatch):
+    """The greatest draw is no gap at all, the least 30 ln 2 of the mean."""
+    draws = np.array([0, (1 << 29) - 1, (1 << 30) - 1])
+    monkeypatch.setattr(medium, "uniform", lambda seed, name, count, below: draws)
+    channel = medium.Channel("paper", 2, 10, traffic="poisson", packets=3, load=0.5)
+    mean_us = 2 * 10 * 208 / 0.5
+    times = [100_000 + int(many * math.log(2) * mean_us) for many in (30, 31, 31)]
+    assert channel._arrivals(1, 208) == [times, times]
+
+
+def test_what_becomes_of_the_packets_of_those_who_stay():
+    fields = [(name, np.int64) for name in ("node", "receivers", "end")]
+    rows = np.array([(0, 3, 1_100), (1, 0, 1_500), (3, 3, 2_000)], fields)
+    plan = Of(arrivals=[[100], [300], [200], [50]], params={"slot_us": 10})
+    assert members.others(Of(plan=plan, packets=rows), 3) == (1, 1, 100.0)
+    assert members.others(Of(plan=plan, packets=rows), 2) == (1, 0, 195.0)
+    assert members.others(Of(plan=plan, packets=rows[1:2]), 3) == (1, 2, 0)
+
+
+@pytest.mark.parametrize(("saturated", "completed", "left"), [
+    (True, 3, 6), (True, 9, 0), (True, 11, 0), (False, 3, 2), (False, 5, 0),
+])  # fmt: skip
+def test_packets_that_do_not_get_through_are_of_those_wanted_or_offered(saturated, completed, left):
+    plan = Of(saturated=saturated, wanted=9, arrivals=[[1, 2], [], [3, 4, 5]])
+    assert medium.left_open(Of(plan=plan, counts={"completed": completed})) == left

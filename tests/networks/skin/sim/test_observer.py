@@ -5,7 +5,10 @@ from types import SimpleNamespace as Of
 import pytest
 
 from innervate.networks.skin.protocol.constants import (
+    DROP_AGAIN,
+    DROP_LOOP,
     DROP_NO_ROUTE,
+    DROP_TOO_FAR,
     NONE,
     REPORT_BALANCE,
     REPORT_BROKEN,
@@ -15,7 +18,7 @@ from innervate.networks.skin.protocol.constants import (
     RULE_STATIC,
 )
 from innervate.networks.skin.sim import checks, observer
-from innervate.networks.skin.sim.counters import EARLY, LOOPED, NO_ROUTE
+from innervate.networks.skin.sim.counters import AGAIN, EARLY, LOOPED, NO_ROUTE, TOO_FAR
 from innervate.networks.skin.sim.observer import (
     APART,
     BROKEN_FEASIBLE,
@@ -60,7 +63,8 @@ def cut(world, end):
 
 
 @pytest.mark.parametrize(
-    ("reason", "counter"), [(DROP_NO_ROUTE, NO_ROUTE), (DROP_NO_ROUTE + 1, LOOPED)]
+    ("reason", "counter"),
+    [(DROP_NO_ROUTE, NO_ROUTE), (DROP_LOOP, LOOPED), (DROP_AGAIN, AGAIN), (DROP_TOO_FAR, TOO_FAR)],
 )
 @pytest.mark.parametrize(("had", "observe"), [(0, 1), (1, 1), (0, 0)])
 def test_a_drop_is_counted_by_reason_and_early_before_the_first_route(

@@ -2,6 +2,7 @@
 
 from functools import partial
 from itertools import chain, combinations
+from types import SimpleNamespace as Of
 
 import numpy as np
 import pytest
@@ -120,3 +121,24 @@ def test_a_table_that_grows_still_knows_its_states():
     assert len(rows.search.table) == 2 * slots == rows.search.run[s.SLOTS]
     assert not s.insert(tiny.world, rows.seen, 0)
     assert rows.count == 1
+
+
+@pytest.mark.parametrize(("said", "drawn", "counted"), [
+    (s.TOO_MANY, 0, 1), (s.TOO_MANY, 1, 2), (0, s.TOO_MANY, 0), (0, 0, 0),
+])  # fmt: skip
+def test_where_there_is_no_room_for_what_comes_before_a_round_it_is_counted(said, drawn, counted):
+    """Once for each choice that was drawn."""
+
+    def settle(world, choice):
+        world.found[0], world.found[1] = said, drawn
+        return True
+
+    play = fair.build(Of(settle=settle, turn=None, is_settled=None))[-1]
+    seen = []
+
+    def played(world, source, target, _):
+        play(world, source, target, fair.CALM, 0, 1)
+        seen.append(target.run[s.LEFT_OUT])
+
+    assert len(kept(Tiny(), played)[0]) == 1
+    assert seen == [counted]

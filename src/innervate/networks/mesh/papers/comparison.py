@@ -12,7 +12,7 @@ from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer
-from innervate.networks.mesh.sim.simulate import MeshResult, simulate
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import in_field
 from innervate.papers.experiment import Claim
 from innervate.papers.in_field import NEVER, Sent, World
@@ -111,8 +111,8 @@ def _through_an_outage(made: World, seed: int) -> list[Sent]:
     return found
 
 
-def played(protocol: Options, more: Options, given: Given, seed: int) -> tuple[World, MeshResult]:
-    """A world, and a mesh's run in it."""
+def planned(protocol: Options, more: Options, given: Given, seed: int) -> tuple[World, Any]:
+    """A world, and the plan of a mesh in it."""
     made = world(given, seed)
     plan = plan_of(given, seed, protocol, more)
     assert plan.radio.rssi_cdb == made.rssi_cdb
@@ -120,12 +120,13 @@ def played(protocol: Options, more: Options, given: Given, seed: int) -> tuple[W
     plan.faults = [MeshFault(at, action, node, 0, 0, i)
                    for i, (at, action, node) in enumerate(made.faults)]  # fmt: skip
     plan.offers = [_offer(one, flags) for one in made.sent]
-    return made, simulate(plan, checks=False)
+    return made, plan
 
 
 def measure(protocol: Options, more: Options, given: Given, seed: int) -> dict[str, Any]:
     """One run of a mesh."""
-    made, result = played(protocol, more, given, seed)
+    made, plan = planned(protocol, more, given, seed)
+    result = simulate(plan, checks=False)
     came = []
     if made.sent:
         found = messages(result)

@@ -124,18 +124,18 @@ def measure(channel: Channel, seed: int) -> dict[str, Any]:
         "jain_round": radio.jain_round(result),
         "fifo": radio.fifo(result),
         "ordered": is_ordered(result) if radio.traffic_of(result.plan) == "disaster" else None,
-        "open": unfinished(result.plan, result.counts["completed"]),
+        "open": left_open(result),
         "delay": radio.delay_slots(result),
         "waits": waits(result) if result.plan.saturated else None,
         **{name: result.counts[name] for name in ("completed", "silent")},
     }
 
 
-def unfinished(plan: Any, completed: int) -> int:
-    """Packets that were still to be completed at the end; saturated, none after the last wanted."""
-    if plan.saturated:
-        return max(0, int(plan.wanted) - completed)
-    return sum(map(len, plan.arrivals)) - completed
+def left_open(result: Any) -> int:
+    """Packets that have not got through at the end; more than were wanted may have."""
+    plan, done = result.plan, result.counts["completed"]
+    wanted = plan.wanted if plan.saturated else sum(map(len, plan.arrivals))
+    return int(max(0, wanted - done))
 
 
 def waits(result: Any) -> list[float]:
