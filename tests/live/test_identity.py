@@ -316,7 +316,14 @@ def test_one_command_makes_a_file_for_each_node(tmp_path, monkeypatch, capsys):
     assert authority.issued[-1] == (7, 5)
 
 
-BROKEN = ["", "number = 1", "\0", "[[[", 'number = 1\nserial = 2\nauthority = "aa"']
+BROKEN = [
+    "",
+    "number = 1",
+    "\0",
+    "[[[",
+    f"number = {'[' * 2_000}{']' * 2_000}",
+    'number = 1\nserial = 2\nauthority = "aa"',
+]
 
 
 @pytest.mark.parametrize("text", BROKEN)

@@ -49,6 +49,7 @@ def test_a_node_of_a_file(tmp_path):
         ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
         ("nodes = 9", 'nodes = 9\n[keys]\nuse = 1\nsecret = {1 = "aa"}', "64 hexadecimal digits"),
         ('kind = "mesh"', "kind = mesh", "not valid TOML"),
+        ('kind = "mesh"', f"kind = {'[' * 2_000}{']' * 2_000}", "not valid TOML"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, says):

@@ -13,6 +13,8 @@ from innervate.running.trail import FIELDS, first_difference
 from innervate.sim.cables.world import TRAIL
 from innervate.sim.tables import row_dtype
 
+DEEP = "[" * 100_000 + "]" * 100_000
+
 
 @pytest.fixture
 def written(four, tmp_path, page):
@@ -83,6 +85,11 @@ def test_what_is_no_run_folder(written, tmp_path):
     (broken / "scenario.toml").write_text("kind =")
     with pytest.raises(RunError, match="damaged"):
         compare(broken, written())
+    for name, deep in (("scenario.toml", f"a = {DEEP}"), ("summary.json", DEEP)):
+        broken = written()
+        (broken / name).write_text(deep)
+        with pytest.raises(RunError, match=f"{name} is damaged"):
+            compare(broken, written())
     nothing = written()
     (nothing / "summary.json").write_text("{}")
     with pytest.raises(RunError, match=r"summary\.json is damaged"):

@@ -153,7 +153,7 @@ def load(path: Path, number: int) -> Identity:
         raw = tomllib.loads(machine().read_text(path))
     except OSError as error:
         raise LiveError(f"{path}: the identity cannot be read: {error.strerror}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError):
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
         raise LiveError(
             f"{path}: not a node's identity; make one with: innervate live enrol"
         ) from None

@@ -144,7 +144,7 @@ def load(path: Path) -> Loaded:
         raise LiveError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise LiveError(f"{path}: is not UTF-8 text; name a node file") from None
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise LiveError(f"{path}: not valid TOML: {error}") from None
     return Loaded(parse(raw, str(path), path.parent), path)
 

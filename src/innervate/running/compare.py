@@ -125,7 +125,7 @@ class _Recorded:
             self.tables = tomllib.loads(path.read_text(encoding="utf-8"))
         except FileNotFoundError:
             raise RunError(f"{folder} is not a run folder: it has no {path.name}") from None
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             raise RunError(f"{path} is damaged; run the scenario again") from None
         self._folder = folder
         kind = self.summary.get("kind")

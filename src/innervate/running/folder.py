@@ -140,7 +140,7 @@ def read_json(folder: Path, name: str) -> dict[str, Any]:
         raise RunError(f"{_shown(folder)} is not a run folder: it has no {name}") from None
     except OSError as error:
         raise RunError(f"{_shown(folder / name)} cannot be read: {error.strerror}") from None
-    except ValueError:
+    except (ValueError, RecursionError):
         raise RunError(f"{_shown(folder / name)} is damaged; run the scenario again") from None
     if not isinstance(content, dict):
         raise RunError(f"{_shown(folder / name)} is damaged; run the scenario again")

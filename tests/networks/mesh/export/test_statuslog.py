@@ -59,6 +59,13 @@ def test_what_other_nodes_say_is_refused(tmp_path, more):
         measured(tmp_path, [said(3, (4, 1.0)), said(4, (3, 1.0)) | more])
 
 
+@pytest.mark.parametrize("text", ["", "[", "7", "[" * 100_000])
+def test_what_is_no_answer_at_all_is_refused(tmp_path, text):
+    (tmp_path / "status.json").write_text(text)
+    with pytest.raises(ExportError, match="no status of mesh nodes"):
+        statuslog.measure(tmp_path / "status.json")
+
+
 def test_without_neighbours_there_is_no_network(tmp_path):
     with pytest.raises(ExportError, match="ask again a little later"):
         measured(tmp_path, [said(3), said(4)])

@@ -37,7 +37,7 @@ def measure(path: Path) -> Mesh:
         told = json.loads(path.read_bytes())
         for one in told if isinstance(told, list) else [told]:
             _take(one, found, shares)
-    except (KeyError, TypeError, ValueError, AttributeError):
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError):
         raise ExportError(
             f"{path} is no status of mesh nodes; write it with: innervate live status --json"
         ) from None
