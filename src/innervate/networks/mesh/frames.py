@@ -26,7 +26,7 @@ from innervate.wire.layout import REST, pack, put_number, read
 
 VERSION = 1
 
-# Behind 2 bits of version and 6 of kind; behind all of it 16 bits of CRC.
+HEAD = (("version", 0, 2, 0), ("kind", 0, 6, 0))
 COMMON = (
     ("flags", 0, 8, 0),
     ("link_src", 0, 8, 0),
@@ -47,10 +47,14 @@ HOP_ACK = (
 )
 # Hops that acknowledge several packets at once name the others behind the first.
 MORE = (("more", REST, (("origin", 0, 8, 0), ("seq", 0, 16, 0)), 0),)
-# COMMON and HOP_ACK for struct, which is quicker, with the byte before them.
+CRC = (("crc", 0, 16, 0),)
+# The two forms of a whole frame.
+PACKET = HEAD + COMMON + (("path", "path_len", 8, 0), ("payload", REST, 8, 0)) + CRC
+WHOLE_ACK = HEAD + HOP_ACK + MORE + CRC
+# The same for struct, which is quicker: HEAD and COMMON, HEAD and HOP_ACK.
 PACKET_STRUCT = ">BBBBBBHBBB"
 ACK_STRUCT = ">BBBBHb"
-AT = 8  # bits of version and kind
+AT = 8  # bits of HEAD
 PATH_LEN_AT = HEADER_BYTES - 1
 
 # What decode says: read, or why not. Receivers count by these.
