@@ -134,7 +134,7 @@ def test_what_becomes_of_the_packets_of_those_who_stay():
 
 
 @pytest.mark.parametrize(("saturated", "completed", "left"), [
-    (True, 3, 6), (True, 9, 0), (True, 11, 0), (False, 3, 2), (False, 5, 0),
+    (True, 3, 6), (True, 9, 0), (True, 11, 0), (False, 3, 2), (False, 5, 0), (False, 6, -1),
 ])  # fmt: skip
 def test_packets_that_do_not_get_through_are_of_those_wanted_or_offered(saturated, completed, left):
     plan = Of(saturated=saturated, wanted=9, arrivals=[[1, 2], [], [3, 4, 5]])

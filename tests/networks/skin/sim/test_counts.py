@@ -32,18 +32,6 @@ def under_way(result):
     return urgent, int((kinds == 0).sum()) + queued
 
 
-def test_each_word_has_a_place_of_its_own():
-    named = {name: place for part in (wires, words) for name, place in vars(part).items()
-             if name.isupper() and isinstance(place, int)}  # fmt: skip
-    own = [named[name] for name in ("NO_ROUTE", "LOOPED", "AGAIN", "TOO_FAR", "EARLY", "GIVEN")]
-    assert own == list(range(wires.OWN, wires.OWN + 6))
-    who = [named[name] for name in ("ADDRESSED", "REACHED", "REPEATED", "STRAY", "MISSED")]
-    assert who == list(range(wires.OWN_TOO, wires.OWN_TOO + 5))
-    blocks = [named[name] for name in ("URGENT_BLOCK", "COMMAND_BLOCK")]
-    of_cables = {block + place for block in (0, *blocks) for place in (wires.SENT, *LOST)}
-    assert not of_cables & {*own, *who}
-
-
 def assert_conserved(result, what):
     counts = result.counters
     for block, flying in zip((wires.URGENT_BLOCK, 0), under_way(result), strict=True):

@@ -132,10 +132,11 @@ def measure(channel: Channel, seed: int) -> dict[str, Any]:
 
 
 def left_open(result: Any) -> int:
-    """Packets that have not got through at the end; more than were wanted may have."""
+    """Packets that have not got through at the end; saturated, more than were wanted may have."""
     plan, done = result.plan, result.counts["completed"]
-    wanted = plan.wanted if plan.saturated else sum(map(len, plan.arrivals))
-    return int(max(0, wanted - done))
+    if plan.saturated:
+        return max(0, int(plan.wanted - done))
+    return int(sum(map(len, plan.arrivals)) - done)
 
 
 def waits(result: Any) -> list[float]:
