@@ -45,7 +45,14 @@ def parameters(n, capacity, **more):
         for name, length, low, high, *_ in mesh_fields.PARAMS
     }
     words = mesh_fields.words(capacity)
-    needed = {"nodes": n, "row": words, "told": 1, "tick_us": TICK_US, "width": capacity}
+    needed = {
+        "nodes": n,
+        "row": words,
+        "told": 1,
+        "tick_us": TICK_US,
+        "width": capacity,
+        "forget": 60,
+    }
     return params | needed | more
 
 

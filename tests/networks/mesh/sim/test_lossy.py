@@ -41,3 +41,17 @@ def test_messages_come_over_links_that_lose_much(quality, tmp_path):
         assert summary["airtime"]["messages_s"] < AIRTIME_MAX_S, (quality, seed)
         shares.append(share)
     assert sum(shares) / SEEDS >= MEAN[quality], shares
+
+
+@pytest.mark.parametrize("seed", [18, 29])
+def test_a_copy_that_was_long_in_full_queues_is_not_delivered_again(seed):
+    """Twenty pairs send twice what 38.4 kbit/s carry: half comes, some after half a minute."""
+    flow = {"from": "random", "to": "random", "pairs": 20, "every_s": 2.0, "jitter_s": 1.0}
+    given = {
+        "kind": "mesh", "nodes": NODES, "duration_s": 300.0,
+        "radio": {"profile": "38k4", "mean_degree": 8},
+        "flow": [flow | {"start_s": 60.0, "stop_s": 280.0}],
+    }  # fmt: skip
+    summary = innervate.run(given, seed=seed).summary
+    assert summary["connected"]["delivery_ratio"] < 0.8
+    assert summary["duplicates"] == 0

@@ -7,10 +7,9 @@ import pytest
 from innervate.dialect.rng import GENERATE
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
-from innervate.networks.mesh.scenario.params import FORGET_S
 from innervate.networks.mesh.scenario.plan import Offer, Walk
 from innervate.networks.mesh.sim import build, orders, recorder, simulate
-from innervate.networks.mesh.sim.build import DUPLICATES, FORGET_US, OUTBOX
+from innervate.networks.mesh.sim.build import DUPLICATES, OUTBOX
 from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.scenario.actions.field import CUT, KILL
 from innervate.sim.field import medium, powers, queue
@@ -57,12 +56,11 @@ def test_a_plan_becomes_the_numbers_of_its_radios(world):
         "unit", "moving", "told", "good", "commands", "offers", "forget")} == {
         "nodes": N, "mac": 1, "collisions": 1, "turnaround": 55, "byte_ns": 32_000, "phy_bytes": 5,
         "origin_x": 20, "origin_y": -30, "unit": 10, "moving": 0, "told": 1, "good": 2,
-        "commands": 5, "offers": 2, "forget": FORGET_US}  # fmt: skip
+        "commands": 5, "offers": 2, "forget": 59_000_000}  # fmt: skip
     assert run["sense"] == powers.strength(strengths, -9_800)
     assert run["capture"] == powers.capture_ratio(600)
     assert run["free"] == len(world.air) == 8 * N + 64
     assert run["duplicate_limit"] == DUPLICATES // 2 - (N + 1) * (OUTBOX + 1) // 4
-    assert FORGET_US == 1e6 * FORGET_S  # what a scenario that says nothing has
     words = sum(max(int(field[1]), 1) for field in mesh_fields.gate(32))
     assert run["gate_words"] == words
     assert [int(get(world.mac_params, 0, name)) for name in build.CSMA] == [99, 3, 6, 8]

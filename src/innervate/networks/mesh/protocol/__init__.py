@@ -376,7 +376,8 @@ or gone at any moment, and nodes die and come back without memory.
   there is one; not to a gateway that another one took over from, before it is heard, or is in a
   table, or two rounds have begun.
 - A packet is delivered at most once in a boot of its origin: its recipient clears the window when
-  the origin was silent for `forget` ticks, and by then nothing is retransmitted (`lifetime`).
+  the origin was silent for `forget` ticks; by the half of them nothing is retransmitted any more
+  (`lifetime`), and what is under way for longer than the other half may come twice.
 - REPORT_ARRIVED is said only when the recipient acknowledged; a message without it, REPORT_EXPIRED,
   may have arrived.
 - Of gateways that hear each other one stays: the higher epoch, then the lower number. Between parts

@@ -37,9 +37,12 @@ def timeout_max(params):
 
 
 def lifetime(params):
-    """How long a message may be tried, us: who hears nothing of us forgets what it had of us."""
+    """How long a message may be tried, us: who hears nothing of us forgets what it had of us.
+
+    The last copy has more time than that to arrive: in full queues it may need it.
+    """
     silence = params.forget * min(params.tick_us, TICK_MAX_US)
-    return min(silence - (silence >> 3), LONGEST_US)
+    return min((silence >> 1) - (silence >> 4), LONGEST_US)
 
 
 def learn_round_trip(node, params, w, now):

@@ -22,7 +22,7 @@ FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "se
             "graph": w.SEARCH, "auto": w.SEARCH}  # fmt: skip
 FAINTEST_DBM, LOUDEST_DBM = -128, 127
 STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
-FORGET_S = 30.0
+FORGET_S = 60.0
 FORGET_TICKS_MAX = 255
 NO_FENCE: dict[str, Any] = {
     "watch": 0, "lost": 3, "flood": 1, "instances": 3, "clear_margin": 0, "predict_ms": 0,

@@ -28,7 +28,6 @@ MAC_OUTBOX = 4
 DUPLICATES = 1 << 15
 FRAME_BYTES = 1 << 10
 PLACES_PER_NODE = 8
-FORGET_US = 30_000_000  # receivers forget origins that are silent for so long
 CSMA = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
 MACS = {"none": 0, "csma": 1}
 
@@ -237,7 +236,7 @@ def _set_run(world: m.World, plan: Any) -> None:
         commands=sum(not away for away in plan.absent) + len(plan.faults),
         offers=len(plan.offers),
         duplicate_limit=DUPLICATES // 2 - _margin(n) // 4,
-        forget=FORGET_US,
+        forget=(plan.params["forget"] - 1) * plan.params["tick_us"],  # they count whole ticks
     )
     for name, length, *_ in mesh_fields.PARAMS:
         if length:
