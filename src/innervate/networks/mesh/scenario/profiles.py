@@ -12,6 +12,8 @@ SMALL = 15  # up to so many nodes a slow radio can afford twice the rounds
 LARGE = 20  # above so many, it can only afford half the beacons
 CROWD = 32  # up to so many nodes rounds take the time of the profile; beyond, see `crowded`
 TRIES_IN_CROWD = 6  # of a table, more: who was given up waits for a round that is far off
+COPIES_IN_CROWD = 3  # of a request, one more: who is not heard is not in the graph
+TRANSMISSIONS_IN_CROWD = 5  # of a hop, two more: in a round hidden nodes meet again and again
 
 
 class Profile(NamedTuple):
@@ -116,7 +118,7 @@ def crowded(profile: Profile, nodes: int, standby: bool) -> Profile:
 
     Twice as many nodes respond within three times the time, and rounds are as much further apart,
     for tables grow with the nodes, too; but not where a standby waits for requests. Requests come
-    by more ways: twice the jitter.
+    by more ways: twice the jitter, and once more from each; a hop is tried more often (0058).
     """
     if nodes <= CROWD:
         return profile
@@ -126,6 +128,8 @@ def crowded(profile: Profile, nodes: int, standby: bool) -> Profile:
     period = profile.period if standby else round(more * profile.period)
     return profile._replace(
         jitter=2 * profile.jitter,
+        copies=COPIES_IN_CROWD,
+        transmissions=TRANSMISSIONS_IN_CROWD,
         listen=listen,
         spread=spread,
         collect=listen + spread + (5 + more) / 6 * rest,
