@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+import innervate
 from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.networks.mesh.scenario.words import warnings
 from innervate.scenario import loads, plan
@@ -29,6 +30,30 @@ def test_rounds_of_many_nodes_take_their_time() -> None:
     assert (chosen["spread_us"], chosen["period"], chosen["period_max"]) == (1_000_000, 20, 60)
     assert made("nodes = 254").params["period"] == made("nodes = 254").params["period_max"] == 149
     assert made("nodes = 64\nradio.profile = 'ip'").params["period"] == 8
+
+
+@pytest.mark.parametrize(("nodes", "failover", "often"), [
+    (32, "search", (2, 3)), (33, "search", (3, 5)), (33, "graph", (2, 3)), (33, "auto", (2, 3)),
+])  # fmt: skip
+def test_where_many_are_requests_and_hops_are_tried_more_often(nodes, failover, often):
+    """But not where everybody floods the graph."""
+    params = made(f"nodes = {nodes}", f"protocol.failover='{failover}'").params
+    assert (params["copies"], params["transmissions"]) == often
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("radio", "nodes", "seconds"), [("250k", 64, 30), ("250k", 150, 60), ("38k4", 120, 300)]
+)
+def test_all_have_tables_of_a_first_round_that_saw_nearly_all_links(radio, nodes, seconds):
+    """Of 20 networks each, drawn as the scenario says nothing of them; in one somebody may wait."""
+    given = {"kind": "mesh", "nodes": nodes, "duration_s": seconds, "radio": {"profile": radio}}
+    late = []
+    for seed in range(3001, 3021):
+        found = innervate.run(given, seed=seed).summary["discovery"]
+        assert found["recall"] >= 0.98, seed
+        late += [seed] * (found["with_tables"] < nodes)
+    assert len(late) <= 1, late
 
 
 @pytest.mark.parametrize(
