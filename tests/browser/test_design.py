@@ -155,6 +155,7 @@ def test_a_phone_shows_what_is_selected_above_the_play_bar(look, skin):
     page = look(skin, PHONE, has_touch=True, is_mobile=True)
     page.locator("#tool").select_option("look")
     page.evaluate("scrollTo(0, 0)")
+    expect(page.locator("#state")).to_be_visible()  # it comes with the first figures, above the map
     before = box(page, "#stage")
     page.touchscreen.tap(*place(page, CELL))
     expect(page.locator("#selected-name")).to_have_text(CELL)
