@@ -45,8 +45,8 @@ def suited(model: MeshScenario, profile: Profile, count: int) -> Profile:
     if not profile.collisions:
         return profile
     if not is_shared(mac_of(model, profile)):
-        graph = model.protocol.failover in ("graph", "auto")
-        return crowded(profile, count, len(model.standby) > 0, graph)
+        again = model.protocol.failover in ("search", "alternate")
+        return crowded(profile, count, len(model.standby) > 0, again)
     mtu = model.protocol.mtu or profile.mtu
     turnaround_us = model.radio.turnaround_us or profile.turnaround_us
     turn_us = (profile.phy_bytes + HEADER_SLOTS + mtu) * profile.byte_ns / 1000 + turnaround_us

@@ -113,13 +113,14 @@ def profile_of(name: str, nodes: int) -> Profile:
     return found
 
 
-def crowded(profile: Profile, nodes: int, standby: bool, graph: bool = False) -> Profile:
+def crowded(profile: Profile, nodes: int, standby: bool, again: bool) -> Profile:
     """The same with time for what many nodes say: it meets about the gateway (decision 0044).
 
     Twice as many nodes respond within three times the time, and rounds are as much further apart,
     for tables grow with the nodes, too; but not where a standby waits for requests. Requests come
-    by more ways: twice the jitter, and once more from each; a hop is tried more often (0058). But
-    not where the graph may be flooded: each of its parts is sent by everybody so often.
+    by more ways: twice the jitter. With `again` each sends them once more, and a hop is tried more
+    often (0058); not where the graph may be flooded, of which everybody sends each part so often,
+    nor by the document's own rules.
     """
     if nodes <= CROWD:
         return profile
@@ -129,8 +130,8 @@ def crowded(profile: Profile, nodes: int, standby: bool, graph: bool = False) ->
     period = profile.period if standby else round(more * profile.period)
     return profile._replace(
         jitter=2 * profile.jitter,
-        copies=profile.copies if graph else COPIES_IN_CROWD,
-        transmissions=profile.transmissions if graph else TRANSMISSIONS_IN_CROWD,
+        copies=COPIES_IN_CROWD if again else profile.copies,
+        transmissions=TRANSMISSIONS_IN_CROWD if again else profile.transmissions,
         listen=listen,
         spread=spread,
         collect=listen + spread + (5 + more) / 6 * rest,
