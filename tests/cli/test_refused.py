@@ -136,10 +136,10 @@ def test_a_network_is_written_whole(tmp_path, capsys, umask, on, over):
 
 
 def test_a_network_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
-    def fails():
+    def fails(*_, **__):
         raise OSError(28, "no space left")
 
-    monkeypatch.setattr(making, "_umask", fails)
+    monkeypatch.setattr(Path, "write_text", fails)
     with pytest.raises(OSError, match="no space left"):
         making.make(tmp_path / "talk", "cables")
     assert list(tmp_path.iterdir()) == []

@@ -221,6 +221,23 @@ def test_a_neighbours_flood_takes_no_room_from_what_others_send_and_nobody_takes
     assert asyncio.run(main()) <= 64  # nor does it wait for the rest of the flood
 
 
+def test_the_first_of_very_many_neighbours_have_a_socket_each_and_the_others_share_one():
+    async def main():
+        port, last = free_port(), free_port()
+        far = [("127.0.0.2", 20_000 + i) for i in range(35)] + [("127.0.0.1", last)]
+        link, got = UdpLink(("127.0.0.1", port), far), []
+        await link.open(lambda path, data: got.append((path.port, data)))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+            sock.bind(far[-1])
+            sock.sendto(b"x", link.bind)
+        await until(lambda: got)
+        count = len(link._sockets())
+        link.close()
+        return got, count
+
+    assert asyncio.run(main()) == ([(35, b"x")], 32)
+
+
 def test_where_neighbours_cannot_be_kept_apart_one_socket_hears_them_all(monkeypatch):
     def refuse(*_):
         raise OSError(errno.ENOPROTOOPT, "Protocol not available")

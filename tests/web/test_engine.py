@@ -46,6 +46,14 @@ def test_however_it_is_cut_into_slices_it_is_the_batch_run(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
+def test_it_stops_after_its_budget_at_what_it_came_to(kind):
+    engine = ready(kind)
+    engine.advance(engine.plan.duration_us, 64)
+    assert 0 < engine.now_us < engine.plan.duration_us
+    assert engine.now_us == engine.running.clock_us() + 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_one_event_after_the_other_is_the_same_network(kind):
     engine, whole = ready(kind), ready(kind)
     steps = 0

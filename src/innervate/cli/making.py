@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -40,29 +39,24 @@ def make(target: Path | None, on: str, over: str = "") -> int:
     if target.exists():
         raise UserError(f"{target} is there already; choose another name or move it away")
     target.parent.mkdir(parents=True, exist_ok=True)
-    fresh = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
+    work = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
+    fresh = work / name  # which may be read by whom the user lets: `work` is the user's alone
     try:
+        fresh.mkdir()
         for home in [on, f"{on}_over"] if over else [on]:
             for pattern in sorted((PATTERNS / home).iterdir()):
                 made = pattern.name.removesuffix(".txt").replace(WORD, name)
                 text = pattern.read_text(encoding="utf-8").replace(WORD, name)
                 (fresh / made).write_text(text.replace("OVER", over), encoding="utf-8")
-        fresh.chmod(0o777 & ~_umask())
         fresh.rename(target)
     finally:
-        shutil.rmtree(fresh, ignore_errors=True)
+        shutil.rmtree(work, ignore_errors=True)
     what = f"{on}, above {over}" if over else on
     print(f"Written: {target}, a network over {what}. Try it:")
     for command in (f"innervate check-protocol {target}", f"innervate verify {target}",
                     f"innervate run {target / name}.toml"):  # fmt: skip
         print(f"  {command}")
     return 0
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _is_module(name: str) -> bool:

@@ -125,7 +125,8 @@ def packets(draw, kinds=tuple(payloads.FIELDS)):
 
 
 acks = st.builds(
-    lambda **values: new(const.ACK, dest=values["link_dst"], **values),
+    lambda more, **values: new(const.ACK, (), b"".join(more), dest=values["link_dst"], **values),
+    more=st.lists(st.binary(min_size=3, max_size=3), max_size=4),
     **{
         name: st.integers(*RANGES[name][1:])
         for name in ("link_src", "link_dst", "origin", "seq", "rssi")

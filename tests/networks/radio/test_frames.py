@@ -103,6 +103,8 @@ def test_round_trip(case):
     assert wire.payload_of(memoryview(data)) == payload
     pairs = wire.fields(frame)
     assert all(value == everything(frame)[name] for name, value in pairs if name != "version")
+    declared = [name for name, *_ in wire.FIELDS.get(frame.kind, ()) if name != wire.SPARE]
+    assert [name for name, _ in pairs] == ["version", "kind", *declared]
 
 
 @given(frames())

@@ -86,6 +86,17 @@ def test_then_come_next_hop_and_alternate_of_the_table_in_force(bank, named):
     assert choices(one, mode=TABLE_FREE - 1)[0] == []
 
 
+@pytest.mark.parametrize(("failover", "mode", "takes"), [
+    (ALTERNATE - 1, TABLES, [1, 2]), (ALTERNATE, TABLES, []), (SEARCH, TABLES, [1, 2]),
+    (ALTERNATE - 1, TABLE_FREE, []), (SEARCH, TABLE_FREE, []),
+])  # fmt: skip
+def test_anybody_takes_the_place_of_a_next_hop_with_the_documents_failover_and_with_search(
+    failover, mode, takes
+):
+    one = node(neighbour=[1, 2, FREE])
+    assert choices(one, failover=failover, mode=mode)[1] == takes
+
+
 @pytest.mark.parametrize("entry", [FREE, 4, COUNT, 9])
 def test_a_table_that_names_nobody_or_oneself_names_nobody(entry):
     assert choices(node(next=table(first=entry), alt=table(first=2)))[0] == [2]

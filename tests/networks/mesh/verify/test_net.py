@@ -4,10 +4,11 @@ from types import SimpleNamespace as Of
 
 import pytest
 
+from innervate.networks.mesh.protocol.constants import ALL
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify.cases import SHORT
-from innervate.networks.mesh.verify.local import GRAIN_US, NEVER
+from innervate.networks.mesh.verify.local import GRAIN_US, NEVER, NONE
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import DEAD, DIE, REVIVE, Net, Nets
 from innervate.verify.explore import Tally
@@ -60,6 +61,27 @@ def test_who_dies_or_is_switched_on_again_uses_up_what_is_left_of_that_alone(net
     assert after.left == (0, 1, 3, 4)
     assert DEAD not in after.nodes
     assert nets.faults(after._replace(left=(0, 0, 3, 4))) == []
+
+
+def test_who_misses_a_frame_stays_as_it_was_and_who_hears_it_does_not(nets, first):
+    """The first frame to all, however it goes; node 1 has two that hear it."""
+    before = first
+    while not (found := to_all(nets, before)):
+        before = nets.steady(before)[1]._replace(left=first.left, ticks=first.ticks)
+    assert {move.missed for move, *_ in found} == {(), (0,), (2,), (0, 2)}
+    for move, after, _ in found:
+        changed = {v for v in (0, 2) if after.nodes[v] != before.nodes[v]}
+        assert changed == {0, 2} - set(move.missed)
+        assert before.left[2] - after.left[2] == len(move.missed)
+
+
+def to_all(nets, net):
+    """Steps by which a frame of node 1 goes out to all."""
+    number = net.nodes[1]
+    handed = nets.locals.states[number].handed if number != DEAD else NONE
+    if handed == NONE or nets.locals.packets[handed].link_dst != ALL:
+        return []
+    return nets.air(net, 1)
 
 
 def test_whoever_watches_is_asked_once_a_second_at_most(nets, first, monkeypatch):

@@ -6,7 +6,7 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.radio.papers import common, delay, fairness, medium, members
+from innervate.networks.radio.papers import common, delay, fairness, limits, medium, members
 from innervate.plot import style
 
 
@@ -139,3 +139,23 @@ def test_what_becomes_of_the_packets_of_those_who_stay():
 def test_packets_that_do_not_get_through_are_of_those_wanted_or_offered(saturated, completed, left):
     plan = Of(saturated=saturated, wanted=9, arrivals=[[1, 2], [], [3, 4, 5]])
     assert medium.left_open(Of(plan=plan, counts={"completed": completed})) == left
+
+
+def test_turns_without_slots_fill_what_the_bound_of_hand_overs_allows():
+    found = limits.turns()
+    assert (found["low_us"], found["high_us"]) == (limits.SLOT / 2, limits.SLOT / 2)
+    assert found["share"] == pytest.approx(25 / 25.5)
+
+
+def test_all_stations_together_send_as_much_however_many_they_are(monkeypatch):
+    """In whole rounds of ten packets each, so that the tenth left out ends with a round."""
+    asked = []
+
+    def slotted(_, n, *__, packets, **___):
+        asked.append((n, packets))
+        return Of(throughput=0.5, jain_round=1.0)
+
+    monkeypatch.setattr(common, "slotted", slotted)
+    curve = common.Curve("dcf", 5, "saturated", ns=(2, 7, 1_000), seeds=1, successes=20_000)
+    assert curve.measure()["throughput"] == [[0.5]] * 3
+    assert asked == [(2, 10_000), (7, 2_850), (1_000, 20)]

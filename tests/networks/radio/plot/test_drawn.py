@@ -13,6 +13,7 @@ from innervate.networks.radio.protocol.constants import CRR, DATA, REPORT, REPOR
 
 PROTOCOL = "csma-cd-r/practical"
 WINDOW = scene.Window(1_000, 2_000, 1_000)
+RESOLUTION = scene.resolution  # of which the tests choose what comes out, but one
 ROOM = timeline.WIDTH - timeline.LEFT - timeline.RIGHT
 
 
@@ -122,6 +123,15 @@ def run_of(*sent, rows=(), stations=3, turnaround=0):
 @pytest.fixture(autouse=True)
 def whole(monkeypatch):
     monkeypatch.setattr(scene, "resolution", lambda _: scene.Window(0, 9_000, 0))
+
+
+def test_a_resolution_without_an_end_is_so_many_packets_long_with_two_turnarounds_each():
+    run = run_of((1_000, 1_600, 0, DATA), (1_100, 1_700, 1, DATA), turnaround=20)
+    fields = ("time", "end", "node", "offered", "receivers")
+    run.packets = np.zeros(0, [(name, np.int64) for name in fields])
+    long = scene.PACKETS_MAX * (500 + 2 * 20)
+    edge = round(scene.MARGIN * long)
+    assert RESOLUTION(run) == scene.Window(1_000 - 20 - edge, 1_000 + long + edge, 1_000)
 
 
 def test_a_frame_under_way_as_the_window_begins_or_ends_is_part_of_it():

@@ -7,6 +7,7 @@ from innervate.networks.skin.papers import FIGURES, experiment
 from innervate.papers.experiment import FAILS, HOLDS, reading
 from innervate.plot import style
 from tests.fixtures.papers import CHEAP
+from tests.networks.skin.papers import results
 from tests.plot.ink import measured
 from tests.plot.labels import covered, noted
 from tests.plot.self_contained import check_paper
@@ -26,6 +27,24 @@ def test_a_figure_is_drawn(made, name):
 @pytest.mark.parametrize("name", CHEAP)
 def test_no_labels_overlap(made, name):
     assert covered(made.folder, name) == []
+
+
+@pytest.mark.parametrize("name", ["at_most", "eq7", "fig8a", "fig10", "modes"])
+def test_bars_and_lines_lie_within_their_panels(name):
+    """Of figures whose runs are too long to be made here: of results that are written here."""
+    with style.house():
+        figure = experiment(name).draw(results.of(name), True)
+    assert [found for ax in figure.axes for found in beyond(ax)] == []
+
+
+def beyond(ax):
+    """Heights that lie outside of a panel."""
+    low, high = sorted(ax.get_ylim())
+    bars = [(bar.get_y(), bar.get_y() + bar.get_height()) for bar in ax.patches]
+    lines = [line.get_ydata() for line in ax.lines if line.get_transform() == ax.transData]
+    found = [float(y) for ys in (*bars, *lines) for y in ys]
+    assert found
+    return [y for y in found if not low - 1e-9 <= y <= high + 1e-9]
 
 
 def test_the_overlap_check_can_fail(tmp_path):

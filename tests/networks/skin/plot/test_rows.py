@@ -61,14 +61,14 @@ def test_an_event_is_a_row(monkeypatch):
 
 
 SUMMARY = {
-    "data": {"sent": 9, "loss_ratio": 0.25, "latency_ms": TIMES}, "balance_factor": 0.5,
+    "data": {"sent": 9, "lost": 3, "latency_ms": TIMES}, "balance_factor": 0.5, "lost_at_start": 1,
     "port_loads": [3, 1], "beacon_share": 0.006, "wall_s": 0.5, "events": 1_000, "duration_s": 4,
     "loops": {"episodes": 1_200, "longest_ms": 8.0},
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(("changes", "shown"), [
-    ({}, 5), ({"data": SUMMARY["data"] | {"sent": 0}}, 4), ({"balance_factor": None}, 4),
+    ({}, 5), ({"data": SUMMARY["data"] | {"sent": 1}}, 4), ({"balance_factor": None}, 4),
     ({"port_loads": [4]}, 4), ({"beacon_share": None}, 4),
     ({"data": SUMMARY["data"] | {"latency_ms": TIMES | {"p99": None}}}, 4),
 ])  # fmt: skip
@@ -84,6 +84,10 @@ def test_figures_are_in_their_order_and_of_what_was_simulated():
     assert [one for one, _ in found[:4]] == ["75 %", "3 ms", "0.500", "0.6 %"]
     assert found[1][1] == "from sensor to PC for 99 % of those received, 1 ms for half"
     assert found[-1][1].startswith("to simulate 1.5 s, ")
+    assert found[0][1] == "of the samples not lost after the start"
+    for early in (0, None):
+        every = report._figures(Of(summary=SUMMARY | {"lost_at_start": early}))[0]
+        assert every == ("66.7 %", "of the samples not lost")
     none = SUMMARY | {"loops": {"episodes": 0, "longest_ms": None}}
     assert report._figures(Of(summary=none))[-2] == ("0", "forwarding loops")
 

@@ -51,6 +51,12 @@ def test_parameters(small: str) -> None:
     assert params(small, "protocol.beacon_hz=30")["beacon_us"] == 33333
 
 
+def test_no_skin_is_so_deep_that_a_turn_of_balancing_leaves_its_range(small: str) -> None:
+    table = loads(small).model.protocol
+    made = [skin_plan.parameters(table, depth)["balance_periods"] for depth in (8_191, 8_192)]
+    assert made == [65_528, 65_535]
+
+
 @pytest.mark.parametrize(
     ("r_f", "r_r", "whole"),
     [("0.55", "0.55", (462, 462, 2)), ("1e-9", "2", (1, 1680, 840)), ("2", "1e-9", (1680, 1, 1))],

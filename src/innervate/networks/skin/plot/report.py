@@ -78,8 +78,10 @@ def _broken(summary: Mapping[str, Any]) -> str:
 def _figures(digest: Digest) -> list[tuple[str, str]]:
     summary = digest.summary
     data, found = summary["data"], []
-    if data["sent"]:
-        found.append((words.share_words(1 - data["loss_ratio"]), "of the samples not lost"))
+    early = summary["lost_at_start"] or 0  # no loss to the headline either
+    if sent := data["sent"] - early:
+        share = words.share_words(1 - (data["lost"] - early) / sent)
+        found.append((share, f"of the samples not lost{' after the start' if early else ''}"))
     if data["latency_ms"]["p99"] is not None:
         half = words.ms_words(data["latency_ms"]["p50"])
         text = f"from sensor to PC for 99 % of those received, {half} for half"
