@@ -15,7 +15,7 @@ from innervate import run, scenario
 from innervate.export import files, graphs, recording, schemas, tables
 from innervate.export.errors import ExportError
 from innervate.network import networks
-from tests.export.test_captures import MESH, RADIO, SKIN
+from tests.export.test_captures import MESH, RADIO, SKIN, plan_of
 
 FENCED = MESH | {
     "placement": {"layout": "grid", "spacing_m": 10.0},
@@ -106,6 +106,14 @@ def test_a_recording_tells_the_states_of_a_skin(runs, tmp_path):
     told = [one["message"] for _, one in found["/log"]]
     assert told[0].startswith("cut")
     assert Counter(one["level"] for _, one in found["/log"]) == {3: 2}
+
+
+def test_what_does_harm_is_a_warning_in_a_recording_and_what_mends_is_information():
+    """By the numbers of Foxglove's log: 2 and 3."""
+    events = [{"at_s": at, "interface": 1, "action": what}
+              for at, what in ((0.04, "cut"), (0.06, "restore"))]  # fmt: skip
+    found = recording.events(plan_of(SKIN | {"event": events}))
+    assert [told["level"] for _, told in found] == [3, 2]
 
 
 def test_a_recording_tells_where_robots_are(runs, tmp_path):

@@ -142,6 +142,13 @@ def test_what_nodes_say_of_themselves_is_fitted(tmp_path, capsys):
     assert "1 links carried nothing" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("blank", "is_one"), [(0, True), (63, True), (64, False)])
+def test_json_begins_within_the_first_bytes_of_a_file(blank, is_one, tmp_path):
+    path = tmp_path / "status.json"
+    path.write_text(" " * blank + "[")
+    assert statuslog.looks_like_one(path) is is_one
+
+
 @pytest.mark.parametrize(
     "content", ["{", "[]", "[1]", '{"kind": "skin"}', '[{"kind": "mesh"}]', "[[[]]]"]
 )

@@ -3,7 +3,7 @@ import pytest
 from innervate.networks.skin.verify import graphs
 from innervate.networks.skin.verify.cases import budget_of
 from innervate.networks.skin.verify.system import Budget, SkinModel, first_row, layout, system_of
-from innervate.verify import explore
+from innervate.verify import explore, search
 from innervate.verify.errors import VerifyError
 from tests.networks.skin.verify.bench import parents_of
 
@@ -75,6 +75,13 @@ def test_a_search_ends_where_it_is_told_to_and_says_so(monkeypatch):
     full = explore.explore(made, memory=8 << 20).tally
     assert full.ended == "memory"
     assert full.expanded < full.states
+
+
+@pytest.mark.parametrize("memory", [8 << 20, 64 << 20])
+def test_a_state_takes_its_row_a_way_back_and_two_places_that_are_doubled_in_time(memory):
+    made = model("triangle")
+    driver = explore._Driver(made, made.system(), True, memory, 1 << 30)
+    assert driver.search.run[search.LIMIT] == memory // (made.layout().width + 4 + 2 * 12)
 
 
 @pytest.mark.slow  # the longest of all in this room; test_finds.py has small walks
