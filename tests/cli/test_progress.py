@@ -40,6 +40,14 @@ def test_long_runs_tell_how_long_they_take(clock, capsys):
     assert left == sorted(left, reverse=True)
 
 
+def test_how_long_it_takes_goes_by_what_was_done_since_the_first_word(clock, capsys):
+    with progress.Progress() as show:
+        show(500_000, 1_000_000)
+        clock.now += 30
+        show(600_000, 1_000_000)
+    assert capsys.readouterr().err == "simulated 0.60 of 1 s, about 120 s left\n"
+
+
 def test_json_is_silent_unless_somebody_watches(clock, capsys):
     with progress.Progress(quiet=True) as show:
         for step in range(1, 101):

@@ -44,3 +44,12 @@ def test_a_tool_that_does_not_get_through_says_why_in_a_line(script, said):
     with pytest.raises(FirmwareError) as error:
         tools.run("sh", "-c", script)
     assert str(error.value) == said
+
+
+@pytest.mark.parametrize(("slots", "most"), [(3, 1), (25, 23), (257, 255), (300, 255)])
+def test_a_stations_packet_is_as_long_as_its_slots_without_the_crc(slots, most):
+    role = SimpleNamespace(driver="station", has_gate=False)
+    made = SimpleNamespace(role=role, params={"packet_slots": slots, "per_turn": 4})
+    assert library._told(made, "PACKET_BYTES x PER_TURN, HAS_GATE", 0) == f"{most} x 4, 0"
+    role.driver, role.has_gate = "node", True
+    assert library._told(made, "PACKET_BYTES HAS_GATE", 0) == "PACKET_BYTES gate != 0"

@@ -124,3 +124,11 @@ def test_what_changes_nothing_leaves_a_term_as_it_is():
     assert terms.mod(a, terms.number(100)) is not a  # it may be below 0
     assert terms.bits_and(small, terms.number(7)) is terms.bits_and(terms.number(7), small) is small
     assert terms.bits_and(small, terms.number(3)) is not small
+
+
+def test_of_what_is_joined_both_truths_are_possible():
+    terms = Terms()
+    a, b = (terms.unknown(name, 0, 9) for name in "ab")
+    parts = [terms.less(a, b), terms.same(a, terms.number(3))]
+    for joined in (terms.all(*parts), terms.any(*parts)):
+        assert (joined.low, joined.high) == (0, 1)

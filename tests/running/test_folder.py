@@ -165,3 +165,15 @@ def test_json_of_a_folder(tmp_path):
     (tmp_path / SUMMARY).write_bytes(b"\xff\xfe")
     with pytest.raises(RunError, match="damaged"):
         read_json(tmp_path, SUMMARY)
+
+
+@pytest.mark.parametrize("missing", [os.W_OK, os.X_OK])
+def test_a_folder_is_written_into_by_who_may_write_and_enter_the_one_it_comes_into(
+    tmp_path, monkeypatch, missing
+):
+    """Whoever is root may always: so it is said here what is not allowed."""
+    monkeypatch.setattr(os, "access", lambda _, mode: not mode & missing)
+    with pytest.raises(RunError, match="no permission to write in"):
+        check_target(tmp_path / "run")
+    monkeypatch.setattr(os, "access", lambda *_: True)
+    assert check_target(tmp_path / "run") == (tmp_path / "run").resolve()

@@ -50,6 +50,12 @@ def test_a_cell_beside_another_is_on_the_patch(columns, rows):
         assert 0 <= other["column"] < columns
 
 
+def test_a_share_that_no_network_has_is_said(monkeypatch):
+    monkeypatch.setattr(fuzz, "networks", dict)
+    with pytest.raises(LookupError, match="no network has this share"):
+        fuzz.drawn(1)
+
+
 def test_what_is_drawn_can_nearly_always_be_run():
     drawn = [fuzz.drawn(seed) for seed in range(300)]
     for tables in drawn:

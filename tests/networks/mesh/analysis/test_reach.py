@@ -49,6 +49,7 @@ def choices(one, number=4, **params):
     nodes[number] = one
     found = reach.choices(SimpleNamespace(nodes=nodes), plan_of(**params))
     assert [found.gateway[i] for i in range(COUNT) if i != number] == [NOWHERE] * (COUNT - 1)
+    assert found.gateway[number] == (one.gateway if one.known and one.gateway < COUNT else NOWHERE)
     named = [int(to) for to in found.named[number] if to != NOWHERE]
     assert found.named[number].tolist()[: len(named)] == named  # no gaps
     return named, np.flatnonzero(found.neighbours[number]).tolist(), found.goes_back

@@ -5,12 +5,12 @@ import pytest
 from innervate.dialect import plain
 from innervate.dialect.access import CLOCK, FORCE, PACKET
 from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import DELIVER
+from innervate.dialect.outbox import DELIVER, SET_TIMER
 from innervate.dialect.outbox import SEND as SEND_IT
 from innervate.dialect.rng import seeded
-from innervate.networks.radio.baselines import passing, tree
+from innervate.networks.radio.baselines import contend, passing, tree
 from innervate.networks.radio.baselines import station as entry
-from innervate.networks.radio.baselines.common import LISTEN, SEND
+from innervate.networks.radio.baselines.common import LISTEN, SEND, STOPPED
 from innervate.networks.radio.baselines.fields import BASELINE
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.station import enqueue
@@ -115,3 +115,14 @@ def test_moments_of_baselines_are_of_a_clock_of_30_bits():
 def test_a_station_remembers_as_many_packets_as_a_frame_can_have():
     (ours,) = (row[2:4] for row in BASELINE if row[0] == "count")
     assert ours == next(row[2:4] for row in fields.FRAME if row[0] == "count") == (0, 15)
+
+
+@pytest.mark.parametrize("cd", [0, 1])
+def test_who_broke_off_waits_no_longer_than_the_channel_is_busy(cd):
+    """As soon as its radio listens again and hears nobody, it may go on: there is no gap."""
+    alone = Alone("csma-cd-d1", mode=STOPPED, cd=cd, end=1_000, due=900)
+    before = alone.out.count[0]
+    contend.ready(alone.station, alone.params, 1_020, alone.out)
+    assert alone.station.mode == LISTEN
+    asked = alone.out.action[before : alone.out.count[0]]
+    assert [(one.kind, one.b) for one in asked] == ([] if cd else [(SET_TIMER, 1_020)])

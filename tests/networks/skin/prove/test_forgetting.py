@@ -5,6 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from innervate.networks.skin.protocol.constants import RULE_FEASIBLE
+from innervate.networks.skin.prove import reductions
 from innervate.networks.skin.prove.forgetting import Asked
 from innervate.prove.execute import Machine
 from innervate.prove.records import Array, Record, State
@@ -94,3 +96,10 @@ def test_a_known_index_or_what_no_port_says_is_looked_up_as_ever(name, low, high
     plain = Machine({}, terms, made.out).element(Array(cell, name, 4), index, node, state, called)
     assert found is plain
     assert all(one.what != "a dead port is not looked at" for one in made.demands)
+
+
+def test_loads_decide_nothing_when_a_cell_hears_nor_when_its_period_ends():
+    assert [made().name for made in reductions.steps(RULE_FEASIBLE)] == [
+        "a beacon between ticks, periodic", "the timer for news that are none",
+        "a beacon with other loads", "a period with other loads",
+    ]  # fmt: skip
