@@ -6,7 +6,6 @@ def put(buffer: bytearray, at: int, bits: int, value: int) -> None:
 
     A negative value goes in as its two's complement.
     """
-    value &= (1 << bits) - 1
     while bits > 0:
         room = 8 - (at & 7)
         taken = min(room, bits)
