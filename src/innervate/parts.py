@@ -63,7 +63,8 @@ PARTS = {
     "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
     "invariants": "module in the dialect: node_*(node, params, now), network_*(nodes, count, "
     "params): what must hold",
-    "measures": "(nodes, reports, deliveries, plan) -> dict of str to number: own figures",
+    "measures": "(nodes, reports, deliveries, plan) -> dict of str to number: own figures; nodes: "
+    "the states at the end of those that are on",
     "shows": "dict of str to (unit, (node, params) -> number): what pages colour nodes by, too",
     "happenings": "dict of str to (node, value) -> (kind, item) for on_input: own [[event]]s",
     "papers": "module: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up",

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from innervate.analysis import summary as summaries
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, silent
 from innervate.analysis.summary import headline, known_latencies_us, latency_ms, summarize
 from innervate.sim.counts import Counts
@@ -122,3 +123,19 @@ def test_what_a_run_did_not_keep_is_not_in_its_summary():
     assert made["events_per_s"] is None
     assert made["interrupted_at_s"] == 1.5
     assert made["messages"]["latency_ms"]["max"] is None
+
+
+@pytest.mark.parametrize("as_list", [True, False])
+def test_own_figures_are_of_the_nodes_that_are_on_alone(monkeypatch, as_list):
+    """Of the states there may be more than nodes: one that is blank."""
+    states = np.rec.array([(10,), (20,), (40,), (80,)], dtype=[("n", np.int64)])
+    world = SimpleNamespace(stations=list(states) if as_list else states)
+
+    def measures(nodes, rows, deliveries, plan):
+        return {"sum": sum(int(node.n) for node in nodes), "nodes": len(nodes)}
+
+    network = SimpleNamespace(has=lambda _: True, measures=measures, folder=None)
+    monkeypatch.setattr(summaries, "networks", lambda: {"skin": network})
+    assert summarize(result(world=world))["measures"] == {"sum": 30, "nodes": 2}
+    every = counts(off=(0, 1, 2))
+    assert summarize(result(world=world, counts=every))["measures"] == {"sum": 0, "nodes": 0}

@@ -133,6 +133,27 @@ def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
         made.carry_out(messages.Kill(0))
 
 
+@pytest.mark.parametrize("least_us", [0, 120_000])
+def test_a_team_that_was_interrupted_has_not_ended_on_its_page_either(
+    tmp_path, monkeypatch, least_us
+):
+    monkeypatch.setattr("innervate.sim.driver.Simulation.slice_events", 20)
+
+    def interrupt(now_us, _end_us):
+        if now_us > least_us:
+            signal.raise_signal(signal.SIGINT)
+
+    done = run({"kind": "radio", "stations": 5, "duration_s": 9}, out=tmp_path / "run",
+               progress=interrupt)  # fmt: skip
+    assert done.summary["interrupted_at_s"] < 0.5
+    made = Recorded(tmp_path / "run", plan_of_folder(tmp_path / "run"))
+    made.replay()
+    made.run_to_end()
+    said = {name: made.fields()["headline"][name] for name in ("level", "text")}
+    assert said == {name: done.summary["headline"][name] for name in ("level", "text")}
+    assert said["level"] == "ok"
+
+
 def test_of_an_interrupted_run_only_what_was_is_simulated_and_shown(tmp_path, monkeypatch):
     monkeypatch.setattr("innervate.sim.driver.Simulation.slice_events", 2_000)
 

@@ -114,7 +114,9 @@ def _measures(result: Any) -> Reports:
     network = networks()[result.plan.kind]
     if not network.has("measures"):
         return {}
-    nodes = states_of(result.world)
+    states, off = states_of(result.world), set(result.counts.off)
+    on = [node for node in range(result.counts.nodes) if node not in off]
+    nodes = [states[node] for node in on] if isinstance(states, list) else states[on]
     rows, deliveries = (result.rows.get(name, ()) for name in ("rows", "deliveries"))
     try:
         found = network.measures(nodes, rows, deliveries, result.plan)

@@ -211,6 +211,19 @@ def test_parents_are_of_one_version():
     assert one.node.version == VERSION + 1, "never a member of a previous DODAG Version"
 
 
+def test_a_parent_that_has_forgotten_the_version_is_none_any_more():
+    """The root has lost its memory twice: it begins anew with one that is over."""
+    one = joined(dio(1, 256, version=VERSION + 1), dio(2, 300, version=VERSION + 1))
+    assert parent_of(one) == 1
+    one.hear(**dio(1, 256))
+    assert (parent_of(one), one.node.version) == (2, VERSION + 1)
+    alone = joined(dio(1, 256, version=VERSION + 1))
+    alone.hear(**dio(2, 256))  # of who is no parent it is not news
+    assert parent_of(alone) == 1
+    alone.hear(**dio(1, 256))
+    assert (alone.node.parent, alone.node.rank, alone.node.version) == (-1, c.INFINITE, VERSION + 1)
+
+
 def test_only_the_root_makes_versions():
     """8.2.2.1: "a node that is a not a root MUST NOT advertise a DODAGVersionNumber higher than the
     highest DODAGVersionNumber it has heard" """

@@ -18,7 +18,7 @@ from innervate.sim.field.build import build
 from innervate.sim.field.declared import DeclaredField
 from innervate.sim.field.loop import BOOT
 from innervate.sim.field.medium import NONE
-from innervate.sim.field.states import ALIVE, DEAD
+from innervate.sim.field.states import ALIVE, DEAD, OFF
 from innervate.sim.recorded import Recorded
 from innervate.sim.status import POOL_FULL, ROWS_FULL
 from innervate.sim.tables import get, uniform
@@ -193,9 +193,14 @@ def test_a_full_queue_grows_and_nothing_else(running):
     assert len(running.world.heap.keys) == 2 * room
 
 
+def test_who_is_about_to_start_is_not_off_and_who_is_not_there_yet_is(running):
+    running.world.radios["state"], running.plan.absent = (OFF, OFF, ALIVE), [0, 1, 1]
+    assert running.counts().off == (1,)
+
+
 def test_frames_and_messages_are_counted_by_name(running):
     running.world.counters[:] = [3, 10, 17, 24, 31, 38, 45, 0, 59, 66, 73, 80]
-    running.world.radios["state"] = (ALIVE, DEAD, 0)
+    running.world.radios["state"], running.plan.absent = (ALIVE, DEAD, OFF), [1, 1, 1]
     assert running.counts() == Counts(
         nodes=3, off=(1, 2), sent=3, arrived=10, offered=73, delivered=80,
         lost_by={"collision": 17, "sending": 24, "noise": 31, "off": 38, "broken_off": 45,
@@ -312,11 +317,15 @@ def test_a_frame_is_as_long_as_the_layout_of_its_kind(monkeypatch):
 
 
 def test_who_loses_its_memory_has_an_empty_queue():
-    checks = {one.__name__: one for one in declared._checks([])}
+    """It knows who it is, and its random choices go on as they were."""
+    state = [("heard", 2), ("rng", 0), ("number", 0), ("left", 0)]
+    checks = {one.__name__: one for one in declared._checks([], state)}
     world = kept_world()
-    world.radios[1].waiting, world.words, world.low = 2, [[1], [2], [0]], [0]
+    world.radios[1].waiting, world.low = 2, [0] * 5
+    world.words = [[9] * 5, [1, 2, 3, 4, 5], [-1, -2, -3, -4, -5]]
     checks["wipe"](world, 1)
-    assert (world.radios[1].first, world.radios[1].waiting, world.words[1]) == (0, 0, [0])
+    assert (world.radios[1].first, world.radios[1].waiting) == (0, 0)
+    assert world.words[1] == [-1, -2, 3, 4, -5]
 
 
 @pytest.mark.parametrize(("value", "broken"), [(5, 64), (9, medium.BROKEN_RANGE)])
@@ -327,7 +336,7 @@ def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_cloc
         seen.append(now)
         return False
 
-    check = declared._checks([holds])[0]
+    check = declared._checks([holds], [])[0]
     run = Of(broken=0, broken_node=-1, checks=1)
     world = Of(run=[run], words=[[value]], low=[0], high=[8], spans=[], radios=[Of(offset=100)],
                stations=[None], params=[None])  # fmt: skip

@@ -8,7 +8,7 @@ REPORT_ROUTE, REPORT_DROP, REPORT_LINK = 1, 2, 3
 
 
 def measures(nodes: Any, reports: Any, deliveries: Any, plan: Any) -> dict[str, float]:
-    """Nodes with a route at the end, changes of routes, links found down, data without a route."""
+    """Nodes that are on and have a route, route changes, links found down, data without a route."""
     found = {"routed_nodes": sum(node.parent >= 0 for node in nodes)}
     codes = [int(row["code"]) for row in reports]
     found["route_changes"] = codes.count(REPORT_ROUTE)

@@ -20,6 +20,7 @@ from innervate.dialect.access import ALL
 from innervate.dialect.outbox import URGENT
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
+from innervate.kernel.records import places_of
 from innervate.network import Network, access_of, networks
 from innervate.scenario.declared.field import sizes_of
 from innervate.sim import clocks, heap, rows, taps
@@ -29,7 +30,7 @@ from innervate.sim.counts import Counts
 from innervate.sim.field import access, build, calls, listening, loop, medium, powers, timers
 from innervate.sim.field import world as w
 from innervate.sim.field.simulation import Field
-from innervate.sim.field.states import ALIVE
+from innervate.sim.field.states import DEAD, OFF
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.status import POOL_FULL
@@ -62,7 +63,7 @@ def functions(network: Network) -> ModuleType:
         f"{protocol.__name__} over a field",
         (whole, frames["digest"], frames["kind_of"], _frame_bytes(network.frames)),
         _entries(protocol, names), _mac(network), _noted(whole, frames["kind_of"], names),
-        _checks(list(invariants_of(network, "node_").values())), BELOW, KEPT,
+        _checks(list(invariants_of(network, "node_").values()), fields.STATE), BELOW, KEPT,
     )  # fmt: skip
     return do
 
@@ -232,9 +233,10 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
     )  # fmt: skip
 
 
-def _checks(own: list[Callable[..., Any]]) -> tuple[Callable[..., Any], ...]:
+def _checks(own: list[Callable[..., Any]], state: Any) -> tuple[Callable[..., Any], ...]:
     """The checks after every call; and what is left of a node that lost its memory."""
     check_own = check_of(own, "stations")
+    number, chance, choice = places_of(state, "number", "rng", "choice")
 
     def check(world, do, node, time):  # type: ignore[no-untyped-def]
         if not calls.is_sound(world, node):
@@ -242,7 +244,7 @@ def _checks(own: list[Callable[..., Any]]) -> tuple[Callable[..., Any], ...]:
         check_own(world, node, (time + world.radios[node].offset) & arith.MASK30)
 
     def wipe(world, node):  # type: ignore[no-untyped-def]
-        listening.wipe_words(world, node)
+        listening.wipe_words(world, node, number, chance, choice)
         world.radios[node].first = world.radios[node].waiting = 0
 
     return check, wipe, check_own
@@ -291,14 +293,18 @@ class DeclaredField(Field):
         count = self.plan.nodes
         return Counts(
             nodes=count,
-            off=tuple(node for node in range(count)
-                      if int(get(radios, node, "state")) != ALIVE),
+            off=tuple(node for node in range(count) if self._is_off(radios, node)),
             sent=int(numbers[listening.SENT]),
             arrived=int(numbers[listening.ARRIVED]),
             lost_by={name: many for name, many in lost.items() if many},
             offered=int(numbers[listening.OFFERED]),
             delivered=int(numbers[listening.DELIVERED]),
         )  # fmt: skip
+
+    def _is_off(self, radios: Any, node: int) -> bool:
+        """Switched off, or not there yet; not who is only about to start with the others."""
+        state = int(get(radios, node, "state"))
+        return state == DEAD or (state == OFF and bool(self.plan.absent[node]))
 
     def broken_line(self) -> str:
         """The broken invariant, in one line."""

@@ -67,10 +67,10 @@ def test_after_the_last_death_the_first_message_of_each_sender_counts_by_itself(
     sent = (10, 1, 2, 0), (19, 2, 1, 0), (20, 1, 2, 0), (21, 2, 1, 0), (22, 1, 2, 0)
     found, ground = run(*sent, came=((0, 2, 5, 1), (1, 1, 5, 1), (3, 1, 5, 1), (4, 2, 5, 1)),
                         faults=dies)  # fmt: skip
-    after = mesh._after_deaths(found, ground)
+    after = mesh._after_deaths(found, ground, 100 * S)
     assert shares(after["first"]) == (2, 1, 0.5)
     assert shares(after["all"]) == (3, 2, 2 / 3)
-    assert mesh._after_deaths(*run((10, 1, 2, 0), faults=dies[2:])) is None
+    assert mesh._after_deaths(*run((10, 1, 2, 0), faults=dies[2:]), 100 * S) is None
 
 
 def test_each_flow_is_counted_by_itself():

@@ -242,10 +242,43 @@ def test_percentiles_shares_and_deaths():
     assert messages.ratio(1, 4) == 0.25
     assert messages.ratio(0, 0) is None
     happened = [fault(3 * S, KILL, 1), fault(4 * S, RESTART, 2), fault(5 * S, KILL, 2)]
-    assert messages.deaths_us(made(faults=happened).plan) == [3 * S, 5 * S]
+    assert messages.deaths_us(made(faults=happened).plan, END_US) == [3 * S, 5 * S]
 
 
 def test_deliveries_of_other_types_are_no_messages():
     rows, offers = [accepted(10 * S)], [offer(10 * S)]
     for kind, state in ((ALARM, LOST), (DATA, DELIVERED)):
         assert states(rows, offers, delivered=[given(11 * S, 4, 1, 500, kind)]) == [state]
+
+
+def took_effect(*faults, absent=(), ended_us=END_US):
+    result = made(faults=[fault(*one) for one in faults])
+    result.plan.absent = [int(node in absent) for node in range(result.plan.nodes)]
+    found = messages.took_effect(result.plan, ended_us)
+    return [(one.at_us // S, one.action) for one in found]
+
+
+def test_what_changes_nothing_has_not_happened():
+    dies = [(S, KILL, 1), (2 * S, KILL, 1), (3 * S, KILL, 2)]
+    assert took_effect(*dies) == [(1, KILL), (3, KILL)]
+    assert took_effect((S, REVIVE, 1), (2 * S, KILL, 1), (3 * S, REVIVE, 1)) == [
+        (2, KILL), (3, REVIVE),
+    ]  # fmt: skip
+    assert took_effect((S, REVIVE, 1), (2 * S, REVIVE, 1), absent=[1]) == [(1, REVIVE)]
+    assert took_effect((S, RESTART, 1), (2 * S, RESTART, 1)) == [(1, RESTART), (2, RESTART)]
+    assert took_effect((S, KILL, 1), (2 * S, RESTART, 1), (3 * S, KILL, 1))[-1] == (3, KILL)
+    cuts = [(S, RESTORE, 1, 2), (2 * S, CUT, 1, 2), (3 * S, CUT, 2, 1), (4 * S, CUT, 1, 3),
+            (5 * S, RESTORE, 2, 1), (6 * S, RESTORE, 1, 2)]  # fmt: skip
+    assert took_effect(*cuts) == [(2, CUT), (4, CUT), (5, RESTORE)]
+    assert took_effect((S, JAM, 1), (2 * S, JAM, 1), (3 * S, QUIET, 1)) == [
+        (1, JAM), (2, JAM), (3, QUIET),
+    ]  # fmt: skip
+
+
+def test_what_was_to_happen_after_the_end_has_not_happened():
+    dies = [(S, KILL, 1), (5 * S, KILL, 2)]
+    assert took_effect(*dies, ended_us=5 * S + 1) == [(1, KILL), (5, KILL)]
+    assert took_effect(*dies, ended_us=5 * S) == [(1, KILL)]
+    plan = made(faults=[fault(*one) for one in dies]).plan
+    assert messages.deaths_us(plan, END_US) == [S, 5 * S]
+    assert messages.deaths_us(plan, S) == []

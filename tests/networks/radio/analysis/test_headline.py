@@ -27,11 +27,23 @@ def test_all_is_well():
     assert of(ended=False, delivered=8, pending=2) == (
         OK, "8 of 10 packets were delivered, 2 wait.", (),
     )  # fmt: skip
+    assert of(ended=False, delivered=9, pending=1)[1] == "9 of 10 packets were delivered, 1 waits."
     assert of(delivered=8, pending=2)[1] == "8 of 10 packets were delivered, 2 still waited."
     assert of(ended=False, delivered=0, pending=10)[:2] == (
         OK, "Of 10 packets none has been delivered yet.",
     )  # fmt: skip
     assert of(offered=1, delivered=1)[1] == "The packet was delivered."
+
+
+@pytest.mark.parametrize(("offered", "abandoned", "ended", "text"), [
+    (0, 0, True, "No packet was offered."),
+    (3, 3, True, "No packet was offered to a robot that stayed."),
+    (3, 3, False, "No packet has been offered to a robot that stayed."),
+])  # fmt: skip
+def test_of_what_was_not_offered_nothing_is_known(offered, abandoned, ended, text):
+    gone = {"offered": offered, "abandoned": abandoned, "delivered": 0, "away": (1,)}
+    assert of(**gone, ended=ended) == (NO_DATA, text, ())
+    assert of(**gone | {"offered": offered + 1}, pending=1, ended=False)[0] == OK
 
 
 def test_four_robots_are_named():

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from innervate import scenario
 from innervate.networks.radio.analysis import airtime, live, packets
 from innervate.networks.radio.analysis.headline import timeout_us
 from innervate.networks.radio.scenario.plan import parameters
@@ -17,7 +18,8 @@ ROWS = np.zeros(0, [("code", np.int64), ("time", np.int64), ("node", np.int64)])
 
 def result(*rows, saturated=False, faults=(), ended_us=100_000, **plan):
     """A run of three stations whose packets are (node, offered, end, slots, receivers)."""
-    given = {"arrivals": [[1_000], [2_000], []], "wanted": 0, "absent": [0, 0, 0]} | plan
+    given = {"arrivals": [[1_000], [2_000], []], "wanted": 0, "absent": [0, 0, 0],
+             "scenario": None} | plan  # fmt: skip
     made = SimpleNamespace(
         plan=SimpleNamespace(saturated=saturated, faults=list(faults), stations=3,
                              params=parameters(25), **given),
@@ -55,11 +57,25 @@ def test_what_a_robot_that_was_off_kept_has_no_delay(offered, end, counts):
 
 def test_traffic_is_told_from_what_was_offered():
     def kind(saturated, arrivals):
-        return packets.traffic_of(SimpleNamespace(saturated=saturated, arrivals=arrivals))
+        return packets.traffic_of(
+            SimpleNamespace(saturated=saturated, arrivals=arrivals, scenario=None)
+        )
 
     assert kind(True, [[]]) == "saturated"
     assert kind(False, [[1], [2], []]) == kind(False, []) == "disaster"
     assert kind(False, [[1], [2, 3]]) == "poisson"
+
+
+@pytest.mark.parametrize("kind", ["poisson", "disaster"])
+def test_few_packets_are_no_disaster_where_the_scenario_says_otherwise(kind):
+    few = {"kind": "radio", "stations": 3, "duration_s": 1.0,
+           "traffic": {"kind": kind, **({"load": 1e-4} if kind == "poisson" else {})}}  # fmt: skip
+    plan = scenario.plan(scenario.from_dict(few))
+    assert max(map(len, plan.arrivals)) <= 1
+    assert packets.traffic_of(plan) == kind
+
+
+def test_the_first_offer_is_the_earliest():
     assert packets.first_offer_us(result()) == 1_000
     assert packets.first_offer_us(result(arrivals=[[], []])) == 0
 

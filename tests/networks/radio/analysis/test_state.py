@@ -7,7 +7,7 @@ import pytest
 from innervate.networks.radio.analysis.headline import timeout_us
 from innervate.networks.radio.analysis.state import facts, pending, switched_on, waiting
 from innervate.networks.radio.scenario.plan import Pairs, parameters
-from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.channel.world import RING
 
 PARAMS = parameters(25)
@@ -82,13 +82,17 @@ def test_packets_wait_from_when_their_robot_was_switched_on_last():
     assert waiting(there, 1) == [100, 200, 900]
     assert waiting(there, 1, 200) == [200, 200, 900]
     faults = [fault(JOIN, 500, 1), fault(JOIN, 50, 1), fault(KILL, 700, 1), fault(JOIN, 901, 1)]
-    assert [switched_on(3, faults, at)[1] for at in (49, 50, 500, 900, 901)] == [
-        0, 50, 500, 500, 901,
+    late = plan(absent=[0, 1, 0])
+    assert [switched_on(late, faults, at)[1] for at in (49, 50, 500, 900, 901)] == [
+        0, 50, 50, 50, 901,
     ]  # fmt: skip
+    assert switched_on(plan(faults[2:]), faults[:1], 900) == [0, 0, 0]  # it was on
+    assert switched_on(plan([fault(LEAVE, 60, 2), fault(JOIN, 80, 2)]), (), 80) == [0, 0, 80]
     back = NOW - TIMEOUT + 5
-    assert facts(there, plan([fault(JOIN, back, 1)]), NOW, 0).overdue == 0
-    assert facts(there, plan(), NOW, 0, faults=[fault(JOIN, back, 1)]).overdue == 0
-    assert facts(there, plan(), NOW, 0).overdue == 3
+    off, on = fault(KILL, back - 1, 1), fault(JOIN, back, 1)
+    assert facts(there, plan([off, on]), NOW, 0).overdue == 0
+    assert facts(there, plan([off]), NOW, 0, faults=[on]).overdue == 0
+    assert facts(there, plan([on]), NOW, 0).overdue == facts(there, plan(), NOW, 0).overdue == 3
 
 
 def test_numbers_of_packets_go_round():

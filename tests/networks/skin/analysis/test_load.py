@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 
 from innervate.networks.skin.analysis.load import balance_factor, interface_of, port_loads
+from innervate.sim.cables.world import ALIVE, DEAD
 from innervate.topology import from_patches
 
 W, E, UP, DOWN, NONE = 0, 1, 2, 3, -1
 
 
-def result_of(graph, parents, down=()):
+def result_of(graph, parents, down=(), off=()):
     epoch = np.zeros(len(graph.peer), np.int32)
     epoch[list(down)] = 1
     cells = [SimpleNamespace(parent=port) for port in parents]
-    world = SimpleNamespace(cells=cells, epoch=epoch)
+    alive = [DEAD if cell in off else ALIVE for cell in range(graph.cells + 1)]
+    world = SimpleNamespace(cells=cells, epoch=epoch, alive=alive)
     return SimpleNamespace(plan=SimpleNamespace(graph=graph), world=world)
 
 
@@ -52,6 +54,11 @@ def test_long_chain():
     graph = from_patches([(cells, 1, "Z")])
     graph.add_interface(0, "W")
     assert port_loads(result_of(graph, [W] * cells)) == [cells]
+
+
+def test_who_has_not_started_or_is_dead_has_no_route_whatever_its_record_says(grid):
+    assert port_loads(result_of(grid, [0] * 6, off=range(6))) == [0, 0]
+    assert interface_of(result_of(grid, [W] * 6, off=[1])).tolist() == [0, -1, -1, -1, -1, -1]
 
 
 def test_nobody_has_a_route(grid):

@@ -174,7 +174,7 @@ def traffic(
         crossings: its crossings.
         doubled: deliveries beyond the first.
         looped: packets that met a node twice.
-        faults: those of its plan.
+        faults: those that took effect.
     """
     decided = counted(found)
     came = decided.state == DELIVERED

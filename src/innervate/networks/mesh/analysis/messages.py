@@ -24,7 +24,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_EXPIRED,
     REPORT_FULL,
 )
-from innervate.scenario.actions.field import KILL, RESTART, REVIVE
+from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
@@ -315,6 +315,34 @@ def first_after(found: Messages, since_us: int) -> Messages:
     return late.only(np.sort(np.unique(late.node, return_index=True)[1]))
 
 
-def deaths_us(plan: Any) -> list[int]:
+def took_effect(plan: Any, ended_us: int) -> list[Any]:
+    """The events that happened and changed something, in order: no dead node dies again.
+
+    Args:
+        plan: of the run.
+        ended_us: when the run ended, or was interrupted.
+    """
+    found = []
+    on = [not absent for absent in plan.absent] or [True] * plan.nodes
+    cut: dict[frozenset[int], bool] = {}
+    for fault in plan.faults:
+        if fault.at_us >= ended_us:
+            break
+        pair = frozenset((fault.node, fault.other))
+        if fault.action in (KILL, REVIVE):
+            changes = on[fault.node] == (fault.action == KILL)
+        elif fault.action in (CUT, RESTORE):
+            changes = cut.get(pair, False) == (fault.action == RESTORE)
+            cut[pair] = fault.action == CUT
+        else:
+            changes = True
+        if fault.action in (KILL, REVIVE, RESTART):
+            on[fault.node] = fault.action != KILL
+        if changes:
+            found.append(fault)
+    return found
+
+
+def deaths_us(plan: Any, ended_us: int) -> list[int]:
     """When nodes were switched off, in order."""
-    return [fault.at_us for fault in plan.faults if fault.action == KILL]
+    return [fault.at_us for fault in took_effect(plan, ended_us) if fault.action == KILL]

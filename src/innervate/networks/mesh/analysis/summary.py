@@ -28,6 +28,7 @@ from innervate.networks.mesh.analysis.messages import (
     messages,
     percentiles,
     ratio,
+    took_effect,
 )
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground
 from innervate.networks.mesh.analysis.reach import of_simulation
@@ -59,7 +60,7 @@ def summarize(result: Any) -> MeshSummary:
     led, ground = network.gateways(result), Ground(plan)
     crossings = all_crossings(result)
     again, met = duplicates(result), looped(result)
-    sent = traffic(found, crossings, again, met, plan.faults)
+    sent = traffic(found, crossings, again, met, took_effect(plan, result.ended_us))
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -76,7 +77,7 @@ def summarize(result: Any) -> MeshSummary:
         "control_bytes": network.control_bytes(result, kinds),
         "messages": _counts(found),
         "connected": connected(found, ground),
-        "after_deaths": _after_deaths(found, ground),
+        "after_deaths": _after_deaths(found, ground, result.ended_us),
         "flows": flows(found, plan),
         "stretch": stretch(found, ground),
         "alternates": alternates(result),
@@ -149,9 +150,9 @@ def connected(found: Messages, ground: Ground) -> Connected:
     }
 
 
-def _after_deaths(found: Messages, ground: Ground) -> AfterDeaths | None:
+def _after_deaths(found: Messages, ground: Ground, ended_us: int) -> AfterDeaths | None:
     """The first message of every connected sender after the last death; None without deaths."""
-    died = deaths_us(ground.plan)
+    died = deaths_us(ground.plan, ended_us)
     if not died:
         return None
     first = connected(first_after(found, died[-1]), ground)

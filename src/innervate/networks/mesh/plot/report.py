@@ -203,9 +203,10 @@ def _flows(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _events(result: Any) -> str:
-    """The section on events that the scenario brings about; "" if there are none."""
+    """The section on events that the scenario has brought about; "" if there are none."""
     plan = result.plan
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, f))) for f in plan.faults]
+    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, f)))
+            for f in plan.faults if f.at_us <= result.ended_us]  # fmt: skip
     return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 

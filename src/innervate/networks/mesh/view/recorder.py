@@ -11,7 +11,7 @@ import numpy as np
 
 from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.headline import Traffic, traffic
-from innervate.networks.mesh.analysis.messages import duplicates, messages
+from innervate.networks.mesh.analysis.messages import duplicates, messages, took_effect
 from innervate.networks.mesh.analysis.summary import looped
 from innervate.networks.mesh.protocol import constants as c
 from innervate.web.engine import Engine, Rows
@@ -79,5 +79,9 @@ class TrafficRecorder:
         plan = replace(engine.plan, faults=[f for f in faults if f.at_us < engine.now_us])
         result = SimpleNamespace(plan=plan, ended_us=engine.now_us, **rows)
         return traffic(
-            messages(result), all_crossings(result), duplicates(result), looped(result), plan.faults
+            messages(result),
+            all_crossings(result),
+            duplicates(result),
+            looped(result),
+            took_effect(plan, result.ended_us),
         )

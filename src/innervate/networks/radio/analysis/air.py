@@ -12,7 +12,7 @@ import numpy as np
 
 from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_STOPPED
-from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL
+from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
@@ -147,17 +147,16 @@ def groups(result: Any, on_air: Air | None = None) -> Groups:
 def off_times(result: Any) -> list[Numbers]:
     """Per station the intervals in which it was switched off, as rows of (from, to)."""
     plan = result.plan
-    changes: list[tuple[int, int, bool]] = [
-        (fault.at_us, fault.node, fault.action == JOIN)
-        for fault in plan.faults
+    changes = [
+        (fault.at_us, place, fault.node, fault.action == JOIN)
+        for place, fault in enumerate(plan.faults)
         if fault.action in (JOIN, KILL)
     ]
-    left = result.rows[result.rows["code"] == REPORT_LEFT]
-    changes += [(int(row["time"]), int(row["node"]), False) for row in left]
+    changes += _left(result)
     since: list[int | None] = [0 if absent else None for absent in plan.absent]
     since += [None] * (plan.stations - len(since))
     found: list[list[tuple[int, int]]] = [[] for _ in range(plan.stations)]
-    for at_us, node, on in sorted(changes):
+    for at_us, _, node, on in sorted(changes):
         begun = since[node]
         if on and begun is not None:
             found[node].append((begun, at_us))
@@ -168,6 +167,23 @@ def off_times(result: Any) -> list[Numbers]:
         if begun is not None:
             found[node].append((begun, FOREVER))
     return [np.array(spans, np.int64).reshape(-1, 2) for spans in found]
+
+
+def _left(result: Any) -> list[tuple[int, int, int, bool]]:
+    """Robots that left: when, in which place among the plan's events, who.
+
+    At the moment of the event that had it leave where nothing kept it, else behind all of them.
+    """
+    told: dict[tuple[int, int], list[int]] = {}
+    for place, fault in enumerate(result.plan.faults):
+        if fault.action == LEAVE:
+            told.setdefault((fault.at_us, fault.node), []).append(place)
+    found = []
+    for row in result.rows[result.rows["code"] == REPORT_LEFT]:
+        at_us, node = int(row["time"]), int(row["node"])
+        places = told.get((at_us, node))
+        found.append((at_us, places.pop(0) if places else len(result.plan.faults), node, False))
+    return found
 
 
 def signals(result: Any, from_us: int, to_us: int, on_air: Air | None = None) -> list[Heard]:

@@ -88,8 +88,12 @@ def headline(facts: RadioFacts) -> Headline:
     worse, more = _degraded(facts, told=bool(down))
     if not (down or worse or facts.offered) and facts.ended:
         return Headline(NO_DATA, "No packet was offered.")
+    said = [*down, *worse, *_counts(facts)]
+    if not said:  # whoever was offered packets has left with them
+        was = "was" if facts.ended else "has been"
+        return Headline(NO_DATA, f"No packet {was} offered to a robot that stayed.")
     level = DOWN if down else DEGRADED if worse else OK
-    words = "; ".join([*down, *worse, *_counts(facts)])
+    words = "; ".join(said)
     return Headline(level, f"{words[0].upper()}{words[1:]}.", tuple(sorted({*nodes, *more})))
 
 
@@ -148,7 +152,7 @@ def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]
 def _counts(facts: RadioFacts) -> list[str]:
     """How many packets came through, of those whose robots stayed."""
     if not facts.offered:
-        return ["no packet has been offered"]
+        return [f"no packet {'was' if facts.ended else 'has been'} offered"]
     expected = facts.offered - facts.abandoned
     if not facts.delivered:
         yet = "was delivered" if facts.ended else "has been delivered yet"
@@ -160,7 +164,8 @@ def _counts(facts: RadioFacts) -> list[str]:
     share = f"{facts.delivered:,} of {_count(expected, 'packet', 'packets')} {was} delivered"
     fresh = facts.pending - facts.overdue
     if fresh > 0 and facts.pending < expected:
-        share += f", {fresh:,} still waited" if facts.ended else f", {fresh:,} wait"
+        wait = "waits" if fresh == 1 else "wait"
+        share += f", {fresh:,} still waited" if facts.ended else f", {fresh:,} {wait}"
     return [share]
 
 

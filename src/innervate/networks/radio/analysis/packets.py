@@ -38,9 +38,14 @@ def timed(result: Any) -> Any:
 
 
 def traffic_of(plan: Any) -> str:
-    """What stations had to send: "saturated", "disaster" (one packet each) or "poisson"."""
+    """What stations had to send: "saturated", "disaster" (one packet each) or "poisson".
+
+    Poisson traffic may be so thin that nobody has more than a packet: then the scenario says it.
+    """
     if plan.saturated:
         return "saturated"
+    if plan.scenario is not None and plan.scenario.model.traffic.kind == "poisson":
+        return "poisson"
     return "disaster" if max(map(len, plan.arrivals), default=0) <= 1 else "poisson"
 
 

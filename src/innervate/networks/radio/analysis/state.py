@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from innervate.networks.radio.analysis.headline import RadioFacts, Stations, timeout_us
-from innervate.scenario.actions.channel import JOIN
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.channel.world import RING
 from innervate.sim.tables import get
 
@@ -32,7 +32,7 @@ def facts(
     """
     count = plan.stations
     on, off, away = _presence(world, plan, now_us)
-    since = switched_on(count, [*plan.faults, *faults], now_us)
+    since = switched_on(plan, faults, now_us)
     waits = {i: waiting(world, i, since[i]) for i in range(count)}
     timeout = timeout_us(plan.params, count)
     goal = ended and not plan.saturated and plan.wanted > 0
@@ -87,12 +87,20 @@ def _presence(world: Any, plan: Any, now_us: int) -> tuple[list[int], Stations, 
     return found["on"], tuple(found["off"]), tuple(found["away"])
 
 
-def switched_on(count: int, faults: Iterable[Any], now_us: int) -> list[int]:
-    """Per robot, when it was switched on last, us."""
-    since = [0] * count
-    for fault in faults:
-        if fault.action == JOIN and fault.at_us <= now_us:
-            since[fault.node] = max(since[fault.node], fault.at_us)
+def switched_on(plan: Any, faults: Iterable[Any], now_us: int) -> list[int]:
+    """Per robot, when it was switched on last, us; one that is on is not switched on.
+
+    Who was told to leave is taken for gone from then on, though it stays while it has packets.
+    """
+    since = [0] * plan.stations
+    on = [not absent for absent in plan.absent] or [True] * plan.stations
+    for fault in sorted([*plan.faults, *faults], key=lambda fault: fault.at_us):
+        if fault.at_us > now_us:
+            break
+        if fault.action == JOIN and not on[fault.node]:
+            since[fault.node] = fault.at_us
+        if fault.action in (JOIN, KILL, LEAVE):
+            on[fault.node] = fault.action == JOIN
     return since
 
 

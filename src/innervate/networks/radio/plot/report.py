@@ -211,8 +211,8 @@ def _charts(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _events(result: Any) -> str:
-    """The section on events that the scenario brings about; "" if there are none."""
-    faults = result.plan.faults
+    """The section on events that the scenario has brought about; "" if there are none."""
+    faults = [fault for fault in result.plan.faults if fault.at_us <= result.ended_us]
     rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(told.fault_words(f))) for f in faults]
     return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 

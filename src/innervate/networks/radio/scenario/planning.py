@@ -24,8 +24,8 @@ def plan(scenario: Any) -> RadioPlan:
     """
     model: RadioScenario = scenario.model
     bit_us = round(1_000_000 / model.channel.bit_rate)
-    duration_us = max(1, round(model.duration_s * 1e6))
-    _check_offers(scenario, 8 * bit_us, duration_us)
+    ends_us = duration_us(model)
+    _check_offers(scenario, 8 * bit_us, ends_us)
     faults = _faults(model)
     joins = {fault.node for fault in faults if fault.action == JOIN}
     first = {node: next(f.action for f in faults if f.node == node) for node in joins}
@@ -38,7 +38,7 @@ def plan(scenario: Any) -> RadioPlan:
         scenario=scenario,
         kind="radio",
         seed=scenario.seed,
-        duration_us=duration_us,
+        duration_us=ends_us,
         protocol=protocol_name(model),
         stations=model.stations,
         params=_parameters(model, bit_us),
@@ -46,11 +46,16 @@ def plan(scenario: Any) -> RadioPlan:
         loss_q15=round(model.channel.loss * LOSS_ONE),
         saturated=saturated,
         wanted=wanted,
-        arrivals=arrivals(model, 8 * bit_us, duration_us),
+        arrivals=arrivals(model, 8 * bit_us, ends_us),
         sizes=sizes(model),
         absent=[int(first.get(i) == JOIN) for i in range(model.stations)],
         faults=faults,
     )
+
+
+def duration_us(model: RadioScenario) -> int:
+    """How long a scenario lasts at most, us."""
+    return max(1, round(model.duration_s * 1e6))
 
 
 def _parameters(model: RadioScenario, bit_us: int) -> dict[str, int]:

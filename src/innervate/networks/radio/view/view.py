@@ -23,6 +23,7 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_STOPPED,
 )
 from innervate.networks.radio.scenario.plan import RadioFault
+from innervate.networks.radio.scenario.planning import duration_us
 from innervate.scenario.actions.channel import JOIN, KILL
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
@@ -184,17 +185,21 @@ class RadioView(View):
 
     def headline(self) -> Headline:
         """Is all well, and if not, what is wrong."""
-        memory, engine = self.memory, self.engine
+        memory, engine, plan = self.memory, self.engine, self.plan
         found = facts(
             engine.world,
-            self.plan,
+            plan,
             engine.now_us,
             memory.delivered_us,
             faults=engine.given,
-            ended=engine.now_us >= self.plan.duration_us or engine.is_complete(),
+            # A recording that was interrupted is shorter than its scenario, and has not ended.
+            ended=engine.now_us >= duration_us(plan.scenario.model) or engine.is_complete(),
         )
         wrong = tuple(sorted(memory.wrong))
-        return headline(found._replace(bounds={} if wrong else found.bounds, stations_wrong=wrong))
+        believed = {"believed_us": [plan.params["dmin_us"], plan.params["dmax_us"]]}
+        return headline(
+            found._replace(bounds=believed if wrong else found.bounds, stations_wrong=wrong)
+        )
 
     def _turns(self) -> list[int]:
         """Everybody's place in the round; -1 none."""

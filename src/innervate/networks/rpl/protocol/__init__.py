@@ -84,6 +84,8 @@ rank (`farthest`). What is for us alone is acknowledged at once (`acknowledge`),
 | joined    | cheaper by `switch` or more       | `follow`, `leave`, as above          | joined    |
 | joined    | another whole rank (`dag_rank`)   | `follow`, `reset_trickle`            | joined    |
 | joined    | no parent left, or `is_too_high`  | `detach`: a DIO of infinite rank     | detached  |
+| joined    | the parent's `DIO` of an older    | `hear_dio`: `choose`                 |           |
+|           | version                           |                                      |           |
 | detached  | `TICK`, `hold` is over            | `tick`: no `floor`, `choose`         |           |
 | no parent | `TICK`                            | `tick`: a DIS, below; after          |           |
 |           |                                   | `patience` ticks `flush`             |           |

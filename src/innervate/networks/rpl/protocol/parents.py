@@ -221,6 +221,8 @@ def hear_dio(node, params, now, k, frame, out):
     node.nbr_dtsn[k] = frame.dtsn
     if frame.version != node.version:
         reset_trickle(node, params, now, out)  # it does not know of ours
+        if k == node.parent:  # any more: the root has lost its memory twice
+            choose(node, params, now, out)
         return
     rank = node.rank
     parent = node.parent

@@ -131,7 +131,8 @@ def _samples(facts: SkinFacts) -> list[str]:
 def _commands(facts: SkinFacts) -> list[str]:
     if not facts.missed:
         return []
-    return [f"commands did not reach cells that had a way, {facts.missed:,} times"]
+    times = "once" if facts.missed == 1 else f"{facts.missed:,} times"
+    return [f"commands did not reach cells that had a way, {times}"]
 
 
 def _others(facts: SkinFacts, with_way: int, some: bool) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from innervate.networks.skin.analysis.recovery import NOBODY, next_hops
 from innervate.networks.skin.analysis.rows import Numbers
 from innervate.networks.skin.protocol.constants import NONE, PORTS
+from innervate.sim.cables.world import ALIVE
 
 NO_PORT = -1
 
@@ -21,6 +22,8 @@ def interface_of(result: Any) -> Numbers:
     """
     graph = result.plan.graph
     parent = _parents(result.world)
+    alive = np.array(result.world.alive[: graph.cells]) == ALIVE
+    parent = np.where(alive, parent, NONE)  # before a cell starts its record says port 0
     epoch = np.array(result.world.epoch, np.int64)
     ends = PORTS * np.arange(graph.cells) + np.maximum(parent, 0)
     parent = np.where(epoch[ends] & 1, NONE, parent)
