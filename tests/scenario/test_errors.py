@@ -16,6 +16,8 @@ WRONG = [
     ("4.0", "nan", "2: duration_s must be a finite number, not nan"),
     ("4.0", "true", "2: duration_s must be a number of seconds > 0, not true"),
     ('kind = "skin"', "", ' the scenario has no kind; add kind = "skin"'),
+    ('kind = "skin"', 'scenario = "demo"',
+     " this is a plan of many runs, no scenario: innervate sweep runs it"),
     ('"skin"', '"skim"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or "rpl", '
      'not "skim"'),
     ("rows = 3\n", "", '4: [[patch]] 0 lacks "rows"; give it a whole number from 1'),

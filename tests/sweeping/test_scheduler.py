@@ -50,12 +50,12 @@ def conducted(tmp_path, monkeypatch):
     folder.mkdir(parents=True)
     (folder / "skin.compiled").touch()
 
-    def begun(engine, points=1, there=(), **options):
+    def begun(engine, points=1, there=(), show=(), **options):
         plan = make_plan(SKIN, vary={"protocol.k": list(range(2, 2 + points))}, **options)
         jobs = Jobs(None)
         digest = plan.points[0].digest
         jobs.add([Outcome(digest, r, r, json.dumps({"x": v}), "", 1.0, 1) for r, v in there], PLACE)
-        return Scheduler(plan, jobs, engine)
+        return Scheduler(plan, jobs, engine, show)
 
     return begun
 
@@ -161,6 +161,8 @@ def test_failures_are_counted_and_no_figures(conducted):
 def test_a_rule_about_no_figure_and_a_worker_of_another_version_are_told(conducted):
     with pytest.raises(SweepError, match='runs have no figure "y"'):
         conducted(Noting(), repeat=4, until="y.ci=5%").run()
+    with pytest.raises(SweepError, match='--show: runs have no figure "z"'):
+        conducted(Noting(), repeat=4, show=("x", "z")).run()
     with pytest.raises(SweepError, match="the worker on here has other sources"):
         conducted(Noting(sources="others"), repeat=4).run()
 

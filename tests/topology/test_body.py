@@ -217,3 +217,9 @@ def test_an_expression_is_of_whole_names_and_a_glob_comes_first(tmp_path: Path) 
             cells_from_urdf("r.urdf", part, tmp_path)
     assert cells_from_urdf("r.urdf", "skin_0|arm", tmp_path)[0] == ["arm", "skin_0"]
     assert cells_from_urdf("r.urdf", "*", tmp_path)[0] == ["base", "arm", "skin_0", "skin_1"]
+
+
+@pytest.mark.parametrize("pitch_mm", [None, 30.0])
+def test_a_robot_description_that_is_not_there_is_said(tmp_path, pitch_mm):
+    with pytest.raises(TopologyError, match=r"nofile\.urdf"):
+        cells_from_urdf("nofile.urdf", "*", tmp_path, pitch_mm)

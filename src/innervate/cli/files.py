@@ -49,7 +49,9 @@ def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAU
     if measured.network:
         text, found = _of_network(kind, file, measured)
     elif measured.wanted:
-        raise UserError("--types, --min-tq, --around and --nodes choose of a --network; name one")
+        raise UserError(
+            "--types, --min-tq, --around, --nodes and --gateways are of a --network; name one"
+        )
     else:
         text = scenario.template(kind)
     if file is None:

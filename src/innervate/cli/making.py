@@ -38,8 +38,11 @@ def make(target: Path | None, on: str, over: str = "") -> int:
         raise UserError(f"the name {name!r} is taken; choose another")
     if target.exists():
         raise UserError(f"{target} is there already; choose another name or move it away")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        work = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
+    except OSError as error:
+        raise UserError(f"{target.parent} cannot be written: {error.strerror}") from None
     fresh = work / name  # which may be read by whom the user lets: `work` is the user's alone
     try:
         fresh.mkdir()

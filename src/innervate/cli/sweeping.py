@@ -28,8 +28,9 @@ def sweep(file: str, options: SweepOptions) -> int:
     with LiveTable(plan.name, wanted or SHOWN) as table:
         try:
             done = room.sweep(
-                plan, out=folder, **options.how, follow=wanted or SHOWN, progress=table
-            )
+                plan, out=folder, **options.how, show=options.show or (),
+                follow=wanted or SHOWN, progress=table,
+            )  # fmt: skip
         except KeyboardInterrupt:
             table.close()
             errors.say(f"interrupted; {table.kept(folder)}")
@@ -39,7 +40,11 @@ def sweep(file: str, options: SweepOptions) -> int:
     for path in draw_plots(done, folder):
         print(f"Drawn: {path}")
     print(f"Written: {folder / 'results.parquet'}")
-    return 0
+    if done.others:
+        kept = f"{done.others:,} other run{'s' if done.others > 1 else ''}"
+        errors.say(f"{folder} keeps {kept}, too, which these tables do not show; whoever asks for "
+                   "them again has them at once (--out: another folder)")  # fmt: skip
+    return int(done.failed.height == done.results.height > 0)
 
 
 def draw_plots(done: Sweep, folder: Path) -> list[Path]:

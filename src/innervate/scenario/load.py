@@ -151,6 +151,8 @@ def _build(
     if isinstance(schema, int) and schema > SCHEMA:
         message = f"schema = {schema} is newer than this version knows ({SCHEMA}); update innervate"
         raise source.error(("schema",), message)
+    if "scenario" in raw and "kind" not in raw:
+        raise source.error((), "this is a plan of many runs, no scenario: innervate sweep runs it")
     kind = _check_kind(source, raw.get("kind"))
     if not raw.get("name", "x"):
         del raw["name"]

@@ -148,6 +148,12 @@ class Jobs:
             for repeat, seed, text, *rest in rows
         }
 
+    def count(self) -> int:
+        """How many runs there are, of this sweep and of others in the same folder."""
+        with self._errors():
+            found: int = self._db.execute("SELECT count(*) FROM runs").fetchone()[0]
+        return found
+
     def places(self) -> dict[int, dict[str, Any]]:
         """What is known of the machines and processes, by number."""
         with self._errors():

@@ -41,6 +41,7 @@ class Sweep:
         timings: how long every run took, and where.
         complete: nothing is missing.
         ran: runs that were done now rather than earlier.
+        others: runs that the folder keeps besides, of other points or repeats.
         written: the folder, if there is one.
     """
 
@@ -49,6 +50,7 @@ class Sweep:
     timings: polars.DataFrame
     complete: bool = True
     ran: int = 0
+    others: int = 0
     written: Path | None = field(default=None)
 
     def __repr__(self) -> str:

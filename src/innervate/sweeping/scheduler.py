@@ -56,6 +56,7 @@ class Scheduler:
         plan: what is wanted.
         jobs: what is there.
         engine: who runs the rest.
+        show: measures that somebody wants to see: runs have to have them.
         follow: measures whose values are kept at hand for a display, besides those of `until`.
         progress: called after every batch, with this.
 
@@ -69,6 +70,7 @@ class Scheduler:
         plan: SweepPlan,
         jobs: Jobs,
         engine: Engine,
+        show: tuple[str, ...] = (),
         follow: tuple[str, ...] = (),
         progress: Callable[[Scheduler], None] | None = None,
     ) -> None:
@@ -78,7 +80,9 @@ class Scheduler:
         self._jobs = jobs
         self._engine = engine
         self._progress = progress or (lambda scheduler: None)
-        self._measures = tuple(dict.fromkeys([*(u.measure for u in plan.until), *follow]))
+        rules = [(f"--until {rule}", rule.measure) for rule in plan.until]
+        self._named = [*rules, *(("--show", measure) for measure in show)]
+        self._measures = tuple(dict.fromkeys([*(name for _, name in self._named), *follow]))
         self._by_digest = {state.point.digest: state for state in self.states}
         self._blocks = list(blocks(plan))
         self._ready: deque[tuple[State, int]] = deque()
@@ -142,19 +146,19 @@ class Scheduler:
         state.failed += figures is None
         if figures is not None and not self._known:
             self._known = True
-            self._check_rules(figures)
+            self._check_named(figures)
         for measure in self._measures:
             value = (figures or {}).get(measure)
             if isinstance(value, int | float):
                 state.values.setdefault(measure, {})[repeat] = value
 
-    def _check_rules(self, figures: dict[str, Any]) -> None:
-        """That `until` speaks of figures that runs have; the first one shows which they are."""
-        for rule in self.plan.until:
-            if rule.measure not in figures:
-                close = nearest(rule.measure, list(figures))
+    def _check_named(self, figures: dict[str, Any]) -> None:
+        """That somebody speaks of figures that runs have; the first one shows which they are."""
+        for option, measure in self._named:
+            if measure not in figures:
+                close = nearest(measure, list(figures))
                 hint = close if "did you" in close else nearest("", sorted(figures)[:8])
-                raise SweepError(f'--until {rule}: runs have no figure "{rule.measure}"{hint}')
+                raise SweepError(f'{option}: runs have no figure "{measure}"{hint}')
 
     def _first_alone(self) -> None:
         """On a machine that has compiled nothing yet, one run goes first, and compiles for all."""

@@ -64,6 +64,7 @@ def sweep(
     kind: str = "processes",
     dask: str = "",
     retry: bool = False,
+    show: Iterable[str] = (),
     follow: Iterable[str] = (),
     progress: Progress | None = None,
 ) -> Sweep:
@@ -87,7 +88,8 @@ def sweep(
         kind: "processes", "threads" or "here".
         dask: address of a Dask scheduler to use instead of this machine.
         retry: run again what failed.
-        follow: measures that `progress` wants to see the values of.
+        show: measures that somebody wants to see; the first run shows whether there are such.
+        follow: measures that `progress` wants to see the values of, if there are such.
         progress: called now and then with the Scheduler; None = a bar in a notebook.
 
     Raises:
@@ -112,7 +114,8 @@ def sweep(
             if retry:
                 jobs.forget_failed()
             with Bar("preparing the runs") as bar:
-                scheduler = Scheduler(plan, jobs, made, tuple(follow), progress or bar.swept)
+                seen = tuple(show)
+                scheduler = Scheduler(plan, jobs, made, seen, tuple(follow), progress or bar.swept)
                 return _run_plan(scheduler, jobs, folder)
 
 
@@ -215,7 +218,7 @@ def _texts(given: str | Iterable[str]) -> tuple[str, ...]:
 
 
 def _checked(plan: SweepPlan) -> SweepPlan:
-    """The plan, if one of its first points at least can be loaded; seed and paths filled in.
+    """The plan, if one of its first points at least can be run; seed and paths filled in.
 
     Points that cannot be run are rows with their reason; if there are no others, something in the
     plan itself is wrong, a key's name for one.
@@ -224,11 +227,12 @@ def _checked(plan: SweepPlan) -> SweepPlan:
     for point in plan.points[:CHECKED_MAX]:
         try:
             base = plan.base.anywhere(point.settings)
-            root = base.scenario(point.settings).seed if plan.root < 0 else plan.root
+            made = base.scenario(point.settings)
+            scenarios.plan(made)  # what a file says that it names shows only here
         except ScenarioError as error:
             wrong = wrong or error
         else:
-            return replace(plan, base=base, root=root)
+            return replace(plan, base=base, root=made.seed if plan.root < 0 else plan.root)
     assert wrong is not None
     raise wrong
 
@@ -260,12 +264,14 @@ def _describe(plan: SweepPlan, folder: Path) -> None:
 
 def _result(plan: SweepPlan, jobs: Jobs, scheduler: Scheduler) -> Sweep:
     repeats = [state.goal for state in scheduler.states]
+    results = tables.results(plan, jobs, repeats)
     return Sweep(
         plan=plan,
-        results=tables.results(plan, jobs, repeats),
+        results=results,
         timings=tables.timings(plan, jobs, repeats),
         complete=all(state.finished for state in scheduler.states),
         ran=scheduler.ran,
+        others=jobs.count() - results.height,
     )
 
 

@@ -40,7 +40,7 @@ def cells_from_urdf(
     path = find_urdf(urdf, folder or Path())
     if pitch_mm is None:
         return read_positions(path, pattern)
-    names, positions = _covered(path, path.stat().st_mtime_ns, pattern, pitch_mm)
+    names, positions = _covered(path, _changed_ns(path), pattern, pitch_mm)
     return list(names), list(positions)
 
 
@@ -57,6 +57,14 @@ def normals_from_urdf(
     from innervate.topology.cover import normals_on_surfaces
 
     return normals_on_surfaces(path, pattern, pitch_mm)
+
+
+def _changed_ns(path: Path) -> int:
+    """When a file was changed last; 0 = it is not there, which is said by who reads it."""
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 @cache

@@ -85,7 +85,8 @@ def read_links(path: Path, pattern: str) -> list[Link]:
     names = _matching(links, pattern)
     if not names:
         some = ", ".join(links[:3]) or "none at all"
-        message = f'no link of {path.name} matches "{pattern}"; it has {len(links)}: {some}, ...'
+        some += ", ..." if len(links) > 3 else ""
+        message = f'no link of {path.name} matches "{pattern}"; it has {len(links)}: {some}'
         raise TopologyError(message, "links")
     joints = {}
     for joint in root.findall("joint"):

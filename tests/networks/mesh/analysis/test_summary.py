@@ -125,7 +125,7 @@ def test_what_became_of_messages_that_did_not_come():
     assert len(mesh_messages.counted(found).state) == 2
 
 
-def test_young_messages_count_only_if_none_is_on_its_way():
+def test_messages_count_that_are_older_than_any_that_is_on_its_way():
     late = 99 * S + 500_000
     rows = [(10 * S, 1, REPORT_ACCEPTED, 0, 1), (late, 1, REPORT_ACCEPTED, 1, 2)]
     came = [given(late + 1, 4, 1, 2)]
@@ -133,6 +133,11 @@ def test_young_messages_count_only_if_none_is_on_its_way():
     assert mesh_messages.delivery_ratio(mesh_messages.messages(both)) == 0.5
     rows.append((late + 10, 1, REPORT_ACCEPTED, 2, 3))
     open_ = made(rows, delivered=came, offers=[offer(10 * S), offer(late), offer(late + 10)])
+    assert mesh_messages.delivery_ratio(mesh_messages.messages(open_)) == 0.5
+    open_.delivered = made(delivered=[given(late + 11, 4, 1, 3)]).delivered  # the younger one came
+    assert mesh_messages.delivery_ratio(mesh_messages.messages(open_)) == 0.0
+    open_.plan.offers[1:] = [offer(late), offer(late)]  # and is no younger
+    open_.rows["time"][2] = late
     assert mesh_messages.delivery_ratio(mesh_messages.messages(open_)) == 0.0
 
 

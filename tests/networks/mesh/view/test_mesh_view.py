@@ -57,6 +57,16 @@ def report(code, node, a=0, b=0, at=1000):
     return {"time": at, "node": node, "code": code, "a": a, "b": b}
 
 
+def test_what_happened_is_told_in_the_order_in_which_it_did(view):
+    """An alarm's arrival is no report; at one moment reports go first."""
+    rows = [report(c.REPORT_ALARM, 4, c.CROSS, 4, at=1000), report(c.REPORT_SUSPECT, 2, 3, at=2000),
+            report(c.REPORT_SUSPECT, 1, 3, at=3000)]  # fmt: skip
+    came = {"kind": c.ALARM, "body0": 4, "body3": c.CROSS}
+    told = noted(view, rows, delivered=[came | {"time": 2000}])
+    assert [at for at, *_ in told] == [1000, 2000, 2000, 3000]
+    assert told[2][1] == "alarm of robot n4 at the monitor after 1.0 ms"
+
+
 @pytest.mark.parametrize(("row", "told"), [
     (report(c.REPORT_SUSPECT, 2, 3), [("n3 does not answer n2", "info")]),
     (report(c.REPORT_GATEWAY, 1, 1), [("n1 leads as gateway", "info")]),

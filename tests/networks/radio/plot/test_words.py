@@ -62,9 +62,10 @@ def packets(*rows):
     return np.array(list(rows), [(name, int) for name in ("node", "offered", "end", "time")])
 
 
-def result_of(stations=3, rows=(), faults=()):
+def result_of(stations=3, rows=(), faults=(), saturated=False):
     kinds = [(name, int) for name in ("time", "node", "code", "a", "b")]
     plan = Of(stations=stations, faults=list(faults), protocol="csma-cd-r/practical",
+              saturated=saturated,
               params={"slot_us": 100, "packet_slots": 5, "ta_us": 0})  # fmt: skip
     return Of(plan=plan, rows=np.array(list(rows), kinds), ended_us=9_000_000)
 
@@ -78,6 +79,8 @@ def test_a_bar_for_every_station_and_the_even_share(monkeypatch):
     assert (made.even, made.text) == (1.0, "Jain's index 0.6000; 1 is even.")
     both = charts.shares(result_of(), {"jain": 0.6, "jain_round": 0.5})
     assert both.text.endswith("Over one round of 3 turns: 0.500.")
+    full = charts.shares(result_of(saturated=True), {"jain": None, "jain_round": None})
+    assert full.text == "Without the first tenth of all packets."
     monkeypatch.setattr(charts.radio, "settled", lambda _: packets((0, 0, 1, 1)))
     assert charts.shares(result_of(1), {"jain": None, "jain_round": None}).even is None
 

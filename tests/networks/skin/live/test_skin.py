@@ -78,7 +78,7 @@ def test_a_cell_tells_what_its_sensors_say():
     touch = asyncio.run(main())
     assert touch[:-1] == (1, 0, 1, 0, 7, (1, 2, 65_535), -3, (-512, 0, 511))
     assert began_us < touch.time_us < time.time_ns() // 1000
-    assert "seq 0, 1 hops, interface 0, proximity 7, force 1 2 65535 mN, 18.5 degC" in (
+    assert "seq 0, 1 hop, interface 0, proximity 7, force 1 2 65535 mN, 18.5 degC" in (
         touch_text(touch._asdict())
     )
 

@@ -102,6 +102,7 @@ def lead(view, *ports):
 def test_ways_lead_over_cables_that_carry_frames(view):
     world = view.engine.world
     lead(view, 0, 0, 1)
+    assert view.points()["balance"] == 0.9  # of two cells and one, (2 + 1)^2 / (2 (2^2 + 1^2))
     shown = view.arrays(False)
     assert (shown["parent"].tolist(), shown["port"].tolist()) == (
         [3, 0, 4, -1, -1], [0, 0, 1, 0, 1])  # fmt: skip

@@ -288,12 +288,12 @@ def ratio(part: int, whole: int) -> float | None:
 def counted(found: Messages) -> Messages:
     """What a delivery ratio is made of: to one node, by a node that was on, and decided.
 
-    If some are still on their way at the end, all that are as young are left out: only the fast
-    ones among them would count.
+    If some are still on their way at the end, all that are as young as the oldest of them are left
+    out: only the fast ones among them would count.
     """
     asked = found.only(~found.broadcast & (found.state != UNASKED))
-    undecided = bool(((asked.state == IN_FLIGHT) & asked.young).any())
-    return asked.only(~asked.young) if undecided else asked
+    waits = asked.offered_us[(asked.state == IN_FLIGHT) & asked.young]
+    return asked.only(asked.offered_us < waits.min()) if len(waits) else asked
 
 
 def delivery_ratio(found: Messages) -> float | None:

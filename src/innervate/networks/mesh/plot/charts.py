@@ -77,7 +77,11 @@ def alarms(plan: Any, crossings: Sequence[Crossing]) -> Bars | None:
             continue
         came = crossing.accepted_us != sent.NEVER
         took = (crossing.accepted_us - crossing.raised_us) / 1e3 if came else 0.0
-        said = f"{words.ms_words(took)}, {crossing.overrun_m:.2f} m" if came else "never"
+        said = (
+            f"{words.ms_words(took)}, {words.figure_words(crossing.overrun_m, 2)} m"
+            if came
+            else "never"
+        )
         bars.append(Bar(f"{i}: {plan.names[crossing.robot]}", took, said))
     head = "From the alarm to the monitor, crossing by crossing"
     return Bars(bars, head, "Behind each bar how far the robot got.") if bars else None

@@ -16,6 +16,7 @@ from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot import node_report as mesh_node_report
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.networks.mesh.plot.words import REPORTS, fault_words, opening, sentences
+from innervate.networks.mesh.scenario.words import forwarding
 from innervate.plot import page, svg, words
 from innervate.plot.page import ROWS_MAX, details, figure, keys, pictures, section, table, tiles
 
@@ -47,7 +48,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     model = result.plan.scenario.model
     over = (
         f"{opening(summary)}, radio {model.radio.profile}, "
-        f"failover {model.protocol.failover}; seed {summary['seed']}"
+        f"failover {forwarding(result.plan)}; seed {summary['seed']}"
     )
     said = page.paragraphs(sentences(result, summary))
     return page.top(over, summary, said, tiles(_figures(result, summary)))
@@ -57,7 +58,7 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     found, latency, alarms = [], summary["latency_ms"], summary["alarms"]
     if alarms["delivered"]:
         found.append((words.ms_words(alarms["latency_ms"]["p99"]), "99 % of the alarms took that"))
-        found.append((f"{alarms['overrun_m']['p99']:.2f} m",
+        found.append((f"{words.figure_words(alarms['overrun_m']['p99'], 2)} m",
                       "99 % of the robots were no farther out"))  # fmt: skip
     if summary["delivery_ratio"] is not None:
         found.append((words.share_words(summary["delivery_ratio"]), "of the messages delivered"))
@@ -173,7 +174,7 @@ def _crossings(result: Any, crossings: list[Crossing]) -> str:
             words.ms_words((crossing.accepted_us - crossing.raised_us) / 1e3) if came else
             "still open at the end" if crossing.open else "never",
             f"{crossing.hops}, {'flooded' if crossing.flooded else 'routed'}" if came else "",
-            f"{crossing.overrun_m:.2f} m",
+            f"{words.figure_words(crossing.overrun_m, 2)} m",
             words.ms_words((crossing.crossed_us - crossing.warned_us) / 1e3) + " before"
             if warned else "no",
         ))  # fmt: skip

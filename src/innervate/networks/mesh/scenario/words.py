@@ -49,7 +49,7 @@ def describe(made: MeshPlan) -> str:
         f"  radio      {model.radio.profile}, {made.mac}, {len(made.good)} good links, "
         f"{degree:.1f} a node, at most {max(hops)} hops from the gateway",
         f"  protocol   discovery {model.protocol.discovery}, "
-        f"failover {_forwarding(made)}, MTU {params['mtu']}, "
+        f"failover {forwarding(made)}, MTU {params['mtu']}, "
         f"a round every {params['period'] * params['tick_us'] / 1e6:g} s",
     ]
     if made.offers:
@@ -65,7 +65,7 @@ def describe(made: MeshPlan) -> str:
     return "\n".join([*lines, *told(made, fault_words, warnings(made))])
 
 
-def _forwarding(made: MeshPlan) -> str:
+def forwarding(made: MeshPlan) -> str:
     """How packets find their way; of "auto" what that is here, and why."""
     failover, mode = made.scenario.model.protocol.failover, made.params["mode"]
     if failover != "auto":

@@ -87,15 +87,19 @@ class MeshView(View):
         np.add.at(memory.air_us, sent["node"], sent["end"] - sent["time"])
         if self.tell_faults():
             self.check()
-        for at, node, code, a, b in rows["rows"].tolist():
-            self._report(at, node, code, a, b)
         came = rows["delivered"]
+        alarms = came[came["kind"] == c.ALARM]
+        told: list[tuple[int, int, Any, Any]] = [
+            *((row[0], 0, self._report, row) for row in rows["rows"].tolist()),
+            *((row[0], 1, self._alarm_came, row)
+              for row in alarms[["time", "body0", "body3"]].tolist()),
+        ]  # fmt: skip
+        for _, _, note, row in sorted(told, key=lambda one: one[:2]):
+            note(*row)
         for row in came[(came["kind"] == c.DATA) & (came["dest"] != c.ALL)]:
             accepted = memory.messages.pop((int(row["origin"]), int(row["seq"])), None)
             if accepted is not None:
                 memory.latency_us.append(int(row["time"]) - accepted)
-        for row in came[came["kind"] == c.ALARM]:
-            self._alarm_came(int(row["time"]), int(row["body0"]), int(row["body3"]))
 
     def _report(self, at: int, node: int, code: int, a: int, b: int) -> None:
         memory, log, name = self.memory, self.log, self.plan.names

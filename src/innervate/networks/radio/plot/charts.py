@@ -78,6 +78,8 @@ def shares(result: Any, summary: Mapping[str, Any]) -> Bars:
     text = "" if summary["jain"] is None else f"Jain's index {summary['jain']:.4f}; 1 is even."
     if summary["jain_round"] is not None:
         text += f" Over one round of {n} turns: {summary['jain_round']:.3f}."
+    if result.plan.saturated:
+        text = f"{text} Without the first tenth of all packets.".strip()
     even = sum(counts) / n if n > 1 else None
     return Bars(stations(counts), "Packets delivered, station by station", text, even)
 

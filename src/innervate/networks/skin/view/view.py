@@ -238,7 +238,8 @@ class SkinView(View):
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""
         ways = self.cables.ways(self.engine.world)
-        loads = np.bincount(ways["port"][ways["port"] >= 0], minlength=self.ports)
+        port = ways["port"][: self.cells]  # behind them the PC's own
+        loads = np.bincount(port[port >= 0], minlength=self.ports)
         balance = balance_factor(loads.tolist())
         found: dict[str, float | None] = {
             "unconnected": float(ways["unconnected"]),
