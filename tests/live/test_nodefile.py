@@ -1,6 +1,6 @@
 import pytest
 
-from innervate.live.build import build
+from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
 from innervate.networks.mesh.live.parameters import IP, mesh_parameters
@@ -35,6 +35,9 @@ def test_a_node_of_a_file(tmp_path):
     assert node.sealer is None
 
 
+KEYS_1_AND_16 = f'{{1 = "{"a" * 64}", 16 = "{"b" * 64}"}}'
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
@@ -47,7 +50,11 @@ def test_a_node_of_a_file(tmp_path):
         ('"127.0.0.1:4701"', '"127.0.0.1"', "is no address"),
         ('kind = "udp"', 'kind = "upd"', "upd"),
         ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
-        ("nodes = 9", 'nodes = 9\n[keys]\nuse = 1\nsecret = {1 = "aa"}', "64 hexadecimal digits"),
+        (
+            "nodes = 9",
+            f"nodes = 9\n[keys]\nuse = 1\nsecret = {KEYS_1_AND_16}",
+            "keys.secret.16: numbers of keys are 0 to 15",
+        ),
         ('kind = "mesh"', "kind = mesh", "not valid TOML"),
         ('kind = "mesh"', f"kind = {'[' * 2_000}{']' * 2_000}", "not valid TOML"),
     ],
@@ -83,3 +90,13 @@ def test_the_profile_has_every_parameter_and_agrees_with_that_of_scenarios():
     )
     ticks = (IP["period"], IP["period_max"])
     assert ticks == (theirs.period / theirs.beacon, theirs.period_max / theirs.beacon)
+
+
+def test_keys_have_the_numbers_0_to_15(tmp_path):
+    secret = f'{{0 = "{"0" * 64}", 15 = "{"f" * 64}"}}'
+    path = write(
+        tmp_path, GOOD.replace("nodes = 9", f"nodes = 9\n[keys]\nuse = 15\nsecret = {secret}")
+    )
+    loaded = load(path)
+    found = keys_of(loaded.table.keys, loaded)
+    assert found == {0: bytes(32), 15: b"\xff" * 32}

@@ -123,6 +123,15 @@ def harms(what):
     return [cabled.drawn({**GIVEN, "harm": what}, seed) for seed in range(40)]
 
 
+def test_harm_comes_within_five_beacons_of_when_all_has_settled(monkeypatch):
+    asked = []
+    draw = SimpleNamespace(draw=lambda most: asked.append(most) or most - 1)
+    monkeypatch.setattr(cabled, "stream", lambda seed, what: draw)
+    given = {**GIVEN, "harm": "none", "beacon_us": 1_000, "settle": 7}
+    assert cabled.drawn(given, 3) == cabled.Harm(7_000 + 4_999)
+    assert asked == [5_000]
+
+
 def test_harm_is_the_seeds_and_leaves_the_others_joined():
     assert harms("cut") == harms("cut")
     own = Counter(harm.cables for harm in harms("cut"))

@@ -9,7 +9,7 @@ the practical mode need, exactly two bytes; behind it is what the medium and cap
 from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT
 from innervate.wire.bits import put
 from innervate.wire.crc import is_sealed, seal
-from innervate.wire.layout import REST, SPARE, pack, unpack, width
+from innervate.wire.layout import SPARE, pack, unpack, width
 
 VERSION = 1
 CRC_BYTES = 2
@@ -49,8 +49,6 @@ LAYOUTS = (
     (OPEN, "open", TURN),
     (REPORT, "report", MINISLOTS),
 )
-PAYLOAD = (("payload", REST, 8, 0),)
-CRC = (("crc", 0, 16, 0),)
 AT = 8  # bits of HEAD
 # What captures call a node, by its role.
 INTERFACE_WORDS = {"station": "station"}

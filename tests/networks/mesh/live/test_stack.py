@@ -4,6 +4,7 @@ import asyncio
 
 import pytest
 
+from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import ASKED, MeshStack
 from tests.live.net import Mesh
 
@@ -42,3 +43,8 @@ def test_a_hub_of_live_nodes_has_all_others_as_neighbours(leaves):
             return len(mesh.nodes[0].stack.status(0)["neighbours"])
 
     assert asyncio.run(up()) == leaves
+
+
+def test_who_says_nothing_in_three_rounds_and_a_tick_is_silent():
+    params = mesh_parameters(3, {"period_max": 40, "tick_us": 1_000_000})
+    assert MeshStack(1, -1, params, 5).silent_us == (3 * 40 + 1) * 1_000_000

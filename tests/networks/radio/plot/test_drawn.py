@@ -169,6 +169,19 @@ def test_a_packet_in_its_turn_is_labelled_by_its_place_and_no_other_frame_is():
     assert other.labels == ("data", "D")
 
 
+def test_what_just_fits_into_a_row_of_the_legend_stands_there(monkeypatch):
+    boxes = [box(1_000, 1_300, kind=kind) for kind in (DATA, CRR)]
+    made = timeline._Timeline(scene_of(stations=17, boxes=boxes))
+    (left, first, *_), (at, second, what, text), *_ = made._entries()
+    assert (first, second) == (0, 0)
+    ends = at + 28 + 6.4 * len(text) + 22
+    monkeypatch.setattr(timeline, "WIDTH", ends)
+    assert made._entries()[1][:2] == (at, 0)
+    monkeypatch.setattr(timeline, "WIDTH", ends - 0.1)
+    assert made._entries()[1][:2] == (left, 1)
+    assert what
+
+
 def test_kinds_of_frames_stand_in_the_legend_once_each(texts):
     boxes = [box(1_000, 1_300, kind=kind) for kind in (REPORT, DATA, CRR, DATA)]
     entries = [text for text in texts(drawn(boxes=boxes)) if ":" in text and "ms" not in text]

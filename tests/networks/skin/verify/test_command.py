@@ -66,6 +66,8 @@ def test_what_broke_is_told_event_by_event_or_by_its_rounds():
 def test_graphs_by_name_and_all_of_up_to_so_many_cells():
     (one,) = cases.graphs_of("pair", 99)
     assert graphs.cables(one) == graphs.cables(PAIR)
+    for text in ("pc-1", "pc-1 1-2", "pc-1 pc-2 1-2 2-3"):
+        assert graphs.cables(graphs.parse(text)) == text
     assert [graph.cells for graph in cases.graphs_of("all", 2)] == sorted(
         graph.cells for graph in cases.graphs_of("all", 2)
     )
