@@ -50,6 +50,29 @@ def test_nothing_breaks_in_many_more(name):
         assert not case.is_broken, case.lines
 
 
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("action", ["restart", "revive"])
+def test_who_comes_back_is_who_it_was_and_draws_other_numbers(name, action):
+    """Once it came back as node 0, the root, with the same random numbers for ever."""
+    event = [{"at_s": 1.0, "action": "kill", "node": 3}] * (action == "revive")
+    event += [{"at_s": 1.1, "action": action, "node": 3}]
+    back, never = (in_line(name, [], event=some, duration_s=4.0).result.world.stations
+                   for some in (event, []))  # fmt: skip
+    for node in range(5):
+        assert (back[node].number, back[node].choice) == (node, never[node].choice)
+    assert back[3].rng != never[3].rng
+    assert back[3].rng > 1
+
+
+def test_a_root_that_forgets_twice_breaks_nothing():
+    """Its second life begins with a version that others have left behind."""
+    event = [{"at_s": at, "action": "restart", "node": 0} for at in (1.0, 2.0, 3.0)]
+    run = in_line("rpl", [], event=event, duration_s=6.0)
+    stations = run.result.world.stations
+    assert len({stations[node].version for node in range(5)}) == 1
+    assert all(stations[node].rank < c.INFINITE for node in range(5))
+
+
 def test_a_flood_goes_as_far_as_its_hops():
     once = [{"at_s": 1.0, "node": 0, "item": {"dest": 255}}]
     for hops, got in ((1, [1, 2]), (3, [1, 2, 3, 4])):
