@@ -36,7 +36,7 @@ def settles(found):
 def test_up_to_three_cells(graph, updates, rule):
     # Under `strict` less can be forgotten: all at once would be tens of millions of states.
     is_large = rule == "strict" and updates == "triggered" and len(list(graph.links())) > 4
-    fine(graph, rule, updates, Budget(faults=1) if is_large else None)
+    fine(graph, rule, updates, Budget(faults=1) if is_large else None, memory=6 * GIB)
 
 
 @BOTH
