@@ -25,7 +25,9 @@ from innervate.dialect.checker import functions_of
 
 NETWORK_FILE = "network.py"
 MEDIA_ON_AIR = ("channel", "field")
-CHANNEL_OWN = ("slot_us", "ta_us", "oracle", "full_duplex", "period_us", "per_turn")  # its words
+# Words of the channel itself, among parameters and in a state.
+CHANNEL_OWN = ("slot_us", "ta_us", "oracle", "full_duplex", "period_us", "per_turn")
+CHANNEL_STATE = ("queued",)
 
 _in_plain: ContextVar[bool] = ContextVar("_in_plain", default=False)
 _stamps: dict[str, tuple[tuple[str, int, int], ...]] = {}  # of the files of what is loaded, by name
@@ -248,6 +250,7 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
     if network.medium == "channel":
         found += checks.of_taken(place, fields.PARAMS, CHANNEL_OWN)
+        found += checks.of_taken(place, fields.STATE, CHANNEL_STATE, "STATE")
     declared = {field[0] for field in (*fields.STATE, *fields.FRAME, *fields.PARAMS)}
     rules = [_file_of(folder, network, "invariants")] if network.has("invariants") else []
     for source in [*files, *rules]:

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.dialect.outbox import report
+from innervate.dialect.outbox import report, send
 from innervate.networks.mesh.sim import recorder as mesh_recorder
 from innervate.networks.mesh.sim import simulate as mesh
 from innervate.networks.radio.sim import recorder as radio_recorder
@@ -83,6 +83,13 @@ def pc_out_of_range(running):
 
 def outbox_of_one(running):
     running.world.out.limit[0] = 1
+
+
+def out_of_no_port(running):
+    """Cell 1 sends; its ports are 0 to 3, and what stands behind them is its neighbour's."""
+    world = running.world
+    send(world.out, 4, 0, 0)
+    calls.finish(world, skin_stack, 1, running.clock_us(), ON_TIMER, TICK)
 
 
 # A team of three stations that have a packet each, and one of them the channel.
@@ -180,6 +187,7 @@ CASES = [
      "a value of p0 r0 c1 is out of its declared range"),
     (SKIN, cables.BROKEN_RANGE, pc_out_of_range, "a value of pc is out of its declared range"),
     (SKIN, cables.BROKEN_OUTBOX, outbox_of_one, "outbox of "),
+    (SKIN, cables.BROKEN_PORT, out_of_no_port, "p0 r0 c1 sends out of a port that no node has"),
     (RADIO, channel_medium.BROKEN_DEAF, radios_deaf, "sent while its radio could not"),
     (RADIO, channel_medium.BROKEN_AIR, still_on_the_air, "has too many transmissions under way"),
     (RADIO, channel_loop.BROKEN_OUTBOX, outbox_of_one, "outbox of station "),

@@ -164,12 +164,12 @@ def of_usual(path, tables, params):
     return found
 
 
-def of_taken(path, params, taken):
-    """Parameters that have a name of the medium's own, and would take its value's place."""
+def of_taken(path, fields, taken, table="PARAMS"):
+    """Fields of a table that have a name of the medium's own, and would take its value's place."""
     lines = _lines_of(path)
-    return [Finding(path, lines.get(("PARAMS", name), 1),
-                    f"PARAMS: {name} is a word of the medium's own; choose another name")
-            for name, *_ in params if name in taken]  # fmt: skip
+    return [Finding(path, lines.get((table, name), 1),
+                    f"{table}: {name} is a word of the medium's own; choose another name")
+            for name, *_ in fields if name in taken]  # fmt: skip
 
 
 def _wrong_with(field):

@@ -55,15 +55,6 @@ def zeros(
     return records
 
 
-def places_of(declaration: Declaration, *wanted: str) -> list[int]:
-    """At which word of a record the fields of these names begin; -1 = there is none."""
-    found, at = {}, 0
-    for name, length, *_ in declaration:
-        found[name] = at
-        at += max(int(length), 1)
-    return [found.get(name, -1) for name in wanted]
-
-
 def bounds(declaration: Declaration) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Lowest and highest value of every 32-bit word of a record, for range checks."""
     low: list[int] = []

@@ -18,22 +18,23 @@ RUN = dict.fromkeys(
     ("broken", "rows", "deliveries", "delivery_limit", "trail", "trail_limit", "taps", "tap_limit",
      "next_command", "commands", "status"), 0,
 )  # fmt: skip
-POOL = BATCH * 16 + 2 * ACTIONS  # that a batch may need
+FULL = BATCH * ACTIONS  # what the outboxes of a batch hold
+POOL = BATCH * 16 + FULL  # that a batch may need
 
 
 def pressing(free=POOL, **run):
-    """Why the loop stops with so much of the pool left: 40 slots of timers, then 900 of frames."""
-    pool = [wheel.NIL, 940 - free, 900]
+    """Why it stops with so much of the pool left: 40 slots of timers, then 3,000 of frames."""
+    pool = [wheel.NIL, 3_040 - free, 3_000]
     given = RUN | {"row_limit": LIMIT, "pool_slots": 40} | run
     return loop.pressing(Of(run=[Of(**given)], wheel=Of(pool=pool), out=Of(limit=[ACTIONS])))
 
 
 @pytest.mark.parametrize(("why", "given"), [
     (DONE, {}), (POOL_FULL, {"free": POOL - 1}), (BROKEN, {"broken": 1, "free": 0}),
-    (DONE, {"rows": LIMIT - BATCH * ROWS_PER_EVENT}),
-    (ROWS_FULL, {"rows": LIMIT - BATCH * ROWS_PER_EVENT + 1}),
-    (DONE, {"deliveries": 36, "delivery_limit": 36 + BATCH}),
-    (ROWS_FULL, {"deliveries": 37, "delivery_limit": 36 + BATCH}),
+    (DONE, {"rows": LIMIT - BATCH * ROWS_PER_EVENT - FULL}),
+    (ROWS_FULL, {"rows": LIMIT - BATCH * ROWS_PER_EVENT - FULL + 1}),
+    (DONE, {"deliveries": 36, "delivery_limit": 36 + FULL}),
+    (ROWS_FULL, {"deliveries": 37, "delivery_limit": 36 + FULL}),
     (DONE, {"deliveries": 37}), (DONE, {"trail": 37}),  # none are kept
     (DONE, {"trail": 36, "trail_limit": 36 + BATCH}),
     (ROWS_FULL, {"trail": 37, "trail_limit": 36 + BATCH}),

@@ -227,7 +227,7 @@ def test_packets_that_were_handed_up_are_deliveries():
 def test_what_users_give_stands_in_its_order_and_the_mediums_own_fields_behind(monkeypatch, plain):
     own = (("kind", 0, 0, 9, "", ""), ("seq", 0, 0, 255, "", ""), ("slots", 0, 0, 9, "", ""))
     fields = Of(STATE=own[:1], FRAME=own, PARAMS=())
-    monkeypatch.setattr(declared, "networks", lambda: {"radio": Of(fields=fields)})
+    monkeypatch.setattr(declared, "networks", lambda: {"radio": Of(fields=fields, protocol=Of())})
     plan = radio_plan(3)
     inputs = [Of(kind=6, item={"seq": 8, "slots": 2}), Of(kind=5, item={"seq": 9})]
 

@@ -37,7 +37,8 @@ def world_of(one=None, **run):
         run=[Of(**given | run)], radios=[one or radio(), radio(), radio(), radio()],
         air=[Of(start=0, end=0, spoilt=9, at_start=9, at_end=9, fade=9) for _ in range(3 * AIRS)],
         frames=[Of() for _ in range(3 * AIRS)], heap=Heap([0] * 4096, [0]), told=[0] * 5,
-        degree=[2, 2, 2], order=[1, 2, 0, 2, 0, 1, 0, 1, 2], delay=[NEAR, FAR, 0] * 3,
+        out=Of(limit=[0]), degree=[2, 2, 2],
+        order=[1, 2, 0, 2, 0, 1, 0, 1, 2], delay=[NEAR, FAR, 0] * 3,
     )  # fmt: skip
 
 

@@ -203,12 +203,3 @@ def test_what_users_offer_goes_to_nodes_that_are_on_and_counts_anyhow(monkeypatc
     listening.offer(world, do, 1, 80)
     assert found == ([("item", 1), ("give", 3, 80, 6)] if given else [])
     assert counted(world) == {"offered": 1}
-
-
-@pytest.mark.parametrize(("places", "left"), [
-    ((-1, -1, -1), [1, 2, 3]), ((0, -1, -1), [7, 2, 3]), ((-1, 2, 1), [1, 8, 9]),
-])  # fmt: skip
-def test_who_loses_its_memory_has_every_other_word_as_before_its_start(places, left):
-    world = world_of()
-    listening.wipe_words(world, 2, *places)
-    assert world.words == [[7, 8, 9], [7, 8, 9], left, [7, 8, 9], [1, 2, 3]]

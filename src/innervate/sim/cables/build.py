@@ -13,7 +13,7 @@ from innervate.scenario.actions.cables import LOSE
 from innervate.sim import delays
 from innervate.sim.cables import commands
 from innervate.sim.cables import world as w
-from innervate.sim.cables.loop import BATCH
+from innervate.sim.cables.loop import BATCH, PUSHED_PER_EVENT, ROWS_PER_EVENT
 from innervate.sim.cables.wires import COUNTERS, LOSSY
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import TAP, Names, Tables, _longer, get, put, uniform
@@ -86,6 +86,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         added: what is its network's own.
     """
     size = _sizes(plan, of, kept, added, tables.rows)
+    beyond = BATCH * (ROWS_PER_EVENT + size.limit)  # what a batch of events can add
     cells = plan.graph.cells
     states = tables.states(of.node, cells, _lines(of.node))
     low, high = records.bounds(of.node)
@@ -112,8 +113,10 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         watch=added.watch,
         carrier=added.carrier,
         commands=tables.records(w.COMMAND, len(plan.faults) + len(added.inputs) + 1),
-        rows=tables.records(w.ROW, tables.rows + 8 * size.limit, fresh=True),
-        deliveries=tables.records(of.delivery, tables.rows if kept.deliveries else 1, fresh=True),
+        rows=tables.records(w.ROW, tables.rows + beyond, fresh=True),
+        deliveries=tables.records(
+            of.delivery, tables.rows + beyond if kept.deliveries else 1, fresh=True
+        ),
         trail=tables.records(w.TRAIL, tables.rows if kept.trail else 1, fresh=True),
         taps=tables.records(TAP, size.tapped, fresh=True),
         tapped=tables.states(of.frame, size.tapped),
@@ -141,7 +144,7 @@ def _sizes(plan: Any, of: Records, kept: Recorded, added: Added, rows: int) -> _
         tx_slots=tx_slots,
         pool_slots=tx_slots + (ends if added.queues else 0),
         limit=limit,
-        pool=2 * ends + BATCH * 16 + 4 * limit,
+        pool=2 * ends + BATCH * (PUSHED_PER_EVENT + limit) + 4 * limit,
         queue=ends * plan.queue_frames if added.queues else 1,
         tapped=rows + burst if kept.tap else 1,
     )
@@ -224,7 +227,7 @@ def _set_run(world: w.World, plan: Any, size: _Sizes, kept: Recorded, rows: int)
         observe=int(kept.observe or kept.checks),
         broken_at=-1,
         row_limit=len(world.rows),
-        delivery_limit=rows if kept.deliveries else 0,
+        delivery_limit=len(world.deliveries) if kept.deliveries else 0,
         trail_limit=rows if kept.trail else 0,
         tap_limit=rows if kept.tap else 0,
     )

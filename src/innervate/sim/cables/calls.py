@@ -11,7 +11,7 @@ from innervate.sim import clocks, rows
 from innervate.sim import wheel as queue
 from innervate.sim.cables import wires
 from innervate.sim.cables.wires import OFFERED
-from innervate.sim.cables.world import ALIVE, BROKEN_OUTBOX, DEAD, OFF, SOURCE
+from innervate.sim.cables.world import ALIVE, BROKEN_OUTBOX, BROKEN_PORT, DEAD, OFF, SOURCE
 from innervate.sim.status import COLD, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.wheel import NIL
 
@@ -26,6 +26,9 @@ def drain(world, do, node, time, now, port):
         act = out.action[i]
         kind, a, b, c = act.kind, act.a, act.b, act.c
         if kind == SEND:
+            if run.checks and node < run.cells and (a < 0 or a > 3):
+                run.broken, run.broken_node = BROKEN_PORT, node
+                break
             frame = out.frame[i]
             mark = mix(mark, do.digest(frame) ^ ((a * 4 + c) << 53) ^ (b << 20))
             if b > 0:

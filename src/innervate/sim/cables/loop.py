@@ -24,20 +24,21 @@ from innervate.sim.wheel import FRESH, LAST, NIL
 BATCH = 64
 FORESEE_CELLS = 2000  # fewer fit into the processor's caches anyway
 FORESEE_EVENTS = 4
-ROWS_PER_EVENT = 24
+ROWS_PER_EVENT = 24  # besides what a node's outbox holds
+PUSHED_PER_EVENT = 16  # likewise: events that one leads to
 
 
 def pressing(world):
     """Why the loop has to stop before the next batch, or DONE."""
     run = world.run[0]
-    pool = world.wheel.pool
+    pool, acts = world.wheel.pool, BATCH * world.out.limit[0]
     if run.broken:
         return BROKEN
-    if pool[FRESH] + BATCH * 16 + 2 * world.out.limit[0] > run.pool_slots + pool[LAST]:
+    if pool[FRESH] + BATCH * PUSHED_PER_EVENT + acts > run.pool_slots + pool[LAST]:
         return POOL_FULL
-    if run.rows + BATCH * ROWS_PER_EVENT > run.row_limit:
+    if run.rows + BATCH * ROWS_PER_EVENT + acts > run.row_limit:
         return ROWS_FULL
-    if run.deliveries + BATCH > run.delivery_limit > 0 or run.trail + BATCH > run.trail_limit > 0:
+    if run.deliveries + acts > run.delivery_limit > 0 or run.trail + BATCH > run.trail_limit > 0:
         return ROWS_FULL
     if run.taps > run.tap_limit:  # beyond the limit there is room for a batch
         return ROWS_FULL

@@ -58,6 +58,7 @@ class Cables(Simulation):
     broken_words: ClassVar[Mapping[int, str]] = {
         w.BROKEN_RANGE: "a value of {node} is out of its declared range",
         w.BROKEN_OUTBOX: "outbox of {node} overflowed",
+        w.BROKEN_PORT: "{node} sends out of a port that no node has",
     }
     sink: ClassVar[tuple[Declaration, Declaration]] = ((), ())
     dropped: ClassVar[Mapping[str, int]] = {}  # why nodes give up messages, and how that counts

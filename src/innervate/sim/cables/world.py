@@ -41,6 +41,7 @@ DEAD = 2
 # What is broken; a network's recorder may have more, below these.
 BROKEN_RANGE = 3
 BROKEN_OUTBOX = 4
+BROKEN_PORT = 5
 
 # Timers of a node: the protocol's own first, then the driver's source of samples.
 SOURCE = 3

@@ -10,7 +10,7 @@ from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.scenario.actions.channel import BEGIN
 from innervate.sim.channel import world as r
-from innervate.sim.channel.loop import BATCH
+from innervate.sim.channel.loop import BATCH, ROWS_PER_EVENT
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.recorded import Recorded
@@ -25,12 +25,14 @@ class Records(NamedTuple):
     Attributes:
         station: state of a station; `number`, `rng` and `choice`, where declared, are set here.
         params, frame, packet: parameters, frames, and what a station is handed to send.
+        outbox: actions of one call of a handler at most.
     """
 
     station: Any
     params: Any
     frame: Any
     packet: Any
+    outbox: int = OUTBOX
 
 
 def build(
@@ -54,8 +56,10 @@ def build(
     fields = of.station
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
-    rows = (room or tables.rows) if kept.observe else 1
-    tapped = tables.rows + OUTBOX * n * BATCH if kept.tap else 1
+    beyond = BATCH * (ROWS_PER_EVENT + of.outbox) + n * of.outbox  # see `loop.pressing`
+    rows = (room or tables.rows) + beyond if kept.observe else 1
+    trail = tables.rows + beyond if kept.trail else 1
+    tapped = tables.rows + of.outbox * n * BATCH if kept.tap else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
@@ -73,12 +77,12 @@ def build(
         **_neighbours(tables, plan),
         **_packets(tables, plan),
         item=tables.states(of.packet, 1),
-        out=tables.outbox(OUTBOX, of.frame),
+        out=tables.outbox(of.outbox, of.frame),
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
         rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
         packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
-        trail=tables.records(r.TRAIL, tables.rows if kept.trail else 1, fresh=True, wide=r.WIDE),
+        trail=tables.records(r.TRAIL, trail, fresh=True, wide=r.WIDE),
         taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
         tapped=tables.states(of.frame, tapped),
     )
@@ -158,8 +162,8 @@ def _set_run(world: r.World, plan: Any, of: Records, kept: Recorded) -> None:
         trail_limit=len(world.trail) if kept.trail else 0,
         broken_at=-1,
     )
-    beyond = OUTBOX * plan.stations * BATCH  # what a batch of events can add
-    put(world.run, 0, tap_limit=max(0, len(world.taps) - beyond))
+    tapped = of.outbox * plan.stations * BATCH  # what a batch of events can add
+    put(world.run, 0, tap_limit=max(0, len(world.taps) - tapped))
     put(world.params, 0, **{field[0]: plan.params[field[0]] for field in of.params})
 
 

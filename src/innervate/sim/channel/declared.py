@@ -23,7 +23,7 @@ from innervate.sim import clocks, delays, heap, rows, taps
 from innervate.sim.cables.declared import Unfit, frames_of
 from innervate.sim.channel import listening, loop, medium, traffic
 from innervate.sim.channel import world as w
-from innervate.sim.channel.build import Records, build
+from innervate.sim.channel.build import OUTBOX, Records, build
 from innervate.sim.channel.calls import handlers
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
@@ -206,11 +206,12 @@ class DeclaredChannel(Channel):
 
 def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:
     """The world of a plan (see `scenario/declared/channel.py`), before its first event."""
-    fields = networks()[plan.kind].fields
-    made = Tables(plain)
+    network = networks()[plan.kind]
+    fields, made = network.fields, Tables(plain)
     frame = extended(fields.FRAME, OF_FRAME)
     of = Records(extended(fields.STATE, OF_NODE), fields.PARAMS, frame,
-                 extended(fields.FRAME, OF_ITEM))  # fmt: skip
+                 extended(fields.FRAME, OF_ITEM),
+                 getattr(network.protocol, "OUTBOX", OUTBOX))  # fmt: skip
     items = made.states(fields.FRAME, len(plan.inputs) + 1)
     for place, given in enumerate(plan.inputs):
         put(items, place, **given.item)

@@ -57,7 +57,6 @@ WHAT_MASK = (1 << STATION_SHIFT) - 1
 COLD, LATE = 0, 1
 BATCH = 16  # events between two looks at the room left in the tables
 ROWS_PER_EVENT = 24
-MARGIN = BATCH * ROWS_PER_EVENT
 
 
 def pressing(world):
@@ -65,11 +64,13 @@ def pressing(world):
     run = world.run[0]
     if run.broken:
         return BROKEN
-    if run.rows + MARGIN > run.row_limit > 0 or run.sent + MARGIN > run.sent_limit > 0:
+    # All stations may be told of a carrier in one event, and each fill its outbox.
+    margin = BATCH * (ROWS_PER_EVENT + world.out.limit[0]) + run.stations * world.out.limit[0]
+    if run.rows + margin > run.row_limit > 0 or run.sent + margin > run.sent_limit > 0:
         return ROWS_FULL
-    if run.packets + MARGIN > run.packet_limit > 0:
+    if run.packets + margin > run.packet_limit > 0:
         return ROWS_FULL
-    if run.trail + MARGIN > run.trail_limit > 0:
+    if run.trail + margin > run.trail_limit > 0:
         return ROWS_FULL
     if run.taps > run.tap_limit:
         return ROWS_FULL

@@ -53,7 +53,8 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
         item=tables.states(fields.FRAME, 1),
         out=tables.outbox(room, fields.FRAME, ACTION),
         counters=tables.numbers(listening.COUNTERS, 0, np.int64),
-        **_rows(tables, n * (room + 1), fields.FRAME, kept),
+        # In one event all may be given a frame, and all be told that a carrier has gone.
+        **_rows(tables, 2 * n * (room + 1), fields.FRAME, kept),
     )
     _set_run(world, plan, timers, own_timers)
     _set_limits(world, tables.rows, kept)

@@ -20,7 +20,6 @@ from innervate.dialect.access import ALL
 from innervate.dialect.outbox import URGENT
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
-from innervate.kernel.records import places_of
 from innervate.network import Network, access_of, networks
 from innervate.scenario.declared.field import sizes_of
 from innervate.sim import clocks, heap, rows, taps
@@ -63,7 +62,7 @@ def functions(network: Network) -> ModuleType:
         f"{protocol.__name__} over a field",
         (whole, frames["digest"], frames["kind_of"], _frame_bytes(network.frames)),
         _entries(protocol, names), _mac(network), _noted(whole, frames["kind_of"], names),
-        _checks(list(invariants_of(network, "node_").values()), fields.STATE), BELOW, KEPT,
+        _checks(list(invariants_of(network, "node_").values())), BELOW, KEPT,
     )  # fmt: skip
     return do
 
@@ -233,10 +232,12 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
     )  # fmt: skip
 
 
-def _checks(own: list[Callable[..., Any]], state: Any) -> tuple[Callable[..., Any], ...]:
-    """The checks after every call; and what is left of a node that lost its memory."""
+def _checks(own: list[Callable[..., Any]]) -> tuple[Callable[..., Any], ...]:
+    """The checks after every call; and what a node loses that is switched on again: its queue.
+
+    What its `on_start` does not set is as before, as in stable storage, over any medium.
+    """
     check_own = check_of(own, "stations")
-    number, chance, choice = places_of(state, "number", "rng", "choice")
 
     def check(world, do, node, time):  # type: ignore[no-untyped-def]
         if not calls.is_sound(world, node):
@@ -244,7 +245,6 @@ def _checks(own: list[Callable[..., Any]], state: Any) -> tuple[Callable[..., An
         check_own(world, node, (time + world.radios[node].offset) & arith.MASK30)
 
     def wipe(world, node):  # type: ignore[no-untyped-def]
-        listening.wipe_words(world, node, number, chance, choice)
         world.radios[node].first = world.radios[node].waiting = 0
 
     return check, wipe, check_own

@@ -176,14 +176,3 @@ def tell_changes(world, do, time):
             cd = 1 if medium.senses(world, node) else 0
             if cd != radio.told:
                 tell_carrier(world, do, node, time)
-
-
-def wipe_words(world, node, number, chance, choice):
-    """A node's record as one is before its start, but for who it is and its random choices.
-
-    Those three stand at these places of it, -1 = it has none.
-    """
-    words, blank = world.words[node], world.words[world.run[0].nodes]
-    for i in range(len(world.low)):
-        if i not in (number, chance, choice):
-            words[i] = blank[i]

@@ -16,6 +16,7 @@ from innervate.networks.radio.sim import build
 from innervate.scenario import ScenarioError, load, plan
 from innervate.scenario.actions.field import KILL, RESTART, REVIVE
 from innervate.sim.driver import InvariantBroken
+from innervate.sim.tables import Tables
 from tests.networks.mesh.channel_runs import SLOT_US, TURN_US, slots, team
 from tests.networks.mesh.pinger import REPORT_HEARD, REPORT_SENT
 from tests.networks.mesh.runs import run
@@ -118,7 +119,8 @@ def test_who_returns_has_forgotten_its_frame_and_sends_the_next(back):
 
 
 def test_a_broken_channel_stops_the_run(monkeypatch):
-    monkeypatch.setattr("innervate.sim.channel.build.OUTBOX", 1)
+    made = Tables.outbox
+    monkeypatch.setattr(Tables, "outbox", lambda self, _, *more: made(self, 1, *more))
     with pytest.raises(InvariantBroken, match="outbox of station"):
         run(team(5, [(AT, i, NOONE, 9) for i in range(5)]))
 
