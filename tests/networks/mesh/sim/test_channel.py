@@ -119,8 +119,11 @@ def test_who_returns_has_forgotten_its_frame_and_sends_the_next(back):
 
 
 def test_a_broken_channel_stops_the_run(monkeypatch):
-    made = Tables.outbox
-    monkeypatch.setattr(Tables, "outbox", lambda self, _, *more: made(self, 1, *more))
+    class Small(Tables):
+        def outbox(self, _, *more):
+            return super().outbox(1, *more)
+
+    monkeypatch.setattr("innervate.sim.channel.build.Tables", Small)
     with pytest.raises(InvariantBroken, match="outbox of station"):
         run(team(5, [(AT, i, NOONE, 9) for i in range(5)]))
 
