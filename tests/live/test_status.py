@@ -26,7 +26,7 @@ def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():
 
     told = asyncio.run(main())
     lines = live_status.lines(told[0])
-    assert lines[1].startswith("  to the PC: by port 2 (W), 1 hops, load ")
+    assert lines[1].startswith("  to the PC: by port 2 (W), 1 hop, load ")
     assert lines[2].startswith("  port 0 (E): local 0-1, heard ")
     assert lines[3].startswith("  port 1 (down): local 0-2, heard ")
     assert live_status.lines(told[-1])[1] == f"  cells per interface port: {told[-1]['cells']}"
