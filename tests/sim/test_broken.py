@@ -4,6 +4,7 @@ A network under way, plain and in order, is tampered with at one moment; the che
 also where the run ends right behind what broke it. The same network left alone goes on.
 """
 
+from itertools import count
 from types import SimpleNamespace
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from innervate.dialect.outbox import report, send
 from innervate.networks.mesh.sim import recorder as mesh_recorder
 from innervate.networks.mesh.sim import simulate as mesh
+from innervate.networks.radio.protocol.fields import FRAME
 from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim import simulate as radio
 from innervate.networks.skin.protocol.constants import REPORT_BALANCE, TICK
@@ -120,6 +122,20 @@ def station_out_of_range(running):
     running.world.stations[1].lonely = 32
 
 
+def frames_that_change(running):
+    """Whatever is on the air says something else each time that it is looked at."""
+    frames, numbers = running.world.frames, count()
+
+    class Restless(type(frames[0])):
+        handle = property(lambda _: next(numbers) & 0xFFFF, lambda *_: None)
+
+    for place, frame in enumerate(frames):
+        frames[place] = made = Restless()
+        for name, *_ in FRAME:
+            if name != "handle":
+                setattr(made, name, getattr(frame, name))
+
+
 # A mesh of five nodes of which one after the other says something to all.
 
 
@@ -191,6 +207,8 @@ CASES = [
     (RADIO, channel_medium.BROKEN_DEAF, radios_deaf, "sent while its radio could not"),
     (RADIO, channel_medium.BROKEN_AIR, still_on_the_air, "has too many transmissions under way"),
     (RADIO, channel_loop.BROKEN_OUTBOX, outbox_of_one, "outbox of station "),
+    (RADIO, channel_loop.BROKEN_FRAME, frames_that_change,
+     "a receiver changed the frame that station "),
     (RADIO, radio_recorder.BROKEN_TURNS, a_turn_that_lasts,
      "began a turn while another station had its own"),
     (RADIO, radio_recorder.BROKEN_RANGE, station_out_of_range,

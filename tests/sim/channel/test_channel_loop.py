@@ -53,7 +53,7 @@ RUN = dict.fromkeys(
     ("broken", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
      "trail_limit", "taps", "tap_limit", "saturated", "forced", "fingerprint", "handled",
      "watchful", "broken_at", "offers", "dropped", "silent", "partial", "again",
-     "completed", "wanted", "now", "decoded", "oracle", "full_duplex", "loss"), 0,
+     "completed", "wanted", "now", "decoded", "oracle", "full_duplex", "loss", "checks"), 0,
 )  # fmt: skip
 
 
@@ -255,6 +255,22 @@ def test_an_outcome_is_told_and_edges_of_signals_go_on(do):
     assert do.said == [("record_received", 1, 0, 85, True, True),
                        ("on_frame", 1, 85 + OFFSET, world.frames[0])]  # fmt: skip
     assert world.run[0].decoded == 1
+
+
+@pytest.mark.parametrize(("checks", "before", "broken"), [
+    (1, 0, loop.BROKEN_FRAME), (0, 0, 0), (1, 3, 3),
+])  # fmt: skip
+def test_a_receiver_that_changes_a_frame_is_told_on(do, checks, before, broken):
+    """Those that hear it later are handed the same."""
+    world = world_of(checks=checks, broken=before, broken_node=-1)
+    world.air[0].start, world.air[0].end = 60, 75
+    world.radios[1].present, world.radios[1].candidate = 1, 0
+    world.heap.keys[0], world.heap.size[0] = key_of(85, ENDS, 1, 0), 1
+    seen = iter(range(9))
+    do.digest = lambda _: next(seen)
+    loop.edge(world, do, ENDS, 1, 0, 85)
+    assert world.run[0].broken == broken
+    assert world.run[0].broken_node == (0 if broken == loop.BROKEN_FRAME else -1)
 
 
 def drained(do, *actions, now=80 + OFFSET, **run):

@@ -6,7 +6,7 @@ The counters stand in `world.above.counters`.
 from innervate.dialect.access import PACKET as PACKET
 from innervate.kernel.records import within
 from innervate.sim import taps
-from innervate.sim.channel.loop import BROKEN_OUTBOX
+from innervate.sim.channel.loop import BROKEN_FRAME, BROKEN_OUTBOX
 from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF
 
 BROKEN_RANGE = 4
@@ -15,6 +15,7 @@ WORDS = {
     BROKEN_AIR: "{node} has too many transmissions under way",
     BROKEN_OUTBOX: "outbox of {node} overflowed",
     BROKEN_RANGE: "a value of {node} is out of its declared range",
+    BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
 }
 SENT = 0
 ARRIVED = 1

@@ -52,6 +52,7 @@ from innervate.sim.status import (
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3
+BROKEN_FRAME = 8  # a receiver changed the frame that the others are handed, too
 WHAT_MASK = (1 << STATION_SHIFT) - 1
 
 COLD, LATE = 0, 1
@@ -225,9 +226,13 @@ def edge(world, do, rank, node, what, time):
         received = medium.end_signal(world, node, what)
         do.record_received(world, node, what, time, clear, received)
         if received:
-            world.run[0].decoded += 1
+            run = world.run[0]
+            run.decoded += 1
             now = time + radio.offset
+            was = do.digest(world.frames[what]) if run.checks else 0
             do.on_frame(world, node, now & MASK30, world.frames[what])
+            if run.checks and run.broken == 0 and do.digest(world.frames[what]) != was:
+                run.broken, run.broken_node = BROKEN_FRAME, sender
             finish(world, do, node, time, now, ON_FRAME, world.frames[what].kind)
     medium.note_carrier(world, node)
 

@@ -150,6 +150,7 @@ BROKEN_WORDS = {
     medium.BROKEN_DEAF: "station {node} sent while its radio could not",
     medium.BROKEN_AIR: "station {node} has too many transmissions under way",
     loop.BROKEN_OUTBOX: "outbox of station {node} overflowed",
+    loop.BROKEN_FRAME: "a receiver changed the frame that station {node} had sent",
     recorder.BROKEN_TURNS: "station {node} began a turn while another station had its own",
     recorder.BROKEN_RANGE: "a value of station {node} is out of its declared range",
 }
