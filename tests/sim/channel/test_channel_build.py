@@ -164,3 +164,19 @@ def test_an_edge_that_changes_a_carrier_is_told_once_all_are_there(do):
     heap.push(world.heap, key_of(85, heap.ENDS, 1, 0))
     loop.edge(world, do, heap.ENDS, 1, 0, 85)
     assert world.told[:2] == [1, 1]
+
+
+@pytest.mark.parametrize(("checks", "before", "broken"), [
+    (1, 0, loop.BROKEN_FRAME), (0, 0, 0), (1, 3, 3),
+])  # fmt: skip
+def test_a_receiver_that_changes_a_frame_is_told_on(do, checks, before, broken):
+    """Those that hear it later are handed the same."""
+    world = world_of(checks=checks, broken=before, broken_node=-1)
+    world.air[0].start, world.air[0].end = 60, 75
+    world.radios[1].present, world.radios[1].candidate = 1, 0
+    world.heap.keys[0], world.heap.size[0] = key_of(85, heap.ENDS, 1, 0), 1
+    seen = iter(range(9))
+    do.digest = lambda _: next(seen)
+    loop.edge(world, do, heap.ENDS, 1, 0, 85)
+    assert world.run[0].broken == broken
+    assert world.run[0].broken_node == (0 if broken == loop.BROKEN_FRAME else -1)

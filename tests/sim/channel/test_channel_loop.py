@@ -257,22 +257,6 @@ def test_an_outcome_is_told_and_edges_of_signals_go_on(do):
     assert world.run[0].decoded == 1
 
 
-@pytest.mark.parametrize(("checks", "before", "broken"), [
-    (1, 0, loop.BROKEN_FRAME), (0, 0, 0), (1, 3, 3),
-])  # fmt: skip
-def test_a_receiver_that_changes_a_frame_is_told_on(do, checks, before, broken):
-    """Those that hear it later are handed the same."""
-    world = world_of(checks=checks, broken=before, broken_node=-1)
-    world.air[0].start, world.air[0].end = 60, 75
-    world.radios[1].present, world.radios[1].candidate = 1, 0
-    world.heap.keys[0], world.heap.size[0] = key_of(85, ENDS, 1, 0), 1
-    seen = iter(range(9))
-    do.digest = lambda _: next(seen)
-    loop.edge(world, do, ENDS, 1, 0, 85)
-    assert world.run[0].broken == broken
-    assert world.run[0].broken_node == (0 if broken == loop.BROKEN_FRAME else -1)
-
-
 def drained(do, *actions, now=80 + OFFSET, **run):
     """A world in which a station's call at 80 us has put these out."""
     world = world_of(**run)
