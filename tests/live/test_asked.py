@@ -27,8 +27,13 @@ class Writer:
     def __init__(self):
         self.lines = []
 
+        self.gone = asyncio.Event()
+
     async def line(self, answer):
         self.lines.append(answer)
+
+    async def hung_up(self):
+        await self.gone.wait()
 
 
 @pytest.fixture
@@ -144,6 +149,28 @@ def test_who_listens_gets_what_comes_and_how_much_was_missed(process, monkeypatc
     assert lines[0] == {"listening": "n3"}
     assert [line.get("from", line) for line in lines[1:]] == [0, 1, 2, 0, {"missed": 3}]
     assert left == []
+
+
+@pytest.mark.parametrize("breaks", [False, True])
+def test_who_hangs_up_leaves_nothing_behind_though_nothing_comes(process, breaks):
+    """Also who is gone before the first answer."""
+    node = process.node
+
+    async def listen():
+        writer = Writer()
+        if breaks:
+            writer.line = fails
+        task = asyncio.ensure_future(process._listen({"do": "listen"}, writer))
+        await soon()
+        writer.gone.set()
+        await asyncio.gather(task, return_exceptions=True)
+        await soon()
+        return node.arrivals.callbacks
+
+    async def fails(_):
+        raise ConnectionResetError
+
+    assert asyncio.run(listen()) == []
 
 
 @pytest.mark.parametrize(("chars", "weight"), [(0, 1), (1023, 1), (1024, 2), (2047, 2), (2048, 3)])

@@ -293,3 +293,50 @@ def test_a_station_may_come_back_at_its_address_under_another_number():
         return list(medium._ears)
 
     assert time_by_hand.run(run()) == [6]
+
+
+def test_a_file_that_is_no_socket_stays_where_a_node_was_to_have_one(tmp_path):
+    mine = tmp_path / "n0.sock"
+    mine.write_text("mine")
+    with pytest.raises(LiveError, match="is a file, and no node's socket"):
+        Machine().listen_at(mine)
+    assert mine.read_text() == "mine"
+
+
+def test_a_node_that_hangs_is_not_waited_for(tmp_path, monkeypatch):
+    """It takes the question, and says nothing."""
+    monkeypatch.setattr(status, "ANSWER_S", 0.05)
+    path = tmp_path / "n0.sock"
+    with socket.socket(socket.AF_UNIX) as hung:
+        hung.bind(str(path))
+        hung.listen()
+        with pytest.raises(LiveError, match="no node answers here"):
+            status.ask_one(path, {"do": "status"})
+
+
+def test_whoever_ended_asking_has_hung_up_once_both_directions_are_closed(tmp_path, monkeypatch):
+    monkeypatch.setattr(status, "LOOK_S", 0.01)
+
+    async def main():
+        told = []
+
+        async def serve(reader, stream):
+            ending = asyncio.ensure_future(status.Writer(stream, reader).hung_up())
+            done, _ = await asyncio.wait([ending], timeout=0.1)
+            told.append(bool(done))  # it has only ended asking
+            half.set()
+            await ending
+            told.append(True)
+            over.set()
+            stream.close()
+
+        half, over = asyncio.Event(), asyncio.Event()
+        async with await asyncio.start_unix_server(serve, tmp_path / "s"):
+            _, caller = await asyncio.open_unix_connection(tmp_path / "s")
+            caller.write_eof()
+            await half.wait()
+            caller.close()
+            await asyncio.wait_for(over.wait(), 5)
+        return told
+
+    assert asyncio.run(main()) == [False, True]

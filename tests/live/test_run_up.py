@@ -3,6 +3,7 @@
 import asyncio
 import io
 import json
+import socket
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -86,6 +87,36 @@ def test_keys_are_those_that_were_asked_for(plan, tmp_path):
     assert network.engine == "c"
     files = {path.name for path in (tmp_path / "b" / "keys").iterdir()}
     assert files >= {f"n{number}.identity" for number in range(3)}
+
+
+def test_nobodys_own_keys_or_scenario_are_replaced(plan, tmp_path):
+    way = Way(tmp_path, "udp", "identities")
+    (tmp_path / "keys").mkdir()
+    (tmp_path / "keys" / "authority.key").write_text("mine")
+    with pytest.raises(LiveError, match="holds keys that live up did not make"):
+        run_up.prepared(plan, way)
+    assert (tmp_path / "keys" / "authority.key").read_text() == "mine"
+    way = Way(tmp_path, "udp", "")
+    mine = tmp_path / "scenario.toml"
+    for text, is_taken in (("# mine", False), (f"{run_up.OURS}\nkind = 'mesh'", True)):
+        mine.write_text(text)
+        if is_taken:
+            run_up.prepared(plan, way)
+        else:
+            with pytest.raises(LiveError, match="none that live up wrote"):
+                run_up.prepared(plan, way)
+        assert mine.read_text() == text
+
+
+def test_sockets_of_nodes_that_were_killed_go_and_those_of_others_refuse(plan, tmp_path):
+    way = Way(tmp_path, "udp", "")
+    with socket.socket(socket.AF_UNIX) as left:
+        left.bind(str(tmp_path / "c7.sock"))
+        left.listen()
+        with pytest.raises(LiveError, match="c7 of another network runs here"):
+            run_up.prepared(plan, way)
+    run_up.prepared(plan, way)
+    assert list(tmp_path.glob("*.sock")) == []
 
 
 def test_only_a_folder_that_was_made_for_it_is_removed(plan, tmp_path):

@@ -76,10 +76,12 @@ class Recorder:
         writing = asyncio.create_task(self._write_on())
         try:
             await asyncio.wait(
-                parts, timeout=for_s or None, return_when=asyncio.FIRST_COMPLETED
+                [*parts, writing], timeout=for_s or None, return_when=asyncio.FIRST_COMPLETED
             )  # fmt: skip
             if following.done():
                 following.result()  # a node that refused
+            if writing.done():
+                writing.result()  # the disk is full
         finally:
             for number in (signal.SIGTERM, signal.SIGINT):
                 loop.remove_signal_handler(number)

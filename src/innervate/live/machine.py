@@ -94,6 +94,8 @@ class Machine:
         """
         path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
         if path.exists():
+            if not path.is_socket():
+                raise LiveError(f"{path} is a file, and no node's socket; name another")
             if answers(path):
                 raise LiveError(f"{path}: a node with this name runs already; stop it")
             path.unlink()

@@ -176,7 +176,8 @@ def address(text: str, where: str) -> tuple[str, int]:
         LiveError: it is none.
     """
     host, _, port = text.rpartition(":")
-    if not host or not port.isascii() or not port.isdigit() or int(port) > 65_535:
+    digits = port.isascii() and port.isdigit() and len(port) < 6
+    if not host or not digits or int(port) > 65_535:
         raise LiveError(f'{where}: "{text}" is no address; write one like "127.0.0.1:4700"')
     return host, int(port)
 

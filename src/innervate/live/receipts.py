@@ -12,6 +12,16 @@ REFUSED = "refused"
 FINAL = (DELIVERED, EXPIRED, REFUSED)
 
 
+def check_bytes(payload: object) -> None:
+    """That a payload is bytes, before anything is done with it.
+
+    Raises:
+        TypeError: it is not.
+    """
+    if not isinstance(payload, bytes | bytearray | memoryview):
+        raise TypeError(f"a payload is bytes, not {type(payload).__name__}")
+
+
 class Receipt:
     """What becomes of a message.
 

@@ -15,8 +15,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from innervate.live import play, status
+from innervate.live import play, private, status
+from innervate.live.errors import LiveError
 from innervate.live.up import Processes
+
+SCENARIO = "scenario.toml"
+OURS = "# As `innervate live up` brought it up; the next one in this folder replaces it."
+MARK = "made-by-live-up"  # among keys that may be replaced
 
 
 class Way(NamedTuple):
@@ -62,6 +67,8 @@ def prepared(plan: Any, way: Way) -> Processes:
     keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
     network = Processes(plan, folder.absolute(), way.cables, keys, way.images)
     network.engine = way.engine
+    network.take_folder()
+    _check_scenario(network.folder / SCENARIO)
     if way.sealed == "identities":
         network.keys = _identities(network)
     return network
@@ -74,7 +81,7 @@ async def up(network: Processes, scenario: str) -> None:
         LiveError: a node does not come up.
     """
     await network.up()
-    (network.folder / "scenario.toml").write_text(scenario, encoding="utf-8")
+    (network.folder / SCENARIO).write_text(f"{OURS}\n{scenario}", encoding="utf-8")
 
 
 async def down(network: Processes, way: Way) -> None:
@@ -84,13 +91,37 @@ async def down(network: Processes, way: Way) -> None:
         shutil.rmtree(network.folder, ignore_errors=True)
 
 
+def _check_scenario(path: Path) -> None:
+    """That a scenario in the folder is of a `live up`, and may be replaced.
+
+    Raises:
+        LiveError: it is somebody's own.
+    """
+    try:
+        is_ours = path.read_text(encoding="utf-8").startswith(OURS)
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError):
+        is_ours = False
+    if not is_ours:
+        raise LiveError(f"{path} is none that live up wrote; name another --folder")
+
+
 def _identities(network: Processes) -> dict[str, Any]:
-    """Have every node enrolled; the [keys] table."""
+    """Have every node enrolled; the [keys] table.
+
+    Raises:
+        LiveError: there are keys in the folder that no `live up` made.
+    """
     from innervate.live.enrolment import Authority
 
     folder = network.folder / "keys"
     if folder.exists():
+        if not (folder / MARK).is_file():
+            raise LiveError(f"{folder} holds keys that live up did not make; name another --folder")
         shutil.rmtree(folder)  # of a run before
+    folder.mkdir(mode=private.FOLDER)
+    (folder / MARK).touch()
     authority = Authority(folder)
     for number in range(len(network.names)):
         authority.enrol(number)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import select
 import socket
 import tempfile
 from collections import Counter
@@ -19,6 +20,7 @@ from innervate.live.errors import LiveError
 from innervate.live.machine import ANSWER_S, machine
 from innervate.live.machine import answers as answers
 
+LOOK_S = 1.0  # between two looks whether who has ended asking has gone
 LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits
 UP = "up"  # in a user's own folder: a link to where the newest `live up` has its nodes
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
@@ -84,10 +86,24 @@ def findable(run: Path) -> Iterator[None]:
 
 
 class Writer:
-    """Writes answers of one connection."""
+    """Writes answers of one connection; `reader` is its other direction."""
 
-    def __init__(self, stream: asyncio.StreamWriter) -> None:
-        self._stream = stream
+    def __init__(
+        self, stream: asyncio.StreamWriter, reader: asyncio.StreamReader | None = None
+    ) -> None:
+        self._stream, self._reader = stream, reader
+
+    async def hung_up(self) -> None:
+        """Until the caller has gone, who may have said long ago that nothing more will be asked."""
+        while self._reader is None or await self._reader.read(LINE_MAX):
+            await asyncio.sleep(LOOK_S)
+        sock = self._stream.get_extra_info("socket")
+        if sock is None:
+            return
+        look = select.poll()
+        look.register(sock.fileno(), 0)  # tells of both directions being closed, whatever is asked
+        while not look.poll(0):
+            await asyncio.sleep(LOOK_S)
 
     async def line(self, answer: dict[str, Any]) -> None:
         """Write one answer as a line of JSON, and wait until there is room for more."""
@@ -142,7 +158,7 @@ class Server:
                 machine().remove(self.path)
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
-        writer = Writer(stream)
+        writer = Writer(stream, reader)
         try:
             while line := await reader.readline():
                 await answer(line, self._handle, writer)
@@ -172,7 +188,8 @@ def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
         try:
             sock.connect(str(path))
             sock.sendall(json.dumps(request).encode() + b"\n")
-            sock.settimeout(None)
+            if request.get("do") != "status":  # that is answered at once, by a node that is well
+                sock.settimeout(None)
             with sock.makefile("rb") as lines:
                 for line in lines:
                     answer: dict[str, Any] = json.loads(line)

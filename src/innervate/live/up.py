@@ -71,19 +71,30 @@ class Processes:
         self._medium = ""  # its address
         self._tables: dict[str, NodeTables] = {}
 
+    def take_folder(self) -> None:
+        """Make the folder, or take it over: sockets of nodes that were killed go.
+
+        Raises:
+            LiveError: another network runs there.
+        """
+        self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+        left = [path for path in self.folder.glob("*.sock") if path.is_socket()]
+        for path in left:
+            if status.answers(path):
+                raise LiveError(
+                    f"{self.folder}: {path.stem} of another network runs here; end it, or name "
+                    "another --folder"
+                )
+        for path in left:
+            path.unlink(missing_ok=True)
+
     async def up(self) -> None:
         """Write the files, start the processes, wait until all of them answer.
 
         Raises:
             LiveError: something is missing, or a node does not come up; its own line is in it.
         """
-        self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
-        for name in self.names:
-            if status.answers(self.socket(name)):
-                raise LiveError(
-                    f"{self.folder}: {name} of another network runs here; end it, or name "
-                    "another --folder"
-                )
+        self.take_folder()
         if self.cables == "netns":
             self.lab = Lab("iv", len(self.names), self.links)
             self.lab.up()

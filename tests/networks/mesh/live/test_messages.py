@@ -23,6 +23,27 @@ def test_receipt_moves_from_accepted_over_hop_to_delivered():
     assert asyncio.run(main()) == ["accepted", HOP_ACKED, DELIVERED]
 
 
+def test_a_mistake_of_its_user_does_not_keep_a_node_from_sending():
+    """A callback that raises, on a message to the node itself; and what is no message at all."""
+
+    def raises(*_):
+        raise RuntimeError("a mistake")
+
+    async def main():
+        async with Mesh(2, [(0, 1)]) as mesh:
+            one, other = mesh.nodes
+            one.receive_messages(raises)
+            with pytest.raises(RuntimeError, match="a mistake"):
+                one.send_message(0, b"to myself")
+            for wrong in ({"payload": "text"}, {"recipient": 1.0}, {"payload": None}):
+                with pytest.raises(TypeError, match=r"a payload is bytes|a node's number"):
+                    one.send_message(**{"recipient": 1, "payload": b"x"} | wrong)
+            del one.arrivals.callbacks[:]
+            return await one.send_message(1, b"x").wait(), await other.send_message(0, b"y").wait()
+
+    assert asyncio.run(main()) == (DELIVERED, DELIVERED)
+
+
 def test_messages_come_to_callbacks_and_iterators_once_each():
     async def main():
         async with Mesh(4, LINE) as mesh:

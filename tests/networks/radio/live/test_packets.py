@@ -44,6 +44,8 @@ def test_a_packet_lasts_as_many_slots_as_it_has_bytes_and_two_and_three_at_least
 
 
 def test_a_packet_that_is_too_long_one_too_many_and_one_too_early(station):
+    with pytest.raises(TypeError, match="a payload is bytes, not str"):
+        station.send_packet("text")
     with pytest.raises(ValueError, match="payload of 19 bytes; a packet holds 18"):
         station.send_packet(bytes(19))
     station.stack.station.queued = QUEUE

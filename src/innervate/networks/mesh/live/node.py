@@ -11,7 +11,7 @@ from innervate.dialect.arith import MASK16
 from innervate.live.links import Link
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
-from innervate.live.receipts import Receipt
+from innervate.live.receipts import Receipt, check_bytes
 from innervate.live.state import State
 from innervate.live.streams import Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
@@ -126,7 +126,11 @@ class MeshNode(LiveNode):
 
         Raises:
             ValueError: no node can have that number, or the payload is too long.
+            TypeError: the number is none, or the payload is not bytes.
         """
+        if not isinstance(recipient, int):
+            raise TypeError(f"recipient must be a node's number, not {recipient!r}")
+        check_bytes(payload)
         chained = self.in_order if in_order is None else in_order
         chained = chained and recipient not in (ALL, self.stack.node.number)
         nodes = self.stack.params.nodes

@@ -147,6 +147,12 @@ class Outgoing:
         if self._feeding:
             return
         self._feeding = True
+        try:
+            self._feed()
+        finally:  # a user's own callback may have raised, on a message to this node
+            self._feeding = False
+
+    def _feed(self) -> None:
         while (waiting := self.turns.take()) is not None:
             handle, item = waiting
             chained = self._head(handle, item) if item.flags & ORDERED else None
@@ -158,7 +164,6 @@ class Outgoing:
             elif not item.flags & END_TO_END or item.dest == ALL:
                 self.receipts.pop(handle, None)  # nobody will tell us more
                 self.turns.ended(handle, None)
-        self._feeding = False
 
     def _head(self, handle: int, item: Any) -> tuple[int, int] | None:
         """What stands in front of a message in order: the one before it; of a piece: which it is.

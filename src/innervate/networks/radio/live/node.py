@@ -9,7 +9,7 @@ from innervate.dialect import plain
 from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
 from innervate.live.on_air import AirNode
 from innervate.live.radio import Radio
-from innervate.live.receipts import DELIVERED, REFUSED, Receipt
+from innervate.live.receipts import DELIVERED, REFUSED, Receipt, check_bytes
 from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.live.stack import StationStack
@@ -61,7 +61,9 @@ class RadioNode(AirNode):
 
         Raises:
             ValueError: the payload is longer than a packet.
+            TypeError: the payload is not bytes.
         """
+        check_bytes(payload)
         slots = max(SLOTS_MIN, len(payload) + 2)
         most: int = self.stack.params.packet_slots
         if slots > most:
