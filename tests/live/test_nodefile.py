@@ -48,6 +48,9 @@ KEYS_1_AND_16 = f'{{1 = "{"a" * 64}", 16 = "{"b" * 64}"}}'
         ("nodes = 9", "nodes = 9\nprotocol = {ack_ms = 1}", "protocol.ack_ms is unknown"),
         ("nodes = 9", "nodes = 9\nprotocol = {ack_us = 0}", "must be 1 to 16777215 us"),
         ('"127.0.0.1:4701"', '"127.0.0.1"', "is no address"),
+        ('"127.0.0.1:4701"', '"127.0.0.1:123456"', "is no address"),
+        ('"127.0.0.1:4701"', '"localhost:4701"', '"localhost:4701" is no IPv4 address with'),
+        ('"127.0.0.1:4701"', '"[::1]:4701"', '"[::1]:4701" is no IPv4 address with a port'),
         ('kind = "udp"', 'kind = "upd"', "upd"),
         ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
         (
@@ -100,3 +103,41 @@ def test_keys_have_the_numbers_0_to_15(tmp_path):
     loaded = load(path)
     found = keys_of(loaded.table.keys, loaded)
     assert found == {0: bytes(32), 15: b"\xff" * 32}
+
+
+RADIO = """
+kind = "radio"
+number = {number}
+[[link]]
+kind = "medium"
+address = "127.0.0.1:4790"
+"""
+CELL = """
+kind = "skin"
+role = "cell"
+number = 1
+nodes = 3
+[[link]]
+kind = "udp"
+bind = "127.0.0.1:0"
+peers = [{peers}]
+"""
+
+
+def peers(count):
+    return ", ".join(f'"127.0.0.1:{4_700 + k}"' for k in range(count))
+
+
+@pytest.mark.parametrize(("text", "says"), [
+    (RADIO.format(number=1022), ""), (RADIO.format(number=1023), "stations are 0 to 1022"),
+    (CELL.format(peers=peers(4)), ""), (CELL.format(peers=peers(5)), "ports must name the cell's"),
+    (CELL.format(peers=f"{peers(1)}, {peers(2)}"), "127.0.0.1:4700 stands there twice"),
+])  # fmt: skip
+def test_no_node_is_made_that_could_not_send(tmp_path, text, says):
+    path = write(tmp_path, text)
+    if not says:
+        build(load(path))
+        return
+    with pytest.raises(LiveError) as caught:
+        build(load(path))
+    assert says in str(caught.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ipaddress
 from typing import TYPE_CHECKING, Any
 
 from innervate.live.errors import LiveError
@@ -55,17 +56,34 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, UdpTable):
         from innervate.live.udp import UdpLink
 
-        peers = [address(peer, where) for peer in table.peers]
+        peers = [_ipv4(peer, where) for peer in table.peers]
+        if twice := next((one for one in peers if peers.count(one) > 1), None):
+            raise LiveError(f"{where}: the peer {twice[0]}:{twice[1]} stands there twice")
         return UdpLink(address(table.bind, where), peers, port)
     if isinstance(table, MulticastTable):
         from innervate.live.udp import MulticastLink
 
-        return MulticastLink(address(table.group, where), table.interface, port)
+        return MulticastLink(_ipv4(table.group, where), table.interface, port)
     if isinstance(table, SerialTable):
         from innervate.live.serial import SerialLink
 
         return SerialLink(table.device, table.baud, port, table.far)
     raise LiveError(f"{where}: this kind of node has no such link")
+
+
+def _ipv4(text: str, where: str) -> tuple[str, int]:
+    """An address whose datagrams the system can tell from others: no name, and none of IPv6.
+
+    Raises:
+        LiveError: it is none.
+    """
+    host, port = address(text, where)
+    try:
+        return str(ipaddress.IPv4Address(host)), port
+    except ValueError:
+        raise LiveError(
+            f'{where}: "{text}" is no IPv4 address with a port; write one like "127.0.0.1:4700"'
+        ) from None
 
 
 def state_of(loaded: Loaded) -> State:

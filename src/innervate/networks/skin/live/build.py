@@ -11,6 +11,7 @@ from innervate.networks.skin.live.node import CellNode, SinkNode
 from innervate.networks.skin.live.nodefile import SkinFile
 from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.live.stack import CellStack, SinkStack
+from innervate.networks.skin.protocol.constants import PORTS
 
 
 def build(loaded: Loaded) -> LiveNode:
@@ -27,7 +28,7 @@ def build(loaded: Loaded) -> LiveNode:
     if table.role == "sink":
         return SinkNode(loaded.name, SinkStack(params, paths), links, sealer, state)
     ports = table.ports or list(range(paths))
-    if len(ports) != paths or len(set(ports)) != paths:
+    if len(ports) != paths or len(set(ports)) != paths or paths > PORTS:
         raise LiveError(
             f"{loaded.path}: ports must name the cell's port of each of its {paths} paths, "
             "each once: W, E, up, down = 0 to 3"
