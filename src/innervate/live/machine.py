@@ -178,6 +178,19 @@ def on(other: Machine) -> Iterator[None]:
         _MACHINE.reset(token)
 
 
+def is_left(path: Path) -> bool:
+    """True if whoever listened on this Unix socket is gone; who is only busy is not."""
+    with socket.socket(socket.AF_UNIX) as sock:
+        sock.settimeout(ANSWER_S)
+        try:
+            sock.connect(str(path))
+        except ConnectionRefusedError:
+            return True
+        except OSError:
+            pass
+    return False
+
+
 def answers(path: Path) -> bool:
     """True if somebody listens on this Unix socket."""
     with socket.socket(socket.AF_UNIX) as sock:

@@ -19,6 +19,7 @@ from innervate.live.admission import BoundedListener, Bounds
 from innervate.live.errors import LiveError
 from innervate.live.machine import ANSWER_S, machine
 from innervate.live.machine import answers as answers
+from innervate.live.machine import is_left as is_left
 
 LOOK_S = 1.0  # between two looks whether who has ended asking has gone
 LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits

@@ -75,18 +75,18 @@ class Processes:
         """Make the folder, or take it over: sockets of nodes that were killed go.
 
         Raises:
-            LiveError: another network runs there.
+            LiveError: a node with the name of one of ours runs there.
         """
         self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
-        left = [path for path in self.folder.glob("*.sock") if path.is_socket()]
-        for path in left:
-            if status.answers(path):
+        for name in self.names:
+            if status.answers(self.socket(name)):
                 raise LiveError(
-                    f"{self.folder}: {path.stem} of another network runs here; end it, or name "
+                    f"{self.folder}: {name} of another network runs here; end it, or name "
                     "another --folder"
                 )
-        for path in left:
-            path.unlink(missing_ok=True)
+        for path in self.folder.glob("*.sock"):
+            if path.is_socket() and status.is_left(path):
+                path.unlink(missing_ok=True)
 
     async def up(self) -> None:
         """Write the files, start the processes, wait until all of them answer.

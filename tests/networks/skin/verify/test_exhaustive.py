@@ -34,9 +34,12 @@ def settles(found):
 @BOTH
 @pytest.mark.parametrize("graph", SMALL, ids=graphs.cables)
 def test_up_to_three_cells(graph, updates, rule):
-    # Under `strict` less can be forgotten: all at once would be tens of millions of states.
+    # Under `strict` less can be forgotten: all at once would be tens of millions of states, and
+    # where the three cells are a ring more than 12 GB with two beacons of the PC.
     is_large = rule == "strict" and updates == "triggered" and len(list(graph.links())) > 4
-    fine(graph, rule, updates, Budget(faults=1) if is_large else None, memory=6 * GIB)
+    is_ring = graphs.cables(graph).endswith("1-2 1-3 2-3")
+    fewer = Budget(faults=1, counts=1 if is_ring else 2)
+    fine(graph, rule, updates, fewer if is_large else None, memory=6 * GIB)
 
 
 @BOTH
