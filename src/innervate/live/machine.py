@@ -180,23 +180,20 @@ def on(other: Machine) -> Iterator[None]:
 
 def is_left(path: Path) -> bool:
     """True if whoever listened on this Unix socket is gone; who is only busy is not."""
-    with socket.socket(socket.AF_UNIX) as sock:
-        sock.settimeout(ANSWER_S)
-        try:
-            sock.connect(str(path))
-        except ConnectionRefusedError:
-            return True
-        except OSError:
-            pass
-    return False
+    return isinstance(_refusal(path), ConnectionRefusedError)
 
 
 def answers(path: Path) -> bool:
     """True if somebody listens on this Unix socket."""
+    return _refusal(path) is None
+
+
+def _refusal(path: Path) -> OSError | None:
+    """Why this Unix socket takes no connection; None if it takes one."""
     with socket.socket(socket.AF_UNIX) as sock:
         sock.settimeout(ANSWER_S)
         try:
             sock.connect(str(path))
-        except OSError:
-            return False
-        return True
+        except OSError as error:
+            return error
+    return None
