@@ -5,6 +5,7 @@ import io
 import json
 import socket
 import sys
+from contextlib import ExitStack, suppress
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,7 +13,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate import scenario as scenarios
-from innervate.live import run_up, tap
+from innervate.live import machine, run_up, tap
 from innervate.live.errors import LiveError
 from innervate.live.notices import Notices
 from innervate.live.play import Event
@@ -106,6 +107,26 @@ def test_nobodys_own_keys_or_scenario_are_replaced(plan, tmp_path):
             with pytest.raises(LiveError, match="none that live up wrote"):
                 run_up.prepared(plan, way)
         assert mine.read_text() == text
+
+
+def test_a_socket_is_left_once_nobody_listens_and_not_while_its_node_is_only_busy(tmp_path):
+    path = tmp_path / "n1.sock"
+
+    def seen():
+        return machine.is_left(path), machine.answers(path)
+
+    assert seen() == (False, False)
+    with socket.socket(socket.AF_UNIX) as node, ExitStack() as callers:
+        node.bind(str(path))
+        node.listen(1)
+        assert seen() == (False, True)
+        with suppress(BlockingIOError):
+            while True:
+                caller = callers.enter_context(socket.socket(socket.AF_UNIX))
+                caller.setblocking(False)
+                caller.connect(str(path))
+        assert seen() == (False, False)
+    assert seen() == (True, False)
 
 
 @pytest.mark.parametrize("name", ["n1", "c7"])
