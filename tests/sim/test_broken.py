@@ -114,6 +114,15 @@ def still_on_the_air(running):
         air.end = FOR_EVER
 
 
+def frames_of_no_slots(running):
+    frames = running.world.out.frame
+
+    class Empty(type(frames[0])):
+        slots = property(lambda _: 0, lambda *_: None)
+
+    frames[:] = [Empty() for _ in frames]
+
+
 def a_turn_that_lasts(running):
     running.world.run[0].data_until = FOR_EVER
 
@@ -206,6 +215,7 @@ CASES = [
     (SKIN, cables.BROKEN_PORT, out_of_no_port, "p0 r0 c1 sends out of a port that no node has"),
     (RADIO, channel_medium.BROKEN_DEAF, radios_deaf, "sent while its radio could not"),
     (RADIO, channel_medium.BROKEN_AIR, still_on_the_air, "has too many transmissions under way"),
+    (RADIO, channel_medium.BROKEN_EMPTY, frames_of_no_slots, "sent a frame of no slots"),
     (RADIO, channel_loop.BROKEN_OUTBOX, outbox_of_one, "outbox of station "),
     (RADIO, channel_loop.BROKEN_FRAME, frames_that_change,
      "a receiver changed the frame that station "),

@@ -346,14 +346,6 @@ def test_a_cut_takes_a_signal_away_both_ways_and_back(world, monkeypatch, sends)
     assert (world.cut, world.power, world.sums) == ([0] * 4, [0, 100, 40, 0], [7, 100 * sends])
 
 
-def test_a_signal_that_comes_meets_what_is_on_the_air(world, on_air, monkeypatch):
-    monkeypatch.setattr(medium.powers, "strength", lambda table, cdb: table[cdb])
-    world.cut, world.strengths, world.rssi = [0] * 4, [0, 100], [0, 1, 1, 0]
-    world.sums[0] = 130  # a jammer of 30, who was not noted
-    medium.set_cut(world, 0, 1, 0)
-    assert world.worst[on_air * NODES] == 30
-
-
 @pytest.mark.parametrize(("deaf", "heard", "busy"), [(0, 49, 0), (0, 50, 1), (1, 0, 1)])
 def test_a_channel_is_busy_for_who_sends_and_who_hears_enough(world, deaf, heard, busy):
     world.radios[1].deaf, world.sums[1] = deaf, heard

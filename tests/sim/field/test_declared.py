@@ -117,6 +117,99 @@ def test_a_carrier_is_told_when_it_comes_and_goes(bare, monkeypatch):
     monkeypatch.setattr(listening, "tell_carrier", noted)
     in_line(bare, nodes=2, link=ENDS[:1])
     assert told == [(1, 1), (0, 0), (1, 0), (0, 1), (1, 0), (0, 0)]  # news, and passed on
+    told.clear()
+    noise = [{"at_s": 0.05, "action": "jam", "node": 1, "noise_dbm": -60},
+             {"at_s": 0.06, "action": "quiet", "node": 1}]  # fmt: skip
+    in_line(bare, nodes=2, link=ENDS[:1], event=noise, input=[])
+    assert told == [(1, 1), (1, 0)]
+
+
+@pytest.fixture
+def at_once(bare):
+    """Nodes without a medium access that send as soon as they are given something."""
+    path = bare.folder / "protocol.py"
+    before, _, after = path.read_text().partition("def on_input")
+    path.write_text(
+        before
+        + """def on_input(node, params, now, kind, item, out):
+    'Send it now.'
+    frame = out.frame[send(out, 0, 0, 0)]
+    frame.kind = NEWS
+    frame.to = ALL
+    frame.hops = 1
+    frame.seq = item.value
+
+
+def is_known"""
+        + after.partition("def is_known")[2]
+    )
+    return bare
+
+
+@pytest.fixture
+def carriers(at_once, monkeypatch):
+    """Who was told of its carrier in a run of `at_once`, in order: node, busy."""
+    told = []
+    was = listening.tell_carrier
+
+    def noted(world, do, node, time):
+        was(world, do, node, time)
+        told.append((node, world.radios[node].told))
+
+    monkeypatch.setattr(listening, "tell_carrier", noted)
+    return told
+
+
+LONG = {"air.bits_per_s": 1_000, "nodes": 3, "link": ENDS}  # a frame takes more than 50 ms
+
+
+@pytest.mark.parametrize(
+    ("event", "told"),
+    [
+        ([], [(1, 1), (0, 0), (1, 0)]),
+        ([("kill", 0, 20)], [(1, 1), (1, 0)]),
+        ([("kill", 1, 20), ("revive", 1, 40)], [(1, 1), (1, 1), (0, 0), (1, 0)]),
+        ([("restart", 1, 20)], [(1, 1), (1, 1), (0, 0), (1, 0)]),
+        ([("cut", 0, 20)], [(1, 1), (1, 0), (0, 0)]),
+        ([("cut", 0, 20), ("restore", 0, 40)], [(1, 1), (1, 0), (1, 1), (0, 0), (1, 0)]),
+        ([("jam", 1, 20), ("quiet", 1, 400)], [(1, 1), (0, 0), (1, 0)]),
+        ([("jam", 1, 20), ("quiet", 1, 40)], [(1, 1), (0, 0), (1, 0)]),
+    ],
+)  # fmt: skip
+def test_whatever_changes_the_carrier_it_is_told(at_once, carriers, event, told):
+    """Node 0 is on the air from 100 ms on; the times of events are ms after that."""
+    more = {"cut": {"other": 1}, "restore": {"other": 1}, "jam": {"noise_dbm": -60}}
+    events = [{"at_s": 0.1 + ms / 1000, "action": what, "node": node, **more.get(what, {})}
+              for what, node, ms in event]  # fmt: skip
+    in_line(at_once, event=events, **LONG)
+    assert carriers == told
+
+
+@pytest.mark.parametrize(
+    ("event", "arrived", "lost"),
+    [
+        ([], 1, {}),
+        ([("cut", 20)], 0, {"cut": 1}),
+        ([("cut", 20), ("restore", 21)], 0, {"cut": 1}),
+        ([("cut", -20), ("restore", 21)], 0, {"cut": 1}),
+        ([("cut", -20), ("restore", -10)], 1, {}),
+    ],
+)
+def test_a_frame_whose_link_was_cut_in_the_middle_is_lost(at_once, event, arrived, lost):
+    events = [{"at_s": 0.1 + ms / 1000, "action": what, "node": 1, "other": 0}
+              for what, ms in event]  # fmt: skip
+    frames = in_line(at_once, event=events, **LONG).summary["frames"]
+    assert (frames["arrived"], frames["lost_by"]) == (arrived, lost)
+
+
+@pytest.mark.parametrize("times", [1, 2, 3])
+def test_an_urgent_frame_that_finds_the_radio_busy_is_counted(telling, times):
+    sent = "    frame = out.frame[send(out, 0, 0, 0)]\n"
+    more = "    out.frame[send(out, 0, 0, 1)].kind = NEWS\n" * (times - 1)
+    telling.change("protocol.py", sent, sent.replace("0)]", "1)]") + more)
+    frames = in_line(telling, **{"protocol.hops": 1}).summary["frames"]
+    assert (frames["sent"], frames["arrived"]) == (times, 1)
+    assert frames["lost_by"] == ({"busy": times - 1} if times > 1 else {})
 
 
 def test_what_breaks_is_told_by_file_and_line(flood):

@@ -231,7 +231,8 @@ def noted(*names):
 
 
 def kept_world(**run):
-    given = {"taps": 0, "tap_limit": 9, "deliveries": 0, "delivery_limit": 9, "nodes": 2, "room": 2}
+    given = {"taps": 0, "tap_limit": 9, "deliveries": 0, "delivery_limit": 9, "nodes": 2, "room": 2,
+             "blocked": 0}  # fmt: skip
     return Of(
         run=[Of(**given | run)], counters=[0] * listening.COUNTERS, prob=[0, 9, 9, 0],
         radios=[Of(held=NONE, waiting=0, first=1) for _ in range(2)], deliveries=[Of()],

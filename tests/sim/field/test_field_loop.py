@@ -143,7 +143,8 @@ def test_offers_and_commands_come_one_after_the_other(do):
     assert dispatched(world, do, queue.COMMAND, 0, 0, 30) == [(35, queue.COMMAND)]
     queue.pop(world.heap)
     assert dispatched(world, do, queue.COMMAND, 0, 0, 35) == []
-    assert do.said == [("power_off", 1, 30), ("die", 1), ("set_noise", 0, 0)]
+    assert do.said == [("power_off", 1, 30), ("die", 1), ("note_carriers", 30),
+                       ("set_noise", 0, 0), ("note_carriers", 35)]  # fmt: skip
 
 
 def ran(do, until, budget=9, soon=queue.LAST, at=(20, 30)):

@@ -101,6 +101,24 @@ def test_signals_add_up_at_everybody_and_go_away_again():
     assert world.worst[second * NODES + 2] == 100  # the worst there was
 
 
+def test_who_is_joined_again_to_a_sender_hears_it_and_does_not_receive_it(monkeypatch):
+    monkeypatch.setattr(powers, "strength", lambda table, cdb: cdb)
+    world, found = world_of(), []
+    world.cut, world.strengths, world.rssi = [0] * 9, None, list(world.power)
+    medium.set_cut(world, 0, 2, 1)
+    mine, other = begun(world, 0, 1)
+    assert (world.worst[other * NODES + 2], world.sums[2]) == (0, 40)
+    medium.set_cut(world, 2, 0, 0)
+    assert (world.worst[other * NODES + 2], world.sums[2]) == (100, 140)
+    met = world.worst[mine * NODES : mine * NODES + 3]
+    assert met == [medium.DEAF, medium.DEAF, medium.SEVERED]
+    medium.leave(world, mine)
+    assert medium.receivers(world, mine, lost(found)) == 0
+    assert found == [(1, taps.SENDING), (2, taps.CUT)]
+    medium.sever(world, 1, 0)
+    assert world.worst[other * NODES] == medium.DEAF  # it was sending all the time
+
+
 @pytest.mark.parametrize(("ratio", "captured"), [(2.5, True), (2.4, True), (2.6, False)])
 def test_the_stronger_frame_is_captured_if_it_is_so_much_stronger(ratio, captured):
     world = world_of(capture=int(powers.CAPTURE_ONE * ratio))

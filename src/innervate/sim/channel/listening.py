@@ -7,12 +7,13 @@ from innervate.dialect.access import PACKET as PACKET
 from innervate.kernel.records import within
 from innervate.sim import taps
 from innervate.sim.channel.loop import BROKEN_FRAME, BROKEN_OUTBOX
-from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF
+from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF, BROKEN_EMPTY
 
 BROKEN_RANGE = 4
 WORDS = {
     BROKEN_DEAF: "{node} sent while it was sending, or before its radio heard again",
     BROKEN_AIR: "{node} has too many transmissions under way",
+    BROKEN_EMPTY: "{node} sent a frame of no slots",
     BROKEN_OUTBOX: "outbox of {node} overflowed",
     BROKEN_RANGE: "a value of {node} is out of its declared range",
     BROKEN_FRAME: "a receiver changed the frame that {node} had sent",

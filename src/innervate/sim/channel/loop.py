@@ -222,7 +222,7 @@ def edge(world, do, rank, node, what, time):
             return
         air.at_end += 1
         medium.go_on(world, ENDS, what, air.end, air.at_end)
-        clear = radio.candidate == what
+        clear = radio.candidate == what or air.spoilt == medium.UNSENT
         received = medium.end_signal(world, node, what)
         do.record_received(world, node, what, time, clear, received)
         if received:

@@ -26,6 +26,12 @@ NOBODY = -1
 NEVER = -1
 BROKEN_DEAF = 1  # a station sent while its radio could not
 BROKEN_AIR = 2  # too many transmissions of one station under way
+BROKEN_EMPTY = 9  # a frame of no slots
+
+# What is wrong with a transmission: `spoilt`.
+GARBLED = 1
+FADED = 2  # nobody hears anything of it
+UNSENT = 3  # its sender died, or stopped, in the turnaround: its edges pass, and nobody hears them
 
 CRR = 1
 
@@ -39,6 +45,9 @@ def transmit(world, node, frame, time, copy_frame):
     run, radio = world.run[0], world.radios[node]
     if radio.deaf:
         run.broken, run.broken_node = BROKEN_DEAF, node
+        return
+    if frame.slots < 1:
+        run.broken, run.broken_node = BROKEN_EMPTY, node
         return
     place = node * AIRS + radio.air
     air = world.air[place]
@@ -57,7 +66,7 @@ def transmit(world, node, frame, time, copy_frame):
     what = (node << AIR_BITS) | radio.air
     radio.air = (radio.air + 1) & (AIRS - 1)
     push(world.heap, key_of(radio.ready_at, READY, node, 0))
-    if world.degree[node] > 0 and air.spoilt < 2:
+    if world.degree[node] > 0 and air.spoilt != FADED:
         first = node * run.stations
         push(world.heap, key_of(on + world.delay[first], STARTS, world.order[first], what))
         push(world.heap, key_of(off + world.delay[first], ENDS, world.order[first], what))
@@ -73,10 +82,10 @@ def impair(world, radio, air):
     """A CR-R that a fault of the scenario garbles (1) or hides (2)."""
     if radio.garble > 0:
         radio.garble -= 1
-        air.spoilt = 1
+        air.spoilt = GARBLED
     elif radio.fade > 0:
         radio.fade -= 1
-        air.spoilt = 2
+        air.spoilt = FADED
 
 
 def go_on(world, rank, what, since, cursor):
@@ -102,6 +111,8 @@ def is_end(world, sender, node, air, time):
 def begin_signal(world, node, what):
     """A signal arrives at a station."""
     radio = world.radios[node]
+    if world.air[what].spoilt == UNSENT:
+        return
     radio.present += 1
     if radio.present == 1 and radio.alive and not radio.deaf:
         radio.candidate = what
@@ -112,6 +123,8 @@ def begin_signal(world, node, what):
 def end_signal(world, node, what):
     """A signal ends at a station: 1 if its frame was received."""
     radio, air = world.radios[node], world.air[what]
+    if air.spoilt == UNSENT:
+        return False
     radio.present -= 1
     received = radio.candidate == what
     radio.candidate = NOBODY
@@ -160,9 +173,10 @@ def silence(world, node, time):
     for i in range(AIRS):
         place = node * AIRS + i
         air = world.air[place]
-        if air.end > time and world.degree[node] > 0 and air.spoilt < 2:
+        if air.end > time and world.degree[node] > 0 and air.spoilt < FADED:
+            is_on_air = air.start < time or air.at_start > 0
             air.end = max(time, air.start)
-            air.spoilt = 1
+            air.spoilt = GARBLED if is_on_air else UNSENT
             first = node * stations
             what = (node << AIR_BITS) | i
             key = key_of(air.end + world.delay[first], ENDS, world.order[first], what)

@@ -199,7 +199,11 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
         if not act.c and (radio.held != medium.NONE or radio.waiting > 0):
             listening.put_off(world, do, node, frame, act)
             return do.digest(frame)
-        return access.hand_down(world, do, node, frame, act, time)
+        blocked = world.run[0].blocked
+        mark = access.hand_down(world, do, node, frame, act, time)
+        if act.c and world.run[0].blocked > blocked:
+            listening.lose_all(world, node, listening.BUSY)
+        return mark
 
     def record_delivered(world, node, frame, time):  # type: ignore[no-untyped-def]
         listening.keep(world, node, kind_of(frame), time, -1)

@@ -87,6 +87,8 @@ def count_frame(world, place, out, why):
         world.counters[SENDING] += 1
     elif why == taps.COLLISION:
         world.counters[COLLIDED] += 1
+    elif why == taps.CUT:
+        world.counters[CUT] += 1
     else:
         world.counters[NOISY] += 1
 

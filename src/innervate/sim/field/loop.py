@@ -95,6 +95,7 @@ def dispatch(world, do, key, time):
             queue.push(world.heap, queue.key_of(at, queue.OFFER, 0, 0))
     else:
         obey(world, do, run.next_command, time)
+        do.note_carriers(world, do, time)
         run.next_command += 1
         if run.next_command < run.commands:
             at = world.commands[run.next_command].time

@@ -17,6 +17,7 @@ from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AI
 
 NONE = -1
 DEAF = (1 << 62) - 1  # interference that nothing survives
+SEVERED = DEAF - 1  # ... of who was cut off from the sender, or joined to it again, in the middle
 
 RSSI_LOW, RSSI_HIGH = -128, 127
 
@@ -167,6 +168,8 @@ def miss_frame(world, place, node, why, tap):
     at = place * world.run[0].nodes + node
     if world.prob[air.node * world.run[0].nodes + node] > 0:
         met = taps.SENDING if world.worst[at] == DEAF else why
+        if world.worst[at] == SEVERED:
+            met = taps.CUT
         tap(world, place, node, air.end, 0, met)
 
 
@@ -220,10 +223,22 @@ def set_power(world, i, j):
 
 
 def set_cut(world, i, j, cut):
-    """No signal between two nodes, either way, or again as before."""
+    """No signal between two nodes, either way, or again as before; what is half over is lost."""
     nodes = world.run[0].nodes
     world.cut[i * nodes + j] = cut
     world.cut[j * nodes + i] = cut
     set_power(world, i, j)
     set_power(world, j, i)
+    sever(world, i, j)
+    sever(world, j, i)
     note_interference(world)
+
+
+def sever(world, sender, node):
+    """A node does not receive what `sender` has on the air now."""
+    run = world.run[0]
+    for i in range(run.on_air):
+        place = world.on_air[i]
+        at = place * run.nodes + node
+        if world.air[place].node == sender and world.worst[at] < SEVERED:
+            world.worst[at] = SEVERED

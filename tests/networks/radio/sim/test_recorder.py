@@ -185,7 +185,7 @@ def test_what_is_broken_is_said_with_who_and_when(broken):
 
 def test_what_can_be_broken_is_known_in_words():
     words = simulate.BROKEN_WORDS
-    assert len(set(words.values())) == len(words) == 6
+    assert len(set(words.values())) == len(words) == 7
     assert "began a turn while another" in words[recorder.BROKEN_TURNS]
     assert "declared range" in words[recorder.BROKEN_RANGE]
 

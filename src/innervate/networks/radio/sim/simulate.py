@@ -149,6 +149,7 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> RadioSimulati
 BROKEN_WORDS = {
     medium.BROKEN_DEAF: "station {node} sent while its radio could not",
     medium.BROKEN_AIR: "station {node} has too many transmissions under way",
+    medium.BROKEN_EMPTY: "station {node} sent a frame of no slots",
     loop.BROKEN_OUTBOX: "outbox of station {node} overflowed",
     loop.BROKEN_FRAME: "a receiver changed the frame that station {node} had sent",
     recorder.BROKEN_TURNS: "station {node} began a turn while another station had its own",
