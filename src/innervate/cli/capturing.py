@@ -16,6 +16,7 @@ from innervate.cli.errors import UserError, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import private, status
+from innervate.live.machine import ANSWER_S
 from innervate.network import known
 
 # Nodes tell of their frames a little later, each when it gets to it: time to put them in order.
@@ -35,10 +36,10 @@ def capture(names: list[str], out: Path | None, for_s: float) -> int:
         if sys.stdout.isatty():
             raise UserError("a capture is no text; name a file with --out, or pipe it to: "
                             "wireshark -k -i -")  # fmt: skip
-        return asyncio.run(Recorder(sockets, sys.stdout.buffer).run(for_s))
+        return asyncio.run(Recorder(sockets, sys.stdout.buffer, bool(names)).run(for_s))
     try:
         with private.create(out) as file:
-            return asyncio.run(Recorder(sockets, file).run(for_s))
+            return asyncio.run(Recorder(sockets, file, bool(names)).run(for_s))
     except OSError as error:
         raise ExportError(f"{out} cannot be written: {error.strerror}") from None
 
@@ -49,13 +50,16 @@ class Recorder:
     Args:
         sockets: of the nodes.
         file: the capture; whole blocks are written, and none is held back for long.
+        are_named: they were asked for one by one, and all of them have to answer.
     """
 
-    def __init__(self, sockets: list[Path], file: BinaryIO) -> None:
+    def __init__(self, sockets: list[Path], file: BinaryIO, are_named: bool = True) -> None:
         self.sockets = sockets
         self.file = file
+        self.are_named = are_named
         self.frames = self.missed = 0
-        self.silent = len(sockets)  # nodes that have not answered yet
+        self.awaited = len(sockets)  # nodes that have neither answered yet nor failed to
+        self.followed: set[Path] = set()
         self.here = 0  # nodes that are followed now
         self.numbers: dict[tuple[str, str], int] = {}  # interfaces by name and description
         self.heads: dict[int, bytes] = {}  # what stands in front of all packets of an interface
@@ -80,6 +84,8 @@ class Recorder:
             )  # fmt: skip
             if following.done():
                 following.result()  # a node that refused
+                if not self.followed:
+                    raise UserError(f"no node answers here (folder {self.sockets[0].parent})")
             if writing.done():
                 writing.result()  # the disk is full
         finally:
@@ -92,37 +98,47 @@ class Recorder:
             self._write(None)
         lost = f"; {self.missed} more came too fast" if self.missed else ""
         opened = f"; opened: sealed ones of {', '.join(self.sealed)}" if self.sealed else ""
-        say(f"{self.frames} frames of {len(self.sockets)} nodes{lost}{opened}")
+        say(f"{self.frames} frames of {len(self.followed)} nodes{lost}{opened}")
         return 0
 
     async def _follow(self, path: Path) -> None:
         """Take what a node tells, also when it comes back, until all are gone."""
         again = False
-        while self.here or not again:
+        while self.here or self.awaited or not again:
             try:
-                reader, writer = await asyncio.open_unix_connection(path, limit=LINE_MAX)
-                with closing(writer):
-                    writer.write(json.dumps({"do": "capture"}).encode() + b"\n")
-                    await self._take(path.stem, reader, again)
+                async with asyncio.timeout(ANSWER_S):
+                    reader, writer, about = await _asked(path)
             except (OSError, ValueError) as error:
                 if not again:
-                    raise UserError(f"{path}: no node answers here: {error}") from None
+                    self._does_not_answer(path, error)
+            else:
+                with closing(writer):
+                    await self._take(path, reader, about, again)
             again = True
             await asyncio.sleep(LOOK_S)
 
-    async def _take(self, name: str, reader: asyncio.StreamReader, again: bool) -> None:
-        about = json.loads(await reader.readline())
+    def _does_not_answer(self, path: Path, error: Exception) -> None:
+        """Of all nodes that there are some may have been killed: the others are followed."""
+        if self.are_named:
+            raise UserError(f"{path}: no node answers here: {str(error) or 'timed out'}")
+        say(f"{path.stem}: does not answer; its process was killed, or hangs")
+        self.awaited -= 1
+
+    async def _take(
+        self, path: Path, reader: asyncio.StreamReader, about: dict[str, Any], again: bool
+    ) -> None:
         if "error" in about:
-            raise UserError(f"{name}: {about['error']}; start the node anew to capture it")
+            raise UserError(f"{path.stem}: {about['error']}; start the node anew to capture it")
         numbers = self._announce(about)
         first = min(numbers.values())
         self.here += 1
+        self.followed.add(path)
         if again:
             self.waiting.append((time.time_ns(), first, False, b"", EVENT + "node back"))
         else:
-            self.silent -= 1
+            self.awaited -= 1
             self.since_ns = time.time_ns()
-        with suppress(ConnectionResetError):  # killed
+        with suppress(ConnectionError):  # killed
             await self._take_frames(reader, numbers)
         self.here -= 1
         self.waiting.append((time.time_ns(), first, False, b"", EVENT + "node gone"))
@@ -133,7 +149,7 @@ class Recorder:
             self.missed += told["missed"]
             for at_ns, port, is_out, text, why in told["frames"]:
                 # Before all were followed, what left would seem to come in nowhere.
-                if not self.silent and at_ns >= self.since_ns:
+                if not self.awaited and at_ns >= self.since_ns:
                     data = bytes.fromhex(text)
                     self.waiting.append((at_ns, numbers[port], is_out, data, why))
 
@@ -179,3 +195,19 @@ class Recorder:
             self.frames += bool(data)
         del self.waiting[:count]
         self.file.flush()
+
+
+async def _asked(path: Path) -> tuple[asyncio.StreamReader, asyncio.StreamWriter, dict[str, Any]]:
+    """A node that was asked for its frames, and who it says it is.
+
+    Raises:
+        OSError: nobody listens there, or not any more.
+        ValueError: it went away before it had answered.
+    """
+    reader, writer = await asyncio.open_unix_connection(path, limit=LINE_MAX)
+    try:
+        writer.write(json.dumps({"do": "capture"}).encode() + b"\n")
+        return reader, writer, json.loads(await reader.readline())
+    except BaseException:
+        writer.close()
+        raise
