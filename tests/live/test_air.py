@@ -53,7 +53,7 @@ def test_who_joins_is_told_what_is_on_the_air():
         air.join(1, THERE)
         return [one[:1] + one[2:] for one in air.told]
 
-    assert time_by_hand.run(main()) == [("R", True, True, 10)]
+    assert time_by_hand.run(main()) == [("L", True, True, 10)]
 
 
 def plugs(*given, while_sending=False):

@@ -31,7 +31,7 @@ class Team:
             sock.setblocking(False)
             self.take(number, JOIN.pack(b"J", number))
         assert [self.heard(i) for i in range(len(self.sockets))] == [
-            [("R", 0, NOBODY)] for _ in self.sockets]  # fmt: skip
+            [("L", 0, NOBODY)] for _ in self.sockets]  # fmt: skip
         return self
 
     async def __aexit__(self, *_):
@@ -181,7 +181,7 @@ async def test_without_its_aerial_a_station_neither_hears_nor_is_heard(team):
     assert team.heard(1) == []  # it is out already
     team.send(1, 0, 1, b"unheard")
     await team.until(40_000)
-    assert team.heard(1) == [("R", 20_000, NOBODY)]
+    assert team.heard(1) == [("L", 20_000, NOBODY)]  # and knows it
     assert team.heard(2) == []
     assert (len(team.medium.log), team.medium.collisions, team.medium.unsound) == (0, 0, 0)
     team.send(0, 40_000, 2)  # from 45 to 65 ms
@@ -238,6 +238,18 @@ def test_when_a_frame_goes_on_the_air(at_us, start_us, late):
     play()
 
 
+@with_team(2)
+async def test_who_was_stopped_for_so_long_that_its_frame_is_refused_listens_again(team):
+    await team.until(20_000_000)
+    team.send(0, 9_999_999, 1)
+    assert team.heard(0) == [("L", 20_000_000, NOBODY)]
+    team.send(0, 20_000_000, 1)
+    team.send(0, 9_999_999, 1)  # it sends: told when that is over, and not before
+    assert team.heard(0) == []
+    await team.until(20_100_000)
+    assert team.heard(0) == [("R", 20_020_000, NOBODY)]
+
+
 @pytest.mark.parametrize(("slots", "sound"), [(0, False), (1, True), (SLOTS_MAX, True),
                                               (SLOTS_MAX + 1, False)])  # fmt: skip
 def test_how_long_a_frame_may_be(slots, sound):
@@ -274,7 +286,7 @@ def test_a_stations_place_is_its_own_for_a_while(after_us, moved):
         team.take(0, JOIN.pack(b"J", 0), team.where(1))
         assert team.medium.unsound == (not moved)
         assert team.heard(0) == []
-        assert team.heard(1) == ([("R", 1_000_000 + after_us, NOBODY)] if moved else [])
+        assert team.heard(1) == ([("L", 1_000_000 + after_us, NOBODY)] if moved else [])
 
     play()
 
@@ -320,7 +332,7 @@ async def test_what_stations_say_comes_in_at_the_channels_address(team):
             sock.send(data)
             await team.until(1_000)
         await team.until(100_000)
-        assert read_heard(sock.recv(99))[0] == b"R"
+        assert [read_heard(sock.recv(99))[0] for _ in range(2)] == [b"L", b"R"]
         assert [station for *_, station, _ in team.medium.log] == [7]
         assert team.medium.unsound == 1
         assert [told for what, _, told in team.heard(0) if what == "F"] == [b"f"]

@@ -22,6 +22,9 @@ class Listener:
     def on_carrier(self, at, cd, voc):
         self.told.append(("carrier", at, cd, voc))
 
+    def on_lost(self, at, cd, voc):
+        self.told.append(("lost", at, cd, voc))
+
 
 class Medium:
     """The socket of a medium, and a radio that is on it."""
@@ -117,6 +120,16 @@ async def test_while_it_sends_it_is_deaf_until_the_medium_says_that_it_listens(m
 
 
 @on_air
+async def test_a_medium_that_knows_nothing_of_a_frame_has_lost_it(medium):
+    medium.said()
+    assert await medium.tell(b"L", 0, 1, 0) == [("carrier", 0, True, False)]  # it sent nothing
+    medium.radio.send(1234, b"frame", 3)
+    assert await medium.tell(b"L", 0, 1, 0) == [("lost", 0, True, False)]
+    assert medium.radio.mode == "listening"
+    assert await medium.tell(b"L", 0, 0, 0) == [("carrier", 0, False, False)]
+
+
+@on_air
 async def test_what_happened_too_long_ago_for_a_clock_of_30_bits_is_left_out(medium):
     medium.said()
     await asyncio.sleep(1000)
@@ -136,7 +149,7 @@ def test_what_no_medium_says_is_nothing(data):
     assert read_heard(data) is None
 
 
-@pytest.mark.parametrize("what", [b"C", b"R", b"F"])
+@pytest.mark.parametrize("what", [b"C", b"R", b"L", b"F"])
 @pytest.mark.parametrize(("cd", "voc"), [(0, 0), (1, 0), (1, 1)])
 def test_what_a_medium_says_is_read(what, cd, voc):
     data = HEARD.pack(what, 2**40, cd, voc) + b"frame"

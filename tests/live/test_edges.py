@@ -145,7 +145,7 @@ def test_a_frame_is_on_the_air_a_turnaround_later_for_its_slots():
         air = Noted()
         for station in range(3):
             air.join(station, ("127.0.0.1", station))
-        assert [told[:1] + told[4:] for told in air.told] == [("R", 0), ("R", 1), ("R", 2)]
+        assert [told[:1] + told[4:] for told in air.told] == [("L", 0), ("L", 1), ("L", 2)]
         air.told.clear()
         air.send(1, slots=2, size=3, where=("127.0.0.1", 1))
         await asyncio.sleep(1.0)

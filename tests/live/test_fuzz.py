@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from innervate.dialect import plain
 from innervate.live import status
 from innervate.live.channel import Medium
-from innervate.live.channel_radio import read_heard
+from innervate.live.channel_radio import TOLD, read_heard
 from innervate.live.contact import Contact
 from innervate.live.group import GroupContact
 from innervate.networks.mesh import frames as mesh
@@ -87,7 +87,7 @@ def reads_sealed(data):
 
 def reads_heard(data):
     heard = read_heard(data)
-    assert heard is None or heard[0] in (b"C", b"R", b"F")
+    assert heard is None or heard[0] in TOLD
 
 
 def reads_alarm(data):

@@ -54,6 +54,16 @@ def test_a_carrier_and_a_frame_are_told_with_how_long_ago_they_came(ago_us, age_
     assert run(tell) == [CARRIER.pack(b"C", cd, voc, age_us), FRAME.pack(b"F", age_us) + b"frame"]
 
 
+def test_to_a_board_what_was_lost_has_collided_and_that_is_over():
+    def tell():
+        one = modem()
+        one.on_lost(clock_us() - 3, True, True)
+        return one.link.said
+
+    told = [CARRIER.pack(b"C", True, False, 3), CARRIER.pack(b"C", True, True, 3)]
+    assert run(tell) == told
+
+
 @pytest.mark.parametrize("age_us", [0, 1, AGE_MAX, AGE_MAX + 1, 2**32 - 1])
 def test_what_a_board_sends_was_decided_so_long_ago(age_us):
     def tell():

@@ -1,4 +1,4 @@
-"""What the simulation showed once, by the seeds that did: keys, whatever becomes of files."""
+"""What the simulation showed once, by the seeds that did: keys, and what radios believed."""
 
 import pytest
 
@@ -24,3 +24,10 @@ def test_no_nonce_comes_twice_where_the_disk_is_full_and_processes_are_killed(se
 def test_nothing_is_taken_from_a_recording_by_a_node_that_was_killed(seed):
     hurts = ("replays", "restarts")
     assert broken(seed, sealed=True, in_order=False, hurts=hurts, old_lives=True) == []
+
+
+# A channel that was started anew told stations that had sent meanwhile that they listen again, and
+# an answer to somebody else was proof of what nobody had heard.
+@pytest.mark.parametrize("seed", [9_000_001, pytest.param(333_057, marks=pytest.mark.slow)])
+def test_a_packet_that_a_channel_took_with_it_is_not_delivered(seed):
+    assert runs.run(seed, "radio").broken == []

@@ -146,6 +146,8 @@ class Medium:
             _, station, at, slots = SEND.unpack_from(data)
             if self._is_at(station, where):
                 done = self._transmit(station, at, slots, data[SEND.size :])
+                if not done and not self._ears[station].deaf_until:
+                    self._listens(self._ears[station], b"L", clock_us())
         self.unsound += not done
 
     def _is_at(self, station: int, where: Any) -> bool:
@@ -163,8 +165,7 @@ class Medium:
         if not self._makes_room(where, now):
             return False
         self._ears[station] = ear = Ear(station, where, now)
-        ear.told = self._carrier(ear)
-        self._say(ear, b"R", now, b"")  # it may have sent when no channel was there
+        self._listens(ear, b"L", now)  # it may have sent when no channel was there
         return True
 
     def _makes_room(self, where: Any, now: int) -> bool:
@@ -220,7 +221,9 @@ class Medium:
             self.log.append((air.start, air.end, station, data))
             self._later(air.start + DELAY_US, self._begin, air)
             self._later(air.end + DELAY_US, self._end, air)
-        self._later(ear.deaf_until, self._ready, station, ear.deaf_until)
+        self._later(
+            ear.deaf_until, self._ready, station, ear.deaf_until, b"R" if ear.plugged else b"L"
+        )
         return True
 
     def _later(self, at: int, what: Any, *args: Any) -> None:
@@ -253,12 +256,16 @@ class Medium:
                 ear.told = carrier
                 self._say(ear, b"C", at, b"")
 
-    def _ready(self, station: int, at: int) -> None:
+    def _ready(self, station: int, at: int, what: bytes) -> None:
         ear = self._ears.get(station)
         if ear is not None and ear.deaf_until == at:
             ear.deaf_until = 0
-            ear.told = self._carrier(ear)
-            self._say(ear, b"R", at, b"")
+            self._listens(ear, what, at)
+
+    def _listens(self, ear: Ear, what: bytes, at: int) -> None:
+        """A station's radio listens from now on; what it sent was on the air ("R"), or not."""
+        ear.told = self._carrier(ear)
+        self._say(ear, what, at, b"")
 
     def _say(self, ear: Ear, what: bytes, at: int, data: bytes) -> None:
         if self._socket is None:  # closed while transmissions were under way

@@ -19,16 +19,18 @@ HEARD_US = 1 << 28  # nothing is told of what was longer ago: the protocol's clo
 JOIN = struct.Struct(">cH")  # b"J", station
 SEND = struct.Struct(">cHQH")  # b"T", station, when decided (us), slots; then the frame
 PLUG = struct.Struct(">cHB")  # b"P", station, 0 or 1: whether its aerial is plugged in
-# b"C" carrier, b"R" the radio listens again, b"F" frame: when (us), cd, voc; b"F": the frame
+# b"C" carrier, b"R" the radio listens again, b"L" so it does, and nothing that it may have sent
+# was on the air, b"F" frame: when (us), cd, voc; b"F": the frame
 HEARD = struct.Struct(">cQBB")
+TOLD = (b"C", b"R", b"L", b"F")
 
 
 def read_heard(data: bytes) -> tuple[bytes, int, bool, bool, bytes] | None:
-    """What the medium says: (b"C", b"R" or b"F", when, cd, voc, frame); None if it is nothing."""
+    """What the medium says: (one of TOLD, when, cd, voc, frame); None if it is nothing."""
     if len(data) < HEARD.size:
         return None
     what, at, cd, voc = HEARD.unpack_from(data)
-    if what not in (b"C", b"R", b"F") or not voc <= cd <= 1:
+    if what not in TOLD or not voc <= cd <= 1:
         return None
     return what, at, bool(cd), bool(voc), data[HEARD.size :]
 
@@ -105,11 +107,14 @@ class MediumRadio:
         what, at, cd, voc, frame = heard
         if abs(at - clock_us()) > HEARD_US:
             return
-        if what == b"R":
+        was_lost = what == b"L" and self.mode == "sending"
+        if what in (b"R", b"L"):
             self.mode = "listening"
         if self.mode == "sending":
             return  # we decided to send before the medium knew: deaf already
         if what == b"F":
             self._listener.on_frame(at, frame)
+        elif was_lost:
+            self._listener.on_lost(at, cd, voc)
         else:
             self._listener.on_carrier(at, cd, voc)

@@ -52,6 +52,11 @@ class Modem:
         """The carrier came or went, or the radio listens again."""
         self.link.path.send(CARRIER.pack(b"C", cd, voc, _age(at)))
 
+    def on_lost(self, at: int, cd: bool, voc: bool) -> None:
+        """What the board sent did not go out: to it it has collided, and that is over."""
+        self.on_carrier(at, True, False)
+        self.on_carrier(at, cd, voc)
+
     def on_frame(self, at: int, data: bytes) -> None:
         """The radio received a frame."""
         self.link.path.send(FRAME.pack(b"F", _age(at)) + data)

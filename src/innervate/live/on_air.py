@@ -47,6 +47,11 @@ class AirNode(LiveNode):
         stack: Any = self.stack
         self.engine.call(lambda now: stack.on_carrier(now, cd, voc), at)
 
+    def on_lost(self, at: int, cd: bool, voc: bool) -> None:
+        """What the radio sent did not go out: to a protocol it has collided, and that is over."""
+        self.on_carrier(at, True, False)
+        self.on_carrier(at, cd, voc)
+
     def on_frame(self, at: int, data: bytes) -> None:
         """The radio received a frame."""
         path = self.paths[0]

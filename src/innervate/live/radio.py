@@ -17,6 +17,9 @@ class Listener(Protocol):
     def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
         """The carrier came or went, or the radio listens again: cd = somebody, voc = just one."""
 
+    def on_lost(self, at: int, cd: bool, voc: bool) -> None:
+        """The radio listens again, and what it sent last was not on the air for all to hear."""
+
     def on_frame(self, at: int, data: bytes) -> None:
         """A frame was received whole; the carrier's end is told after it."""
 

@@ -5,13 +5,15 @@ import pytest
 
 from innervate.live.channel import SLOT_US, Medium
 from innervate.live.channel_radio import MediumRadio
-from innervate.live.receipts import DELIVERED
+from innervate.live.engine import clock_us
+from innervate.live.receipts import ACCEPTED, DELIVERED
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.live.node import RadioNode
 from innervate.networks.radio.live.parameters import RADIO, radio_parameters
 from innervate.networks.radio.live.stack import Frame, StationStack
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.scenario.plan import parameters
+from tests.live import time_by_hand
 from tests.live.net import until
 
 STATIONS = 5
@@ -97,3 +99,46 @@ def test_a_station_whose_aerial_is_out_neither_hears_nor_is_heard():
         return heard
 
     assert {(1, 0), (2, 0)} <= set(asyncio.run(main()))
+
+
+class Air:
+    """A radio that notes what it is to send."""
+
+    mode = "listening"
+    sent = ()
+
+    async def start(self, listener):
+        listener.on_carrier(clock_us(), False, False)
+
+    def send(self, at, data, slots):
+        self.sent = (*self.sent, (at, slots))
+
+    def stop(self):
+        pass
+
+
+@pytest.mark.parametrize(("is_lost", "state"), [(False, DELIVERED), (True, ACCEPTED)])
+def test_an_answer_proves_nothing_of_a_packet_that_was_not_on_the_air(is_lost, state):
+    async def main():
+        air = Air()
+        node = RadioNode("s0", StationStack(0, RADIO, 7), air)
+        await node.start()
+        await asyncio.sleep(5.0)
+        receipt = node.send_packet(b"here")
+        await asyncio.sleep(0.001)
+        ((at, slots),) = air.sent
+        listens = at + slots * RADIO["slot_us"] + 2 * RADIO["ta_us"]
+        await asyncio.sleep((listens - clock_us()) / 1e6)
+        (node.on_lost if is_lost else node.on_carrier)(listens, False, False)
+        begin, end = listens + 1_000, listens + 1_000 + RADIO["slot_us"]
+        await asyncio.sleep((end - clock_us()) / 1e6)
+        node.on_carrier(begin, True, True)  # somebody answers somebody else
+        node.on_frame(end, bytes([wire.CRR_BYTE]))
+        node.on_carrier(end, False, False)
+        found = receipt.state
+        await asyncio.sleep(2.0)
+        assert len(air.sent) > 1  # it goes on, with the packet or without
+        await node.stop()
+        return found
+
+    assert time_by_hand.run(main()) == state

@@ -84,6 +84,17 @@ class RadioNode(AirNode):
         """What is known here, and what the radio does: "off", "listening" or "sending"."""
         return {**super().status(), "radio": self.radio.mode}
 
+    def on_lost(self, at: int, cd: bool, voc: bool) -> None:
+        """A frame of ours did not go out: of packets in it nobody can prove that he has them.
+
+        What has none is like one that went out and was heard by nobody: told as a collision it
+        would make a reporter believe in wider delays.
+        """
+        if self.stack.station.pending:
+            super().on_lost(at, cd, voc)
+        else:
+            self.on_carrier(at, cd, voc)
+
     def packed(self, frame: Any) -> bytes:
         """The bytes of a frame, with the packets that it carries."""
         payload = b""
