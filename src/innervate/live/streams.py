@@ -36,11 +36,16 @@ class Arrivals(Generic[Item]):
         self._waiting.append(item)
 
     def hand_up(self) -> None:
-        """Call everybody with everything that waits."""
+        """Call everybody with everything that waits; an error of one is told to the loop."""
         waiting, self._waiting = self._waiting, []
         for item in waiting:
-            for callback in self.callbacks:
-                callback(*item) if self._is_spread else callback(item)  # type: ignore[misc]
+            for callback in tuple(self.callbacks):
+                try:
+                    callback(*item) if self._is_spread else callback(item)  # type: ignore[misc]
+                except Exception as error:
+                    asyncio.get_running_loop().call_exception_handler(
+                        {"message": f"Exception in callback {callback!r}", "exception": error}
+                    )
 
     def receive(self, callback: Callable[..., None] | None = None) -> AsyncGenerator[Item, None]:
         """What comes from now on: to a callback, and as an async iterator.

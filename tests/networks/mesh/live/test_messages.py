@@ -29,12 +29,17 @@ def test_a_mistake_of_its_user_does_not_keep_a_node_from_sending():
     def raises(*_):
         raise RuntimeError("a mistake")
 
+    told = []
+
     async def main():
+        asyncio.get_running_loop().set_exception_handler(lambda _, what: told.append(what))
         async with Mesh(2, [(0, 1)]) as mesh:
             one, other = mesh.nodes
             one.receive_messages(raises)
-            with pytest.raises(RuntimeError, match="a mistake"):
-                one.send_message(0, b"to myself")
+            assert await one.send_message(0, b"to myself").wait() == DELIVERED
+            (what,) = told
+            assert str(what["exception"]) == "a mistake"
+            assert "raises" in what["message"]
             for wrong in ({"payload": "text"}, {"recipient": 1.0}, {"payload": None}):
                 with pytest.raises(TypeError, match=r"a payload is bytes|a node's number"):
                     one.send_message(**{"recipient": 1, "payload": b"x"} | wrong)
@@ -42,6 +47,29 @@ def test_a_mistake_of_its_user_does_not_keep_a_node_from_sending():
             return await one.send_message(1, b"x").wait(), await other.send_message(0, b"y").wait()
 
     assert asyncio.run(main()) == (DELIVERED, DELIVERED)
+
+
+def test_a_callback_that_raises_keeps_no_message_from_others():
+    """Neither from those behind it, nor from who wants order, nor from who sent it."""
+    heard, told = [], []
+
+    def raises(*_):
+        raise RuntimeError("a mistake")
+
+    async def main():
+        asyncio.get_running_loop().set_exception_handler(lambda _, what: told.append(what))
+        async with Mesh(2, [(0, 1)]) as mesh:
+            one, other = mesh.nodes
+            for in_order in (False, True):
+                one.receive_messages(raises, in_order=in_order)
+                one.receive_messages(lambda *parts: heard.append(parts), in_order=in_order)
+            receipts = [other.send_message(0, bytes([k]), in_order=True) for k in range(20)]
+            receipts.append(other.send_message(0, bytes(300)))
+            return [await receipt.wait() for receipt in receipts]
+
+    assert asyncio.run(main()) == 21 * [DELIVERED]
+    assert sorted(heard) == sorted(2 * [(1, bytes([k])) for k in range(20)] + 2 * [(1, bytes(300))])
+    assert [str(what["exception"]) for what in told] == 42 * ["a mistake"]
 
 
 def test_messages_come_to_callbacks_and_iterators_once_each():
