@@ -192,10 +192,9 @@ class DeclaredNode(LiveNode):
         """Hand something down: the protocol's `on_input`; `values` are fields of its item.
 
         Raises:
-            ValueError: there is no such field, or the node is not started.
+            ValueError: there is no such field, or the node does not run.
         """
-        if self.engine is None:
-            raise ValueError("node not started")
+        engine = self.running()
         ranges = {name: (low, high)
                   for name, _length, low, high, *_ in self.stack.network.fields.FRAME}  # fmt: skip
         for name, value in values.items():
@@ -211,7 +210,7 @@ class DeclaredNode(LiveNode):
                 raise ValueError(f"{name} has {count} values, whole numbers from {low} to {high}")
             setattr(self.stack.item, name, list(numbers) if many else value)
         self.outcomes["inputs"] += 1
-        self.engine.input(kind, self.stack.item)
+        engine.input(kind, self.stack.item)
 
     def receive(
         self, callback: Callable[[dict[str, Any]], None] | None = None

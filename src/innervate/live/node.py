@@ -43,10 +43,13 @@ class LiveNode:
         taps: who is told of every frame, as it leaves and comes in.
         callers: how often callers of the node's process could not be let in, and why.
         engine_of: makes what runs the stack; an `Engine` unless somebody runs it elsewhere.
+        is_stopped: True = it ran, and does not any more.
         ended: is told why, if what runs the stack ends by itself; then nothing moves any more.
         not_in_c: why its protocol does not run as C; "" = it does.
         requests: what may be asked of it on its status socket besides what all nodes answer.
     """
+
+    is_stopped = False
 
     def __init__(
         self,
@@ -80,6 +83,7 @@ class LiveNode:
         Raises:
             LiveError: a link cannot be opened as written.
         """
+        self.is_stopped = False
         self.engine = self.engine_of(
             self.stack, self._transmit, self._deliver, self._note_report, self._settled
         )
@@ -94,6 +98,7 @@ class LiveNode:
 
     async def stop(self) -> None:
         """Stop at once, as if switched off; `drain` first to get rid of what is under way."""
+        self.is_stopped = True
         if self.engine is not None:
             self.engine.stop()
         if self.sealer is not None:
@@ -101,6 +106,22 @@ class LiveNode:
         for link in self.links:
             link.close()
         self.save()
+
+    def idle(self) -> str:
+        """Why nothing can be handed down now; "" if it can."""
+        if self.engine is None:
+            return "node not started"
+        return "node stopped" if self.is_stopped else ""
+
+    def running(self) -> Engine:
+        """What runs the protocol.
+
+        Raises:
+            ValueError: nothing does.
+        """
+        if self.engine is None or self.is_stopped:
+            raise ValueError(f"{self.idle()}; start it first: await node.start(), or async with it")
+        return self.engine
 
     def save(self) -> None:
         """Write what is kept over a restart."""

@@ -180,14 +180,15 @@ class MeshNode(LiveNode):
         """A robot says where it is, from the fence's origin; many times a second.
 
         Raises:
-            ValueError: this node is no robot, or not started.
+            ValueError: this node is no robot, or does not run.
         """
-        if not self.stack.node.robot or self.engine is None:
+        if not self.stack.node.robot:
             raise ValueError("only a running robot has a position; its file says robot = true")
+        engine = self.running()
         item = self._place
         unit_cm = self.stack.params.unit_cm
         item.x, item.y, item.vx, item.vy = place_of(at_cm, speed_cm_s, unit_cm)
-        self.engine.input(SAMPLE, item)
+        engine.input(SAMPLE, item)
 
     def receive_alarms(
         self, callback: Callable[[Alarm], None] | None = None

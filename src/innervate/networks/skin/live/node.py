@@ -84,14 +84,14 @@ class CellNode(LiveNode):
         """Send what the sensors say to the PC; units and ranges as in Touch.
 
         Raises:
-            ValueError: a value leaves its range.
+            ValueError: a value leaves its range, or the cell does not run.
         """
-        assert self.engine is not None
+        engine = self.running()
         values = {"proximity": (proximity,), "force": force,
                   "temperature": (temperature,), "accel": accel}  # fmt: skip
         for name, given in values.items():
             put(self._item, name, given)
-        self.engine.input(SAMPLE, self._item)
+        engine.input(SAMPLE, self._item)
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_PARENT:
@@ -153,9 +153,10 @@ class SinkNode(LiveNode):
         """Send a command down to a cell, or (None) to all; what it means is the user's.
 
         Raises:
-            ValueError: a value leaves its range; see Command. Cells are 0 to 65534.
+            ValueError: a value leaves its range; see Command. Cells are 0 to 65534. Or the PC
+                does not run.
         """
-        assert self.engine is not None
+        engine = self.running()
         if cell == EVERYBODY:
             raise ValueError(f"cell must be 0 to {EVERYBODY - 1}; leave it out for all")
         item = Frame()
@@ -165,7 +166,7 @@ class SinkNode(LiveNode):
         ):  # fmt: skip
             put(item, name, (given,), called)
         pc = self.stack.pc
-        self.engine.input(GIVE, item)
+        engine.input(GIVE, item)
         self.outcomes["commands sent"] += 1
         return Sent(pc.own[0].command, sum(size > 0 for size in pc.size))
 
