@@ -93,6 +93,7 @@ class Process:
                 self._say("stopped; messages were still under way")
         finally:
             await self.node.stop()
+            await asyncio.sleep(0)  # who waits for the end of a message is told that we stop
             if self.page is not None:
                 await self.page.stop()
             await self.server.stop()

@@ -10,7 +10,7 @@ from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.links import Link, Path
 from innervate.live.machine import machine
 from innervate.live.nodefile import PYTHON, C
-from innervate.live.receipts import Receipt
+from innervate.live.receipts import STOPPED, Receipt
 from innervate.live.state import State
 from innervate.live.streams import Arrivals, Stream
 
@@ -111,7 +111,7 @@ class LiveNode:
         """Why nothing can be handed down now; "" if it can."""
         if self.engine is None:
             return "node not started"
-        return "node stopped" if self.is_stopped else ""
+        return STOPPED if self.is_stopped else ""
 
     def running(self) -> Engine:
         """What runs the protocol.

@@ -10,6 +10,7 @@ DELIVERED = "delivered"
 EXPIRED = "expired"
 REFUSED = "refused"
 FINAL = (DELIVERED, EXPIRED, REFUSED)
+STOPPED = "node stopped"  # why what was under way has expired, and nothing more is accepted
 
 
 def check_bytes(payload: object) -> None:
@@ -27,7 +28,7 @@ class Receipt:
 
     Attributes:
         state: "accepted", "next hop acked", then "delivered" or "expired"; "refused" at once.
-        reason: why it was refused or has expired, "" else.
+        reason: why it was refused or has expired, "" else; "node stopped" if the sender was.
         seq: the packet's number once the router has it, -1 before.
     """
 

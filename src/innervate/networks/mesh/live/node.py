@@ -140,8 +140,8 @@ class MeshNode(LiveNode):
         flags |= ORDERED if chained else 0
         most = self.outgoing.check(recipient, flags, len(payload))
         self.outcomes["messages accepted"] += 1
-        if self.engine is None:
-            return refused("node not started")
+        if self.idle():
+            return refused(self.idle())
         return self.outgoing.send(recipient, flags, payload, most)
 
     def receive_messages(
@@ -170,9 +170,10 @@ class MeshNode(LiveNode):
         await super().start()
 
     async def stop(self) -> None:
-        """Stop at once; what waits for its turn is handed up."""
+        """Stop at once; what waits for its turn is handed up, what is under way has expired."""
         self.inbox.stop()
         await super().stop()
+        self.outgoing.stop()
 
     def locate(
         self, at_cm: tuple[float, float], speed_cm_s: tuple[float, float] = (0.0, 0.0)

@@ -8,7 +8,14 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.arith import MASK16
-from innervate.live.receipts import DELIVERED, EXPIRED, HOP_ACKED, REFUSED, Receipt
+from innervate.live.receipts import (
+    DELIVERED,
+    EXPIRED,
+    HOP_ACKED,
+    REFUSED,
+    STOPPED,
+    Receipt,
+)
 from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt
 from innervate.networks.mesh.live.order import BEFORE_BYTES
@@ -180,6 +187,13 @@ class Outgoing:
         before = self._chains.before(dest, seq)
         item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
         return dest, seq
+
+    def stop(self) -> None:
+        """Nothing goes any more: whoever waits for the end of a message is told so."""
+        for handle in list(self.receipts):
+            self._end(handle, EXPIRED, STOPPED)
+        self.turns, self._chains = Turns(self._stack, self._new_item), Chains()
+        self._long_bytes = 0
 
     def status(self) -> dict[str, Any]:
         """How many wait, for whom, and how many the router has."""

@@ -9,7 +9,7 @@ from innervate.dialect import plain
 from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
 from innervate.live.on_air import AirNode
 from innervate.live.radio import Radio
-from innervate.live.receipts import DELIVERED, REFUSED, Receipt, check_bytes
+from innervate.live.receipts import DELIVERED, EXPIRED, REFUSED, STOPPED, Receipt, check_bytes
 from innervate.live.streams import Arrivals, Stream, message_line
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.live.stack import StationStack
@@ -69,8 +69,9 @@ class RadioNode(AirNode):
         if slots > most:
             raise ValueError(f"payload of {len(payload)} bytes; a packet holds {most - 2}")
         receipt = Receipt()
-        if self.engine is None or self.stack.station.queued >= QUEUE:
-            receipt.move(REFUSED, "queue full" if self.engine else "node not started")
+        why = self.idle() or ("queue full" if self.stack.station.queued >= QUEUE else "")
+        if self.engine is None or why:
+            receipt.move(REFUSED, why)
             return receipt
         item = Packet()
         item.slots, item.handle, item.ago = slots, self._handle, 0
@@ -79,6 +80,14 @@ class RadioNode(AirNode):
         self.outcomes["packets accepted"] += 1
         self.engine.input(PACKET, item)
         return receipt
+
+    async def stop(self) -> None:
+        """Switch the radio off, then the node; packets without a proof have expired."""
+        await super().stop()
+        packets, self._packets = self._packets, {}
+        for _, receipt in packets.values():
+            self.outcomes["packets expired"] += 1
+            receipt.move(EXPIRED, STOPPED)
 
     def status(self) -> dict[str, Any]:
         """What is known here, and what the radio does: "off", "listening" or "sending"."""
