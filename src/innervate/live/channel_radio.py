@@ -8,6 +8,7 @@ import struct
 from contextlib import suppress
 
 from innervate.live.engine import clock_us
+from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.live.radio import Listener
 
@@ -53,11 +54,20 @@ class MediumRadio:
         self._again: asyncio.TimerHandle | None = None
 
     async def start(self, listener: Listener) -> None:
-        """Join the channel; `listener` is told of carriers and frames."""
+        """Join the channel; `listener` is told of carriers and frames.
+
+        Raises:
+            LiveError: there can be none at its address.
+        """
         self._listener = listener
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
-        sock.setblocking(False)
-        sock.connect(self.where)
+        try:
+            sock.setblocking(False)
+            sock.connect(self.where)
+        except OSError as error:
+            sock.close()
+            host, port = self.where
+            raise LiveError(f"no way to {host}:{port}: {error.strerror}") from None
         self._socket = sock
         asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
         self.mode = "listening"

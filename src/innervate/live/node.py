@@ -50,6 +50,7 @@ class LiveNode:
     """
 
     is_stopped = False
+    _is_open = False
 
     def __init__(
         self,
@@ -78,18 +79,27 @@ class LiveNode:
         self.started_at = clock_us()
 
     async def start(self) -> None:
-        """Open the links and switch the protocol on.
+        """Open the links and switch the protocol on; where that fails all is closed again.
 
         Raises:
             LiveError: a link cannot be opened as written.
         """
         self.is_stopped = False
+        try:
+            await self._switch_on()
+        except BaseException:
+            await self.stop()
+            self.engine = None
+            raise
+
+    async def _switch_on(self) -> None:
         self.engine = self.engine_of(
             self.stack, self._transmit, self._deliver, self._note_report, self._settled
         )
         self.engine.ended = lambda why: self.ended(why)
         for link in self.links:
             await link.open(self._receive)
+        self._is_open = True
         self.save()
         self.state.check_place()
         if self.sealer is not None:
@@ -105,7 +115,9 @@ class LiveNode:
             self.sealer.stop()
         for link in self.links:
             link.close()
-        self.save()
+        if self._is_open:  # else another may run that keeps its state there
+            self._is_open = False
+            self.save()
 
     def idle(self) -> str:
         """Why nothing can be handed down now; "" if it can."""

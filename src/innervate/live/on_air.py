@@ -30,9 +30,8 @@ class AirNode(LiveNode):
         self.radio = radio
         self.paths = [Aerial(radio, channel)]
 
-    async def start(self) -> None:
-        """Switch on protocol and radio."""
-        await super().start()
+    async def _switch_on(self) -> None:
+        await super()._switch_on()
         await self.radio.start(self)
 
     async def stop(self) -> None:

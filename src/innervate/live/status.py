@@ -147,7 +147,11 @@ class Server:
                 private.checked(self.path.parent)
             sock = machine().listen_at(self.path)
             self.listener = BoundedListener("status", sock, self._serve, BOUNDS, self._counts)
-            self.listener.open()
+            try:
+                self.listener.open()
+            except OSError:
+                await self.stop()
+                raise
         except OSError as error:
             raise LiveError(f"{self.path}: no socket here: {error.strerror or error}") from None
 

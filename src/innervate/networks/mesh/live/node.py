@@ -160,14 +160,14 @@ class MeshNode(LiveNode):
         ordered = self.in_order if in_order is None else in_order
         return (self.inbox.orderly.arrivals if ordered else self.arrivals).receive(callback)
 
-    async def start(self) -> None:
-        """Switch on; packets' numbers go on behind where they were.
+    async def _switch_on(self) -> None:
+        """Packets' numbers go on behind where they were.
 
         By how much is drawn: where a disk was full, nobody noted those that were used last.
         """
         if self.state.numbers >= 0:
             self.stack.first = (self.state.numbers + machine().chance.getrandbits(12)) & MASK16
-        await super().start()
+        await super()._switch_on()
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up, what is under way has expired."""

@@ -61,9 +61,8 @@ class CellNode(LiveNode):
         """Commands for this cell, each once: to a callback, and as an async iterator."""
         return self.arrivals.receive(callback)
 
-    async def start(self) -> None:
-        """Switch on, and sample from now on if there is a rate."""
-        await super().start()
+    async def _switch_on(self) -> None:
+        await super()._switch_on()
         if self._period_s:
             self._due = asyncio.get_running_loop().time()
             self._sample_again()
@@ -72,6 +71,7 @@ class CellNode(LiveNode):
         """Stop sampling, then switch the node off."""
         if self._beat is not None:
             self._beat.cancel()
+            self._beat = None
         await super().stop()
 
     def sample(

@@ -1,0 +1,148 @@
+"""A node that cannot start leaves nothing behind: no socket, no timer, no file."""
+
+import asyncio
+import errno
+import gc
+import socket
+import warnings
+
+import pytest
+
+from innervate.live import status
+from innervate.live.build import build
+from innervate.live.channel_radio import MediumRadio
+from innervate.live.errors import LiveError
+from innervate.live.main import Process
+from innervate.live.nodefile import load
+from innervate.networks.radio.live.node import RadioNode
+from innervate.networks.radio.live.parameters import RADIO
+from innervate.networks.radio.live.stack import StationStack
+from tests.live.test_udp import free_port
+
+KINDS = {
+    "mesh": 'kind = "mesh"\nnumber = 0\nnodes = 3\nrole = "gateway"\n',
+    "sealed": 'kind = "mesh"\nnumber = 0\nnodes = 3\nrole = "gateway"\n[keys]\nuse = 1\n'
+    f'secret.1 = "{"ab" * 32}"\n',
+    "cell": 'kind = "skin"\nnumber = 0\nports = [0, 1]\nrate_hz = 50.0\n',
+    "pc": 'kind = "skin"\nnumber = 0\nrole = "sink"\n',
+}
+LINK = '[[link]]\nkind = "udp"\nbind = "127.0.0.1:{}"\npeers = ["127.0.0.1:9"]\n'
+
+
+def taken():
+    """A socket whose port is nobody else's."""
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sock.bind(("127.0.0.1", 0))
+    return sock
+
+
+def write(folder, head, *ports, more=""):
+    path = folder / "n0.toml"
+    path.write_text(more + head + "".join(LINK.format(port) for port in ports))
+    return load(path)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_second_link_that_cannot_be_opened_closes_the_first(tmp_path, kind):
+    first = free_port()
+
+    async def main():
+        with taken() as sock:
+            node = build(write(tmp_path, KINDS[kind], first, sock.getsockname()[1]))
+            with pytest.raises(LiveError, match="cannot use UDP address"):
+                await node.start()
+            assert not (tmp_path / "n0.state").exists()
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+                free.bind(("127.0.0.1", first))
+            assert node.engine is None
+        async with node:  # the same again, now that there is room
+            assert node.paths[0].up
+            assert node.paths[1].up
+        async with build(load(tmp_path / "n0.toml")):
+            pass
+
+    asyncio.run(main())
+
+
+def test_a_misplaced_state_file_closes_all_links(tmp_path):
+    port = free_port()
+
+    async def main():
+        node = build(write(tmp_path, KINDS["mesh"], port, more='state = "none/n0.state"\n'))
+        with pytest.raises(LiveError, match="cannot be written"):
+            await node.start()
+        (tmp_path / "none").mkdir()
+        async with node:
+            pass
+
+    asyncio.run(main())
+
+
+class Away:
+    """A channel to which there is no way at first."""
+
+    def __init__(self):
+        self.real, self.tries = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), 0
+
+    def __getattr__(self, name):
+        return getattr(self.real, name)
+
+    def connect(self, where):
+        self.tries += 1
+        if self.tries == 1:
+            raise OSError(errno.ENETUNREACH, "Network is unreachable")
+        self.real.connect(where)
+
+
+def test_a_station_without_a_way_to_its_channel_is_off(monkeypatch):
+    made = []
+
+    def sock(*_):
+        made.append(Away())
+        return made[-1]
+
+    async def main():
+        node = RadioNode("s0", StationStack(0, RADIO, 7), MediumRadio(0, ("127.0.0.1", 9)))
+        monkeypatch.setattr("innervate.live.machine.Machine.socket", sock)
+        with pytest.raises(LiveError, match=r"no way to 127\.0\.0\.1:9: Network is unreachable"):
+            await node.start()
+        assert made[0].real.fileno() == -1
+        assert (node.radio.mode, node.engine) == ("off", None)
+        monkeypatch.undo()
+        async with node:
+            assert node.radio.mode == "listening"
+
+    asyncio.run(main())
+
+
+def test_a_process_that_cannot_start_takes_its_socket_with_it(tmp_path, monkeypatch):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    kept = '{"epoch": 3, "numbers": 7, "revoked": ""}'
+
+    async def main():
+        with taken() as sock:
+            process = Process(write(tmp_path, KINDS["mesh"], free_port(), sock.getsockname()[1]))
+            (tmp_path / "n0.state").write_text(kept)  # by another one that runs
+            with pytest.raises(LiveError, match="cannot use UDP address"):
+                await process.run()
+
+    asyncio.run(main())
+    assert (tmp_path / "n0.state").read_text() == kept
+    assert {path.name for path in tmp_path.iterdir()} == {"n0.toml", "n0.state"}
+
+
+def test_a_status_socket_that_cannot_listen_is_removed(tmp_path, monkeypatch):
+    def refuses(_):
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    async def main():
+        server = status.Server(tmp_path / "n0.sock", None)
+        monkeypatch.setattr("innervate.live.admission.BoundedListener.open", refuses)
+        with pytest.raises(LiveError, match="no socket here: Too many open files"):
+            await server.start()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", ResourceWarning)
+            gc.collect()
+
+    asyncio.run(main())
+    assert list(tmp_path.iterdir()) == []
