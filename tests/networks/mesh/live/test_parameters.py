@@ -97,3 +97,37 @@ def test_a_fence_has_so_many_corners_at_most(more):
         return
     with pytest.raises(LiveError, match=f"here: the fence has {POINTS + 1} corners, more than"):
         fence_parameters([ring], "here")
+
+
+NO_AREA = [
+    ([(5, 5)] * 3, "must have 3 corners or more, not 2"),
+    ([(5, 5)] * 4, "has corner 0 twice in a row"),
+    ([(5, 5), (9, 5), (5, 5)], "must have 3 corners or more, not 2"),
+    ([(5, 5), (9, 5), (9, 5), (5, 5)], "has corner 1 twice in a row"),
+    ([(5, 5), (9, 9), (7, 7)], "touches itself: edges 0 and 1 lie on each other"),
+    ([(0, 0), (9, 0), (9, 9), (9, 5), (9, 0)], "touches itself: edge 0"),
+    ([(0, 0), (9, 9), (9, 0), (0, 9)], "crosses itself: edge 0"),
+]
+
+
+@pytest.mark.parametrize("is_hole", [False, True])
+@pytest.mark.parametrize(("ring", "words"), NO_AREA)
+def test_rings_without_an_area_are_refused_in_the_same_words_here_and_there(ring, words, is_hole):
+    name = "fence.holes.0" if is_hole else "fence.polygon"
+    rings = [square(-1, 20), ring] if is_hole else [ring]
+    rings = [[(x + 1, y + 1) for x, y in one] for one in rings]
+    with pytest.raises(LiveError, match=rf"^n3\.toml: {name} {words}"):
+        fence_parameters(rings, "n3.toml")
+    fence = {"polygon": rings[0], "holes": rings[1:]}
+    with pytest.raises(scenario.ScenarioError, match=f"{name} {words}"):
+        simulated(fence=fence)
+
+
+def test_holes_lie_inside_and_apart_and_a_ring_may_be_closed():
+    outer, hole, other = square(0, 900), square(100, 200), square(150, 250)
+    closed = [*outer, outer[0]]
+    assert fence_parameters([closed, hole]) == fence_parameters([outer, hole])
+    with pytest.raises(LiveError, match=r"fence\.holes\.0 is not wholly inside fence\.polygon"):
+        fence_parameters([hole, outer])
+    with pytest.raises(LiveError, match=r"fence\.holes\.0 and 1 overlap or touch"):
+        fence_parameters([outer, hole, other])

@@ -9,6 +9,7 @@ from innervate.live.parameters import check_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
 from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, words
+from innervate.networks.mesh.rings import mistake, opened
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
@@ -27,12 +28,14 @@ EXTENT_MAX = 23_000  # units: squares of distances stay below 2^29
 OURS = ("nodes", "width", "row", "told", "points", "px", "py", "after")
 
 
-def fence_parameters(rings: list[list[tuple[int, int]]], where: str = "") -> dict[str, Any]:
+def fence_parameters(found: list[list[tuple[int, int]]], where: str = "") -> dict[str, Any]:
     """The corners of a fence as the router has them: the polygon, then its holes.
 
     Raises:
-        LiveError: too many corners, or one out of reach; the message begins with `where`.
+        LiveError: too many corners, one out of reach, or no area inside; the message begins with
+            `where`.
     """
+    rings = [opened(ring) for ring in found]
     count = sum(len(ring) for ring in rings)
     if count > POINTS:
         raise LiveError(f"{where}: the fence has {count} corners, more than {POINTS}")
@@ -47,6 +50,9 @@ def fence_parameters(rings: list[list[tuple[int, int]]], where: str = "") -> dic
                 )
             px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
         at += len(ring)
+    holes = (f"fence.holes.{i}" for i in range(len(rings) - 1))
+    if wrong := mistake(rings, ["fence.polygon", *holes]):
+        raise LiveError(f"{where}: {wrong[1]}")
     return {"points": count, "px": px, "py": py, "after": after}
 
 

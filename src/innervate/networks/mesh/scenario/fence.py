@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import combinations
 from typing import Any
 
+from innervate.networks.mesh import rings
 from innervate.networks.mesh.protocol.fields import POINTS
+from innervate.networks.mesh.rings import Point
 from innervate.networks.mesh.scenario.model import FenceTable
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
-from innervate.topology.placement import Point
 
 EXTENT_MAX = 23_000  # units: squares stay below 2^29
 UNITS_CM = (1, 10, 100)
@@ -20,11 +20,8 @@ Ring = list[Point]
 
 def rings_cm(fence: FenceTable) -> list[Ring]:
     """The polygon and its holes, corners in cm; a last corner that repeats the first is dropped."""
-    found = []
-    for polygon in (fence.polygon, *fence.holes):
-        ring = [(round(100 * x), round(100 * y)) for x, y in polygon]
-        found.append(ring[:-1] if len(ring) > 1 and ring[0] == ring[-1] else ring)
-    return found
+    polygons = (fence.polygon, *fence.holes)
+    return [rings.opened([(round(100 * x), round(100 * y)) for x, y in ring]) for ring in polygons]
 
 
 def ring_key(index: int) -> Key:
@@ -34,120 +31,29 @@ def ring_key(index: int) -> Key:
 
 def check(source: Source, fence: FenceTable) -> None:
     """Raise ScenarioError if no area is inside, or nobody could say which."""
-    rings = rings_cm(fence)
-    corners = sum(len(ring) for ring in rings)
+    found = rings_cm(fence)
+    corners = sum(len(ring) for ring in found)
     if corners > POINTS:
         message = f"the fence has {corners} corners, more than {POINTS}; leave some out"
         raise source.error(("fence", "polygon"), message)
-    _check_rings(source, rings)
+    _check_rings(source, found)
 
 
-def _check_rings(source: Source, rings: list[Ring]) -> None:
-    for index, ring in enumerate(rings):
-        key = ring_key(index)
-        name = ".".join(str(part) for part in key)
-        if len(ring) < 3:
-            raise source.error(key, f"{name} must have 3 corners or more, not {len(ring)}")
-        wrong = _fault(ring)
-        if wrong:
-            raise source.error(key, f"{name} {wrong}")
-        if index and not (_inside(ring[0], rings[0]) and not _meet(ring, rings[0])):
-            raise source.error(key, f"{name} is not wholly inside fence.polygon; move it there")
-    for i, j in combinations(range(1, len(rings)), 2):
-        a, b = rings[i], rings[j]
-        if _meet(a, b) or _inside(a[0], b) or _inside(b[0], a):
-            message = f"fence.holes.{i - 1} and {j - 1} overlap or touch; make them one, or apart"
-            raise source.error(ring_key(j), message)
-
-
-def _fault(ring: Ring) -> str:
-    """What is wrong with a ring; "" if its edges meet at its corners only."""
-    count = len(ring)
-    for i in range(count):
-        if ring[i] == ring[(i + 1) % count]:
-            return f"has corner {i} twice in a row; leave one out"
-    for i, j in combinations(range(count), 2):
-        first, second = _edge(ring, i), _edge(ring, j)
-        if j == i + 1:
-            spike = _side(*first, second[1]) == 0 and _ahead(*first, second[1]) < 0
-        elif i == 0 and j == count - 1:
-            spike = _side(*second, first[1]) == 0 and _ahead(*second, first[1]) < 0
-        else:
-            if _touch(first, second):
-                crosses = _sides(first, second) < 0 and _sides(second, first) < 0
-                verb = "crosses" if crosses else "touches"
-                both = f"edge {i} (from corner {i}) and edge {j}"
-                return f"{verb} itself: {both} meet; put the corners in order around the area"
-            continue
-        if spike:
-            return f"touches itself: edges {i} and {j} lie on each other; leave a corner out"
-    return ""
-
-
-def _edge(ring: Ring, i: int) -> tuple[Point, Point]:
-    return ring[i], ring[(i + 1) % len(ring)]
-
-
-def _side(a: Point, b: Point, c: Point) -> int:
-    """> 0 if c is to the left of the line from a to b, < 0 to the right, 0 on it."""
-    cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    return (cross > 0) - (cross < 0)
-
-
-def _ahead(a: Point, b: Point, c: Point) -> int:
-    """< 0 if from b on to c goes back in the direction of a."""
-    return (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
-
-
-def _sides(edge: tuple[Point, Point], other: tuple[Point, Point]) -> int:
-    """< 0 if the ends of `other` lie on different sides of `edge`."""
-    return _side(*edge, other[0]) * _side(*edge, other[1])
-
-
-def _touch(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
-    """True if two edges have a point in common."""
-    if _sides(first, second) < 0 and _sides(second, first) < 0:
-        return True
-    return any(
-        _side(*edge, point) == 0 and _within(edge, point)
-        for edge, other in ((first, second), (second, first))
-        for point in other
-    )
-
-
-def _within(edge: tuple[Point, Point], point: Point) -> bool:
-    (ax, ay), (bx, by) = edge
-    return min(ax, bx) <= point[0] <= max(ax, bx) and min(ay, by) <= point[1] <= max(ay, by)
-
-
-def _meet(a: Ring, b: Ring) -> bool:
-    return any(_touch(_edge(a, i), _edge(b, j)) for i in range(len(a)) for j in range(len(b)))
-
-
-def _inside(point: Point, ring: Ring) -> bool:
-    """Even-odd rule; a point on an edge counts as either."""
-    found = False
-    for i in range(len(ring)):
-        a, b = _edge(ring, i)
-        if (a[1] > point[1]) != (b[1] > point[1]):
-            low, high = (a, b) if a[1] < b[1] else (b, a)
-            if _side(low, high, point) > 0:
-                found = not found
-    return found
+def _check_rings(source: Source, found: list[Ring]) -> None:
+    keys = [ring_key(index) for index in range(len(found))]
+    wrong = rings.mistake(found, [".".join(str(part) for part in key) for key in keys])
+    if wrong is not None:
+        raise source.error(keys[wrong[0]], wrong[1])
 
 
 def is_outside(fence: FenceTable, point: Point) -> bool:
     """True if a point, cm, is beyond the polygon or in a hole; an edge is inside."""
-    rings = rings_cm(fence)
-    edges = [_edge(ring, i) for ring in rings for i in range(len(ring))]
-    if any(_side(*edge, point) == 0 and _within(edge, point) for edge in edges):
-        return False
-    return sum(_inside(point, ring) for ring in rings) % 2 == 0
+    return rings.is_outside(point, rings_cm(fence))
 
 
-def origin_of(rings: Sequence[Ring]) -> Point:
+def origin_of(found: Sequence[Ring]) -> Point:
     """The fence's corner: least x and least y, cm."""
-    return min(x for x, _ in rings[0]), min(y for _, y in rings[0])
+    return min(x for x, _ in found[0]), min(y for _, y in found[0])
 
 
 def parameters(
@@ -164,11 +70,11 @@ def parameters(
     Raises:
         ScenarioError: the unit is too small for the extent, or too large for the corners.
     """
-    rings = rings_cm(fence)
-    x0, y0 = origin_of(rings)
-    unit = _unit_cm(source, fence, [*rings[0], *visited])
+    found = rings_cm(fence)
+    x0, y0 = origin_of(found)
+    unit = _unit_cm(source, fence, [*found[0], *visited])
     scaled = [[(round((x - x0) / unit), round((y - y0) / unit)) for x, y in ring]
-              for ring in rings]  # fmt: skip
+              for ring in found]  # fmt: skip
     if unit > 1:
         _check_rings(source, scaled)
     return {
@@ -184,11 +90,11 @@ def parameters(
     }
 
 
-def _corners(rings: list[list[tuple[int, int]]]) -> dict[str, Any]:
+def _corners(found: list[list[tuple[int, int]]]) -> dict[str, Any]:
     """All rings' corners in one table, each with the place of the next one."""
     px, py, after = ([0] * POINTS for _ in range(3))
     at = 0
-    for ring in rings:
+    for ring in found:
         for i, (x, y) in enumerate(ring):
             px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
         at += len(ring)
