@@ -7,7 +7,7 @@ from types import SimpleNamespace as Of
 import pytest
 
 from innervate import scenario
-from innervate.cli import errors, exporting, files, live_app, running, sizing
+from innervate.cli import errors, exporting, files, live_app, main, running, sizing
 from innervate.cli.options import ExportOptions, SizeOptions, UpOptions
 from innervate.export import recording
 from innervate.network import networks
@@ -24,6 +24,22 @@ def test_live_commands_end_after_a_time_that_can_be(seconds):
                     lambda: live_app.live_capture(for_=seconds)):  # fmt: skip
         with pytest.raises(errors.UserError, match="--for must be a number of seconds from 0"):
             command()
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["--slot-us", "0"], "a slot of 0 us cannot be; 2000 to 1000000 us can"),
+    (["--slot-us", "-1"], "a slot of -1 us cannot be"),
+    (["--slot-us", "1999"], "a slot of 1999 us cannot be"),
+    (["--slot-us", "1000001"], "a slot of 1000001 us cannot be"),
+    (["--slot-us", "1" + 300 * "0"], "a slot of 1000000000"),
+    (["--turnaround-us", "-1"], "a turnaround of -1 us cannot be; 0 to 10000000 us can"),
+    (["--turnaround-us", "10000001"], "a turnaround of 10000001 us cannot be"),
+])  # fmt: skip
+def test_a_channel_has_slots_and_turnarounds_that_can_be_kept(words, said, capfd):
+    assert main(["live", "medium", "127.0.0.1:0", *words]) == 2
+    err = capfd.readouterr().err
+    assert err.startswith(f"innervate: medium: {said}")
+    assert err.count("\n") == 1
 
 
 def test_a_missing_package_is_said_before_the_simulation(monkeypatch, tmp_path):

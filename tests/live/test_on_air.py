@@ -8,9 +8,10 @@ from innervate import scenario as scenarios
 from innervate.cli import live_status, main
 from innervate.live import status
 from innervate.live.build import build
+from innervate.live.channel import SLOT_US, TURNAROUND_US
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
-from innervate.live.on_channel import SLOT_US, TURNAROUND_US, ChannelDeployment
+from innervate.live.on_channel import ChannelDeployment
 from innervate.live.play import events
 from innervate.live.up import Processes
 from innervate.network import networks

@@ -21,7 +21,9 @@ from innervate.live.nodefile import address
 
 LOGGED = 4096  # transmissions
 SLOT_US = 10_000
+SLOT_US_MIN, SLOT_US_MAX = 2_000, 1_000_000  # the least is what a PC keeps
 TURNAROUND_US = 5_000
+TURNAROUND_US_MAX = 10_000_000
 LEASE_US = 2_500_000  # a station that joins no more for so long may come back at another address
 STATIONS = 1024
 SLOTS_MAX = 4095
@@ -277,7 +279,17 @@ class Medium:
 
 
 async def run(where: str, slot_us: int, turnaround_us: int) -> None:
-    """A medium until it is cancelled."""
+    """A medium until it is cancelled.
+
+    Raises:
+        LiveError: no station can keep such times, or the address cannot be used.
+    """
+    for name, value, low, high in (
+        ("slot", slot_us, SLOT_US_MIN, SLOT_US_MAX),
+        ("turnaround", turnaround_us, 0, TURNAROUND_US_MAX),
+    ):
+        if not low <= value <= high:
+            raise LiveError(f"medium: a {name} of {value} us cannot be; {low} to {high} us can")
     medium = Medium(slot_us, turnaround_us)
     host, port = medium.open(address(where, "medium"))
     print(f"medium: {host}:{port}, slots of {slot_us} us", flush=True)

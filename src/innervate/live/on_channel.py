@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from innervate.live.channel import SLOT_US, SLOT_US_MIN, TURNAROUND_US
 from innervate.live.deployment import Deployment, Pairs, Table
 from innervate.live.errors import LiveError
 from innervate.network import networks
 from innervate.scenario.actions.channel import JOIN
-
-SLOT_US_MIN = 2_000  # what a PC keeps
-SLOT_US, TURNAROUND_US = 10_000, 5_000
 
 
 class ChannelDeployment(Deployment):

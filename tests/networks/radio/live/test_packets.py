@@ -3,13 +3,14 @@
 import pytest
 
 from innervate.dialect.access import PACKET, QUEUE, REPORT_DELIVERED
+from innervate.live.channel import SLOT_US_MIN
 from innervate.live.errors import LiveError
 from innervate.live.receipts import ACCEPTED, DELIVERED, REFUSED
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.live import node as nodes
 from innervate.networks.radio.live import words
 from innervate.networks.radio.live.node import RadioNode
-from innervate.networks.radio.live.parameters import RADIO, SLOT_US_MIN, check_slots
+from innervate.networks.radio.live.parameters import RADIO, check_slots
 from innervate.networks.radio.live.stack import Frame, StationStack
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from innervate.live.channel import SLOT_US, TURNAROUND_US
 from innervate.live.deployment import Pairs, Table
 from innervate.live.errors import LiveError
-from innervate.live.on_channel import SLOT_US, TURNAROUND_US, ChannelDeployment
+from innervate.live.on_channel import ChannelDeployment
 from innervate.networks.radio.live.parameters import RADIO
 
 

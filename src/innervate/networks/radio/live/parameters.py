@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from innervate.live.channel import SLOT_US_MIN
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.radio.protocol.fields import PARAMS
 
-SLOT_US_MIN = 2000
 # A channel of processes: slots of 10 ms, a turnaround of 5 ms, and stations that act up to 3 ms
 # late; the rest follows as docs/radio.md says.
 RADIO: dict[str, int] = {
