@@ -50,7 +50,7 @@ KEYS_1_AND_16 = f'{{1 = "{"a" * 64}", 16 = "{"b" * 64}"}}'
         ('"127.0.0.1:4701"', '"127.0.0.1"', "is no address"),
         ('"127.0.0.1:4701"', '"127.0.0.1:123456"', "is no address"),
         ('"127.0.0.1:4701"', '"localhost:4701"', '"localhost:4701" is no IPv4 address with'),
-        ('"127.0.0.1:4701"', '"[::1]:4701"', '"[::1]:4701" is no IPv4 address with a port'),
+        ('"127.0.0.1:4701"', '"[::1]:4701"', '"[::1]:4701" is no address'),
         ('kind = "udp"', 'kind = "upd"', "upd"),
         ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
         (

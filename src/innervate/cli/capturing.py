@@ -58,7 +58,7 @@ class Recorder:
         self.file = file
         self.are_named = are_named
         self.frames = self.missed = 0
-        self.awaited = len(sockets)  # nodes that have neither answered yet nor failed to
+        self.silent = len(sockets)  # nodes that have neither answered yet nor failed to
         self.followed: set[Path] = set()
         self.here = 0  # nodes that are followed now
         self.numbers: dict[tuple[str, str], int] = {}  # interfaces by name and description
@@ -104,7 +104,7 @@ class Recorder:
     async def _follow(self, path: Path) -> None:
         """Take what a node tells, also when it comes back, until all are gone."""
         again = False
-        while self.here or self.awaited or not again:
+        while self.here or self.silent or not again:
             try:
                 async with asyncio.timeout(ANSWER_S):
                     reader, writer, about = await _asked(path)
@@ -122,7 +122,7 @@ class Recorder:
         if self.are_named:
             raise UserError(f"{path}: no node answers here: {str(error) or 'timed out'}")
         say(f"{path.stem}: does not answer; its process was killed, or hangs")
-        self.awaited -= 1
+        self.silent -= 1
 
     async def _take(
         self, path: Path, reader: asyncio.StreamReader, about: dict[str, Any], again: bool
@@ -136,7 +136,7 @@ class Recorder:
         if again:
             self.waiting.append((time.time_ns(), first, False, b"", EVENT + "node back"))
         else:
-            self.awaited -= 1
+            self.silent -= 1
             self.since_ns = time.time_ns()
         with suppress(ConnectionError):  # killed
             await self._take_frames(reader, numbers)
@@ -149,7 +149,7 @@ class Recorder:
             self.missed += told["missed"]
             for at_ns, port, is_out, text, why in told["frames"]:
                 # Before all were followed, what left would seem to come in nowhere.
-                if not self.awaited and at_ns >= self.since_ns:
+                if not self.silent and at_ns >= self.since_ns:
                     data = bytes.fromhex(text)
                     self.waiting.append((at_ns, numbers[port], is_out, data, why))
 

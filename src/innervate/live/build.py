@@ -46,7 +46,7 @@ def links_of(loaded: Loaded) -> list[Link]:
     links: list[Link] = []
     count = 0
     for table in loaded.table.link:
-        link = _link(table, f"{loaded.path}", count)
+        link = _link(table, f"{loaded.path}: link.{len(links)}", count)
         count += len(link.paths)
         links.append(link)
     return links
@@ -56,17 +56,21 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, UdpTable):
         from innervate.live.udp import UdpLink
 
-        peers = [_ipv4(peer, where) for peer in table.peers]
+        peers = [_ipv4(peer, f"{where}.peers.{i}") for i, peer in enumerate(table.peers)]
         if twice := next((one for one in peers if peers.count(one) > 1), None):
-            raise LiveError(f"{where}: the peer {twice[0]}:{twice[1]} stands there twice")
-        return UdpLink(address(table.bind, where), peers, port)
+            raise LiveError(f"{where}.peers: {twice[0]}:{twice[1]} stands there twice")
+        return UdpLink(address(table.bind, f"{where}.bind"), peers, port)
     if isinstance(table, MulticastTable):
         from innervate.live.udp import MulticastLink
 
-        return MulticastLink(_ipv4(table.group, where), table.interface, port)
+        own, _ = _ipv4(f"{table.interface}:0", f"{where}.interface")
+        return MulticastLink(_ipv4(table.group, f"{where}.group"), own, port)
     if isinstance(table, SerialTable):
         from innervate.live.serial import SerialLink
+        from innervate.live.serial_port import is_speed
 
+        if not is_speed(table.baud):
+            raise LiveError(f"{where}.baud: this system has no {table.baud} baud; try 115200")
         return SerialLink(table.device, table.baud, port, table.far)
     raise LiveError(f"{where}: this kind of node has no such link")
 
@@ -88,7 +92,11 @@ def _ipv4(text: str, where: str) -> tuple[str, int]:
 
 def state_of(loaded: Loaded) -> State:
     """What this node keeps over a restart, in a file beside its own."""
-    return State(loaded.path.parent / (loaded.table.state or f"{loaded.name}.state"))
+    named = loaded.table.state
+    try:
+        return State(loaded.path.parent / (named or f"{loaded.name}.state"))
+    except LiveError as error:
+        raise LiveError(f"{loaded.path}: state: {error}" if named else str(error)) from None
 
 
 def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
@@ -102,7 +110,10 @@ def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
     if table.keys.identity is not None:
         from innervate.live.identity import load
 
-        identity = load(loaded.path.parent / table.keys.identity, table.number)
+        try:
+            identity = load(loaded.path.parent / table.keys.identity, table.number)
+        except LiveError as error:
+            raise LiveError(f"{loaded.path}: keys.identity: {error}") from None
     keys = keys_of(table.keys, loaded)
     ring = ring_of(table.kind, keys, table.keys.use, identity)
     sealer = Sealer(ring, table.number, state, table.nodes)
@@ -120,7 +131,11 @@ def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
 
     keys = {}
     for number, text in table.secret.items():
-        if not (number.isascii() and number.isdigit() and int(number) <= 15):
-            raise LiveError(f"{loaded.path}: keys.secret.{number}: numbers of keys are 0 to 15")
-        keys[int(number)] = read_key(text, loaded.path.parent)
+        where = f"{loaded.path}: keys.secret.{number}"
+        if not (number.isascii() and number.isdigit() and len(number) < 3 and int(number) <= 15):
+            raise LiveError(f"{where}: numbers of keys are 0 to 15")
+        try:
+            keys[int(number)] = read_key(text, loaded.path.parent)
+        except LiveError as error:
+            raise LiveError(f"{where}: {error}") from None
     return keys

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import tomllib
 from pathlib import Path
 from typing import Any
 
 from innervate.live import identity as identities
-from innervate.live import private
+from innervate.live import plain, private
 from innervate.live.errors import LiveError
 from innervate.live.identity import REVOKED_MAX, Revoked
 from innervate.live.machine import machine
@@ -17,6 +16,8 @@ from innervate.live.machine import machine
 AUTHORITY = "authority.key"
 LIST = "revoked.list"
 NUMBER_MAX = 65_534
+SERIAL_MAX = 2**32 - 2  # the next one is a number of 32 bits, too
+NONE = "not an authority's file; name another folder"
 
 
 class Authority:
@@ -46,16 +47,23 @@ class Authority:
 
     def _read(self) -> None:
         try:
-            raw = tomllib.loads(self._path.read_text(encoding="utf-8"))
-            self._key, self._shared = bytes.fromhex(raw["key"]), bytes.fromhex(raw["shared"])
-            self.issued = [(int(number), int(serial)) for number, serial in raw["issued"]]
-            self.revoked, self.version = set(raw["revoked"]), int(raw["version"])
-            if len(self._key) != 32 or len(self._shared) != 32:
-                raise ValueError("a key is too short")
+            text = self._path.read_text(encoding="utf-8")
         except OSError as error:
             raise LiveError(f"{self._path}: cannot be read: {error.strerror}") from None
-        except (ValueError, KeyError, TypeError, RecursionError):
-            raise LiveError(f"{self._path}: not an authority's file; name another folder") from None
+        except ValueError:
+            raise LiveError(f"{self._path}: {NONE}") from None
+        try:
+            raw = plain.read(text)
+            self._key, self._shared = (plain.octets(raw, name, 32) for name in ("key", "shared"))
+            pairs = enumerate(plain.listed(raw, "issued"))
+            self.issued = [_issued(pair, f"issued.{i}") for i, pair in pairs]
+            revoked = plain.listed(raw, "revoked")
+            self.revoked = {
+                plain.whole(revoked, i, SERIAL_MAX, "revoked") for i in range(len(revoked))
+            }
+            self.version = plain.whole(raw, "version", SERIAL_MAX)
+        except ValueError as error:
+            raise LiveError(f"{self._path}: {error}; {NONE}") from None
 
     def enrol(self, number: int) -> Path:
         """Make the identity of a node; its file.
@@ -117,6 +125,13 @@ class Authority:
             os.replace(new, path)
         except OSError as error:
             raise LiveError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def _issued(pair: Any, name: str) -> tuple[int, int]:
+    """Number and serial of an identity."""
+    if not isinstance(pair, list) or len(pair) != 2:
+        raise ValueError(f"{name}: a number and a serial are to stand there")
+    return plain.whole(pair, 0, NUMBER_MAX, name), plain.whole(pair, 1, SERIAL_MAX, name)
 
 
 def read_list(path: Path) -> bytes:

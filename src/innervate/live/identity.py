@@ -7,14 +7,13 @@ that is lost is put out by a list of serial numbers that the authority signs.
 from __future__ import annotations
 
 import struct
-import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
 from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
 
-from innervate.live import noise
+from innervate.live import noise, plain
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 
@@ -27,6 +26,7 @@ FOR_NODES = b"innervate certificate 1\0"
 FOR_REVOKED = b"innervate revoked 1\0"
 NONE = "not a node's identity; make one with: innervate live enrol"
 SIZES = {"authority": 32, "shared": 32, "exchange": 32, "signing": 32, "signature": 64}
+NUMBERS = {"number": 65_534, "serial": 2**32 - 1}  # the greatest
 
 
 class Identity(NamedTuple):
@@ -150,23 +150,25 @@ def load(path: Path, number: int) -> Identity:
         LiveError: the file cannot be read, is none, or is another node's.
     """
     try:
-        raw = tomllib.loads(machine().read_text(path))
+        text = machine().read_text(path)
     except OSError as error:
         raise LiveError(f"{path}: the identity cannot be read: {error.strerror}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError):
-        raise LiveError(
-            f"{path}: not a node's identity; make one with: innervate live enrol"
-        ) from None
+    except ValueError:
+        raise LiveError(f"{path}: {NONE}") from None
     try:
-        keys = {name: bytes.fromhex(raw[name]) for name in SIZES}
-        own = Identity(number=raw["number"], serial=raw["serial"], **keys)
-        if any(len(keys[name]) != size for name, size in SIZES.items()):
-            raise ValueError("a key is too short")
-        check(own.authority, own.number, noise.public(own.exchange), own.certificate)
-    except (KeyError, TypeError, ValueError, struct.error):
+        raw = plain.read(text)
+        found, serial = (plain.whole(raw, name, most) for name, most in NUMBERS.items())
+        keys = {name: plain.octets(raw, name, size) for name, size in SIZES.items()}
+        own = Identity(found, serial, **keys)
+        public = noise.public(own.exchange)
+    except ValueError as error:
+        raise LiveError(f"{path}: {error}; {NONE}") from None
+    try:
+        check(own.authority, own.number, public, own.certificate)
+    except ValueError:
         raise LiveError(
-            f"{path}: not a node's identity; make one with: innervate live enrol"
+            f"{path}: signature: not authority's on number, serial, exchange and signing; {NONE}"
         ) from None
     if own.number != number:
-        raise LiveError(f"{path}: the identity of node {own.number}, but this is node {number}")
+        raise LiveError(f"{path}: the identity of node {own.number}, but number = {number} here")
     return own

@@ -6,7 +6,8 @@ import asyncio
 import os
 import signal
 from collections import Counter
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,8 @@ class Process:
         self.server = status.Server(where, self._answer, self.node.callers, is_ours)
         self.page: MetricsPage | None = None
         if loaded.table.metrics is not None:
-            self.page = MetricsPage(address(loaded.table.metrics, str(loaded.path)), self.node)
+            at = address(loaded.table.metrics, f"{loaded.path}: metrics")
+            self.page = MetricsPage(at, self.node)
         self.ending = asyncio.Event()
         self.failed = False
         self.node.ended = self._ended
@@ -77,11 +79,13 @@ class Process:
             loop.add_signal_handler(number, self.ending.set)
         loop.add_signal_handler(signal.SIGHUP, self.reload)
         hangup.let_in()
-        await self.server.start()
+        with self._named():
+            await self.server.start()
         try:
-            if self.page is not None:
-                await self.page.start()
-            await self.node.start()
+            with self._named():
+                if self.page is not None:
+                    await self.page.start()
+                await self.node.start()
             self._say(self._ready())
             self._look()
             while not self.ending.is_set():
@@ -98,6 +102,15 @@ class Process:
                 await self.page.stop()
             await self.server.stop()
         self._look()
+
+    @contextmanager
+    def _named(self) -> Iterator[None]:
+        """What cannot be done as a node's file says names the file."""
+        try:
+            yield
+        except LiveError as error:
+            where = f"{self.loaded.path}: "
+            raise LiveError(where + str(error).removeprefix(where)) from None
 
     def _ended(self, why: str) -> None:
         """What runs the protocol is gone: so is the node, for all to see."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
+import ipaddress
+import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -11,12 +12,13 @@ from typing import Annotated, Any, ClassVar, Literal
 import msgspec
 from msgspec import Meta, Struct, field
 
+from innervate.live import plain
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.network import find, networks
 
 PYTHON, C, AUTO = "python", "c", "auto"  # what runs a node's protocol
-Port = Annotated[int, Meta(ge=1, le=65_535)]
+HOST = re.compile(r"(?=.{1,253}$)[A-Za-z0-9_]([A-Za-z0-9_-]{0,62}\.)*[A-Za-z0-9_-]{1,63}")
 
 
 class UdpTable(Struct, frozen=True, forbid_unknown_fields=True, tag="udp", tag_field="kind"):
@@ -139,13 +141,15 @@ def load(path: Path) -> Loaded:
         LiveError: it cannot be read or says something that cannot be; one line.
     """
     try:
-        raw = tomllib.loads(machine().read_text(path))
+        text = machine().read_text(path)
     except OSError as error:
         raise LiveError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
+    except ValueError:
         raise LiveError(f"{path}: is not UTF-8 text; name a node file") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise LiveError(f"{path}: not valid TOML: {error}") from None
+    try:
+        raw = plain.read(text)
+    except ValueError as error:
+        raise LiveError(f"{path}: {error}") from None
     return Loaded(parse(raw, str(path), path.parent), path)
 
 
@@ -155,6 +159,8 @@ def parse(raw: dict[str, Any], where: str = "node", folder: Path = Path()) -> No
     Raises:
         LiveError: see load().
     """
+    if wrong := plain.fault(raw):
+        raise LiveError(f"{where}: {wrong}")
     kind = raw.get("kind")
     network = find(kind, folder, Path()) if isinstance(kind, str) else None
     if network is None:
@@ -164,22 +170,33 @@ def parse(raw: dict[str, Any], where: str = "node", folder: Path = Path()) -> No
     try:
         table: NodeFile = msgspec.convert(raw, file)
     except msgspec.ValidationError as error:
-        raise LiveError(f"{where}: {_readable(str(error))}") from None
+        raise LiveError(f"{where}: {_readable(str(error), raw)}") from None
     table.check(where)
     return table
 
 
 def address(text: str, where: str) -> tuple[str, int]:
-    """An address and port from "127.0.0.1:4700".
+    """An address and port from "127.0.0.1:4700"; the host can be a name.
 
     Raises:
         LiveError: it is none.
     """
     host, _, port = text.rpartition(":")
     digits = port.isascii() and port.isdigit() and len(port) < 6
-    if not host or not digits or int(port) > 65_535:
-        raise LiveError(f'{where}: "{text}" is no address; write one like "127.0.0.1:4700"')
+    if not _is_host(host) or not digits or int(port) > 65_535:
+        raise LiveError(
+            f'{where}: "{plain.shown(text)}" is no address; write one like "127.0.0.1:4700"'
+        )
     return host, int(port)
+
+
+def _is_host(host: str) -> bool:
+    """True if it is an address of IPv4 or can be a name, of which the last part is no number."""
+    try:
+        ipaddress.IPv4Address(host)
+    except ValueError:
+        return bool(HOST.fullmatch(host)) and not host.rpartition(".")[2].isdigit()
+    return True
 
 
 def _refuse_unknown(raw: dict[str, Any], known: tuple[str, ...], where: str) -> None:
@@ -194,7 +211,14 @@ def _refuse_unknown(raw: dict[str, Any], known: tuple[str, ...], where: str) -> 
         raise LiveError(f'{where}: unknown key "{key}"{hint}')
 
 
-def _readable(message: str) -> str:
-    """A validator's message with the key first."""
+def _readable(message: str, raw: dict[str, Any]) -> str:
+    """A validator's message with the key first, also where it does not say which of a table's."""
     what, _, place = message.partition(" - at `$.")
-    return f"{place.rstrip('`')}: {what}" if place else message
+    name, rest, _ = place.rstrip("`").partition("[...]")
+    if rest:
+        table: Any = raw
+        for part in name.split("."):
+            table = table[part]
+        kind = str if "Expected `str`" in what else int
+        name += f".{next(key for key, value in table.items() if type(value) is not kind)}"
+    return f"{name}: {what}" if name else message

@@ -104,7 +104,7 @@ def medium_of(loaded: Loaded) -> tuple[str, tuple[str, int]]:
     if table.keys is not None:
         raise LiveError(f"{where}: frames on a shared channel are not sealed; remove [keys]")
     text = table.link[0].address
-    return text, address(text, where)
+    return text, address(text, f"{where}: link.0.address")
 
 
 def build(loaded: Loaded) -> DeclaredAirNode:

@@ -42,13 +42,18 @@ class State:
         self.failed = 0
         self._errno = 0
         self._written_at: int | None = None
-        if path is None or not machine().exists(path):
-            return
+        try:
+            if path is None or not machine().exists(path):
+                return
+        except OSError as error:
+            raise LiveError(f"{path}: cannot be looked at: {error.strerror}") from None
         try:
             kept = json.loads(machine().read_text(path))
             self.epoch = _whole(kept["epoch"], 255)
             self.revoked = bytes.fromhex(kept.get("revoked", ""))
             self.numbers = _whole(kept.get("numbers", -1), 65_535, -1)
+        except IsADirectoryError:
+            raise LiveError(f"{path}: is a folder, and no node's state; name a file") from None
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             raise LiveError(f"{path}: not a node's state; remove it") from None
         self.fresh = False

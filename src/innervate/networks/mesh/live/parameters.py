@@ -41,17 +41,17 @@ def fence_parameters(found: list[list[tuple[int, int]]], where: str = "") -> dic
         raise LiveError(f"{where}: the fence has {count} corners, more than {POINTS}")
     px, py, after = ([0] * POINTS for _ in range(3))
     at = 0
-    for ring in rings:
+    names = ["fence.polygon", *(f"fence.holes.{i}" for i in range(len(rings) - 1))]
+    for name, ring in zip(names, rings, strict=True):
         for i, (x, y) in enumerate(ring):
             if not (0 <= x <= EXTENT_MAX and 0 <= y <= EXTENT_MAX):
                 raise LiveError(
-                    f"{where}: fence corner [{x}, {y}] must be 0 to {EXTENT_MAX} units both ways; "
-                    "raise protocol.unit_cm, or move the origin"
+                    f"{where}: {name}: corner [{x}, {y}] must be 0 to {EXTENT_MAX} units both "
+                    "ways; raise protocol.unit_cm, or move the origin"
                 )
             px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
         at += len(ring)
-    holes = (f"fence.holes.{i}" for i in range(len(rings) - 1))
-    if wrong := mistake(rings, ["fence.polygon", *holes]):
+    if wrong := mistake(rings, names):
         raise LiveError(f"{where}: {wrong[1]}")
     return {"points": count, "px": px, "py": py, "after": after}
 
