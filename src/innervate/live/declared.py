@@ -183,6 +183,14 @@ class DeclaredNode(LiveNode):
         super().__init__(name, stack, links, sealer, state)
         self.requests["input"] = self._asked_for_input
 
+    def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
+        if attempt <= 0:
+            super()._transmit(port, frame, 0, flags)
+            return
+        assert self.engine is not None  # on cables the number is a delay, us
+        paths = [self.paths[i] for i in self.stack.ports_of(port, frame, 0) or ()]
+        self.engine.later(attempt, partial(self._leave, paths, self.stack.encode(frame)))
+
     def _receive(self, path: Path, data: bytes) -> None:
         super()._receive(path, data)
         while self.engine is not None and self.stack.more():

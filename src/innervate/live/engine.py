@@ -158,6 +158,10 @@ class Engine:
             handler(at & MASK30)
             self._drain(at)
 
+    def later(self, wait_us: int, do: Callable[[], None]) -> None:
+        """Have something done in so long, unless the node is off by then."""
+        self._loop.call_later(wait_us / 1e6, lambda: None if self._stopped else do())
+
     def input(self, kind: int, item: Any) -> None:
         """Hand something down for the node's own user."""
         now = self._clock()

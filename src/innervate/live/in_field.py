@@ -56,7 +56,7 @@ class FieldNode(DeclaredNode):
     _unended = 0  # own frames that it was not told of yet
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
-        super()._transmit(port, frame, attempt, flags)
+        super()._transmit(port, frame, 0, flags)  # attempts are for a medium access
         self._unended += not flags & URGENT
 
     def _settled(self) -> None:

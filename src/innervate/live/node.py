@@ -198,9 +198,13 @@ class LiveNode:
             self._tell(at_ns, path.port, False, data, why)
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
-        bare = self.stack.encode(frame)
         ports = self.stack.ports_of(port, frame, attempt)
-        for path in self.paths if ports is None else [self.paths[i] for i in ports]:
+        paths = self.paths if ports is None else [self.paths[i] for i in ports]
+        self._leave(paths, self.stack.encode(frame))
+
+    def _leave(self, paths: list[Path], bare: bytes) -> None:
+        """A frame goes out, sealed if there are keys."""
+        for path in paths:
             at_ns = machine().time_ns() if self.taps else 0  # before anybody can have received it
             data = bare if self.sealer is None else self.sealer.close(path, bare)
             if data is not None and not path.cut:

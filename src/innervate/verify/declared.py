@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from operator import itemgetter
 from types import ModuleType
 from typing import Any
 
@@ -29,7 +30,7 @@ from innervate.network import Network
 from innervate.topology import PORTS, Graph, TopologyError, free_graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
 from innervate.verify.errors import VerifyError
-from innervate.verify.states import Budget, Node, State, Step
+from innervate.verify.states import Budget, Node, State, Step, is_still, most_frames, sent
 from innervate.verify.tally import Tally
 from innervate.verify.telling import ERRORS, story_of, where
 from innervate.verify.values import ahead, put, values, with_one
@@ -39,6 +40,7 @@ IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left
 STATES = 20_000
 BATCH = 500
 COLD, MEMORY_LOST = 0, 1
+NEVER = 1 << 62  # us
 GRAPHS = {
     "pair": "n0.E-n1.W n1.E-n0.W",
     "line": "n0.E-n1.W n1.E-n2.W",
@@ -108,8 +110,7 @@ class Net:
                     gone = state._replace(ways=rest, left=(loss - 1, restart, given))
                     yield self.missed(gone, end)
         for number, node in enumerate(state.nodes):
-            if node.timers:
-                yield self.fire(state, number)
+            yield from self.due(state, number)
             if node.down:
                 yield self.leave(state, number, 1)
                 if loss:
@@ -177,6 +178,25 @@ class Net:
         what = f"{self.graph.label(number)} is given {kind}"
         return Step(f"{what} by its user", after, broken)
 
+    def due(self, state: State, number: int) -> Iterator[Step]:
+        """What a node's own time brings next: a timer, or that a delayed frame leaves."""
+        node = state.nodes[number]
+        timer = min((wait for _, wait in node.timers), default=NEVER)
+        late = node.late[0][0] if node.late else NEVER
+        if timer <= late and node.timers:
+            yield self.fire(state, number)
+        if late <= timer and node.late:
+            yield self.depart(state, number)
+
+    def depart(self, state: State, number: int) -> Step:
+        """A frame that was sent with a delay leaves; so far its node's time passes."""
+        node = state.nodes[number]
+        (wait, port, frame), *rest = node.late
+        put(self.node, self.fields.STATE, node.values)
+        after = self.kept(state, number, max(wait, 0), node._replace(late=tuple(rest)))
+        after = sent(after, self.ends_of(number, port), frame)
+        return Step(f"A delayed frame of {self.graph.label(number)} leaves", after, "")
+
     def fire(self, state: State, number: int) -> Step:
         """The next timer of a node fires; so far its time passes."""
         node = state.nodes[number]
@@ -190,10 +210,9 @@ class Net:
         """A frame that a node handed down goes out, or the channel stayed busy; it is told."""
         first, *rest = state.nodes[number].down
         node = state.nodes[number]._replace(down=tuple(rest))
-        ways = list(state.ways)
-        for end in self.ends_of(number, 0) if ok else ():
-            ways[end] = (*ways[end], first)
-        gone = state._replace(nodes=with_one(state.nodes, number, node), ways=tuple(ways))
+        gone = state._replace(nodes=with_one(state.nodes, number, node))
+        if ok:
+            gone = sent(gone, self.ends_of(number, 0), first)
         after, broken = self.call(gone, number, 0, self.do.on_sent, ok)
         what = "goes out" if ok else "finds the channel busy and is given up"
         return Step(f"A frame of {self.graph.label(number)} {what}", after, broken)
@@ -210,7 +229,8 @@ class Net:
         except ERRORS as error:
             return state, f"a handler cannot go on: {where(error)}"
         broken = self.broken(now)
-        timers, ways, down = dict(node.timers), list(state.ways), list(node.down)
+        timers, ways = dict(node.timers), list(state.ways)
+        down, late = list(node.down), list(node.late)
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
             if act.kind == SET_TIMER:
                 timers[act.a] = ahead(act.b)
@@ -219,19 +239,21 @@ class Net:
                 if not 0 <= act.a < PORTS:
                     broken = broken or "a frame is sent on a port that no node has"
                     continue
-                sent = values(frame, self.fields.FRAME, {"made_at"})
+                one = values(frame, self.fields.FRAME, {"made_at"})
                 if self.is_told and not act.c & URGENT:
-                    down.append(sent)
+                    down.append(one)
+                    continue
+                if act.b > 0 and not self.on_air:
+                    late.append((now + act.b, act.a, one))
                     continue
                 for end in self.ends_of(number, act.a):
-                    ways[end] = (*ways[end], sent)
+                    ways[end] = (*ways[end], one)
             elif act.kind not in (DELIVER, REPORT):
                 broken = broken or "the outbox holds what is no action"
-        return self.kept(state, number, now, timers, down)._replace(ways=tuple(ways)), broken
+        asked = Node((), tuple(timers.items()), tuple(down), tuple(late))
+        return self.kept(state, number, now, asked)._replace(ways=tuple(ways)), broken
 
-    def kept(
-        self, state: State, number: int, now: int, timers: dict[int, int], down: list[Any]
-    ) -> State:
+    def kept(self, state: State, number: int, now: int, asked: Node) -> State:
         """The state with a node as it is now, its moments relative to its time."""
         for name in self.clocks:
             at = getattr(self.node, name)
@@ -241,8 +263,9 @@ class Net:
                 else (at - now) & MASK30
             )
             setattr(self.node, name, own)
-        waits = tuple(sorted((timer, at - now) for timer, at in timers.items()))
-        node = Node(values(self.node, self.fields.STATE), waits, tuple(down))
+        waits = tuple(sorted((timer, at - now) for timer, at in asked.timers))
+        late = sorted(((at - now, port, one) for at, port, one in asked.late), key=itemgetter(0))
+        node = Node(values(self.node, self.fields.STATE), waits, asked.down, tuple(late))
         return state._replace(nodes=with_one(state.nodes, number, node))
 
     def broken_of_all(self, state: State) -> str:
@@ -273,11 +296,6 @@ def _first_broken(rules: dict[str, Any], *given: Any) -> str:
     return ""
 
 
-def is_still(state: State) -> bool:
-    """True if nothing happens any more by itself."""
-    return not any(state.ways) and not any(node.timers or node.down for node in state.nodes)
-
-
 def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tuple[Tally, Story]:
     """All states breadth first, up to `limit`; the story has no title if nothing is broken."""
     started, tally = wall_s(), Tally(states=1)
@@ -299,8 +317,7 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
                 if broken := step.broken or (net.of_all and net.broken_of_all(step.state)):
                     told = story_of(net, before, state, broken, step)
                     return replace(tally, ended="broken"), told
-                down = (node.down for node in step.state.nodes)
-                if max(map(len, (*step.state.ways, *down))) > IN_FLIGHT:
+                if most_frames(step.state) > IN_FLIGHT:
                     tally.left_out += 1
                 elif step.state not in before:
                     before[step.state] = (state, step.words)

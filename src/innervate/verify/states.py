@@ -19,11 +19,13 @@ class Node(NamedTuple):
     """A node: its state's values, its timers as (timer, us from its time on), frames handed down.
 
     Frames are handed down, and leave later, where the protocol is told when they do (`on_sent`).
+    `late` are those that were sent with a delay: us from its time on, port, frame.
     """
 
     values: tuple[Any, ...]
     timers: tuple[tuple[int, int], ...]
     down: tuple[tuple[Any, ...], ...] = ()
+    late: tuple[tuple[int, int, tuple[Any, ...]], ...] = ()
 
 
 class State(NamedTuple):
@@ -40,3 +42,22 @@ class Step(NamedTuple):
     words: str
     state: State
     broken: str
+
+
+def sent(state: State, ends: list[int], frame: tuple[Any, ...]) -> State:
+    """The state after a frame has left at some ends of cables."""
+    ways = list(state.ways)
+    for end in ends:
+        ways[end] = (*ways[end], frame)
+    return state._replace(ways=tuple(ways))
+
+
+def is_still(state: State) -> bool:
+    """True if nothing happens any more by itself."""
+    return not any(state.ways) and not any(any(node[1:]) for node in state.nodes)
+
+
+def most_frames(state: State) -> int:
+    """How many frames are where most are: on a cable one way, or held back in a node."""
+    held = (frames for node in state.nodes for frames in (node.down, node.late))
+    return max(map(len, (*state.ways, *held)))

@@ -255,17 +255,43 @@ def test_a_cable_is_down_while_it_is_cut_or_a_node_at_it_is_off(steps, is_down):
     assert down(cable) == is_down
 
 
-def test_a_frame_sent_later_leaves_then_unless_its_node_is_off():
-    for state, left in ((ALIVE, [(500 + LATENCY_US, 1, 0)]), (DEAD, []), (0, [])):
-        cable = Cable()
-        wires.delay(cable.world, stack, END, cable.frame(1), 500, 0)
+@pytest.mark.parametrize("flags", [0, URGENT, FLUSH, URGENT | FLUSH])
+@pytest.mark.parametrize(("steps", "is_sent"), [
+    ([], True), ([KILL], False), ([RESTART], False), ([KILL, REVIVE], False),
+    ([RESTART, RESTART], False), ([CUT, RESTORE], True),
+])  # fmt: skip
+def test_a_frame_sent_later_leaves_then_unless_its_node_has_lost_its_memory(steps, is_sent, flags):
+    cable, block = Cable(), URGENT_BLOCK if flags & URGENT else 0
+    with mock.patch.object(
+        commands.calls, "switch_on", lambda world, do, node, *_: on(world, node)
+    ):
+        wires.delay(cable.world, stack, END, cable.frame(1), 500, flags)
         assert cable.flights() == [(500, 1, DELAYED)]
-        slot = cable.world.run[0].pool_slots
-        wheel.remove(cable.world.wheel, slot)
-        cable.world.alive[0] = state
-        wires.release(cable.world, stack, slot, 500)
-        assert cable.flights() == left
-        assert cable.world.wheel.pool[wheel.FREE] == slot  # for another frame
+        for step in steps:
+            cable.obey(step, node=-1 if step in (CUT, RESTORE) else 0)
+    slot = cable.world.run[0].pool_slots
+    wheel.remove(cable.world.wheel, slot)
+    wires.release(cable.world, stack, slot, 500)
+    assert cable.flights() == ([(500 + LATENCY_US, 1, block)] if is_sent else [])
+    assert cable.counts(block) == ({"sent": 1} if is_sent else {"sent": 1, "off": 1})
+    assert cable.world.wheel.pool[wheel.FREE] == slot  # for another frame
+
+
+def on(world, node):
+    """Stands for switching a node on: its handlers would send frames of their own."""
+    world.alive[node] = ALIVE
+
+
+def test_a_frame_sent_later_at_a_free_port_is_none():
+    cable = Cable()
+    free = next(end for end in range(8) if cable.world.ends[end].peer < 0)
+    wires.delay(cable.world, stack, free, cable.frame(1), 500, 0)
+    cable.obey(RESTART, node=free // 4)
+    slot = cable.world.run[0].pool_slots
+    wheel.remove(cable.world.wheel, slot)
+    before = list(cable.world.counters)
+    wires.release(cable.world, stack, slot, 500)
+    assert cable.world.counters == before
 
 
 def test_latencies_drawn_for_every_frame_lie_in_their_range_both_ends_included():

@@ -48,6 +48,10 @@ REASONS = {
 DOWN = 1
 LOSSY = 2
 
+# `epoch` of a delayed frame: its flags, and from this bit on in which life its node sent it.
+LIFE = 3
+FLAGS = (1 << LIFE) - 1
+
 
 def tap_out(world, do, end, frame, time, why):
     """Keep a copy of a frame that leaves at this end of a cable, if a capture is wanted."""
@@ -185,7 +189,8 @@ def lands(world, do, event, node, frame, time):
 
 
 def drop_queue(world, do, end, time):
-    """Empty a port's queue because its node is switched off."""
+    """Empty a port's queue because its node loses its memory, and with it what is delayed."""
+    world.buffers[end].life += 1
     give_up_queue(world, do, end, time, LOST_OFF, taps.OFF)
 
 
@@ -206,16 +211,22 @@ def delay(world, do, end, frame, at, flags):
     event = world.wheel.events[slot]
     event.kind = DELAYED
     event.target = end
-    event.epoch = flags
+    event.epoch = (flags & FLAGS) | (world.buffers[end].life << LIFE)
     do.copy_frame(world.frames[slot - world.run[0].pool_slots], frame)
     queue.insert(world.wheel, slot, at)
 
 
 def release(world, do, slot, time):
-    """The delay of a frame is over; a node that went off meanwhile sends nothing."""
+    """The delay of a frame is over; a node that has lost its memory since does not send it."""
     event = world.wheel.events[slot]
     end = event.target
+    flags = event.epoch & FLAGS
     frame = world.frames[slot - world.run[0].pool_slots]
-    if world.alive[min(end >> 2, world.run[0].cells)] == ALIVE:
-        transmit(world, do, end, frame, time, event.epoch)
+    if event.epoch >> LIFE == world.buffers[end].life:
+        transmit(world, do, end, frame, time, flags)
+    elif world.ends[end].peer >= 0:
+        block = URGENT_BLOCK if flags & URGENT else do.block_of(frame)
+        world.counters[SENT + block] += 1
+        world.counters[LOST_OFF + block] += 1
+        tap_out(world, do, end, frame, time, taps.OFF)
     queue.give(world.wheel, slot)

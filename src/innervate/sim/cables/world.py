@@ -15,7 +15,7 @@ from innervate.sim.tables import Out
 # All fields have 32 bits, those named in WIDE and all of RUN 64.
 EVENT = ("time", "bucket", "kind", "target", "epoch")
 END = ("busy", "peer", "latency", "impaired", "waiting")
-BUFFER = ("loss", "lose", "queued", "first")
+BUFFER = ("loss", "lose", "queued", "first", "life")
 CLOCK = ("offset", "rate")
 START = ("inverse", "source", "phase")
 RUN = (
