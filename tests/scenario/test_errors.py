@@ -84,13 +84,14 @@ def test_mistakes_in_a_file(small: str, old: str, new: str, message: str) -> Non
 
 SETS = [
     ("protocol.kk=3", '[protocol] has no key "kk"; did you mean "k"?'),
-    ("protocol.k=x", 'protocol.k must be a whole number of missed beacons, 1 to 100, not "x"'),
+    ("protocol.k=x", 'protocol.k must be a whole number of missed beacons, 1 to 94, not "x"'),
     ("protocol.k=31", "protocol.k = 31 cannot be kept: a missed beacon is counted in 1/840; use 30 "
      "or 32"),
     ("protocol.k=66", "protocol.k = 66 cannot be kept: a missed beacon is counted in 1/840; use 65 "
      "or 70"),
-    ("protocol.k=100", "protocol.k = 100 cannot be kept: a missed beacon is counted in 1/840; use "
-     "94"),
+    ("protocol.k=93", "protocol.k = 93 cannot be kept: a missed beacon is counted in 1/840; use 84 "
+     "or 94"),
+    ("protocol.k=95", "protocol.k must be at most 94, not 95"),
     ("protocol.k", "write it as key=value, like protocol.k=3"),
     ("..=3", "a key is names with dots between, like protocol.k"),
     ("event.3.at_s=3", "event is a list of 1; its elements are addressed by number from 0, and 1 "

@@ -7,6 +7,7 @@ import pytest
 from innervate.networks.skin.protocol import constants as skin_const
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.scenario import plan as skin_plan
+from innervate.networks.skin.scenario.model import K_MAX
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.scenario.script import DELIVER, DETECT, DRAW, STEP_LOSE, TICK
 from innervate.scenario import ScenarioError, load, loads, plan
@@ -79,7 +80,7 @@ KEPT = [*range(1, 31), 32, 33, 34, 35, 37, 39, 40, 42, 45, 47, 50, 53, 56, 60, 6
 
 
 def test_a_port_is_broken_after_k_misses_or_k_is_refused() -> None:
-    for k in range(1, 101):
+    for k in range(1, K_MAX + 1):
         text = f'kind = "skin"\nprotocol.k = {k}\n[[link]]\na = "n"\nb = "pc"\n'
         if k in KEPT:
             made = params(text)
@@ -88,6 +89,13 @@ def test_a_port_is_broken_after_k_misses_or_k_is_refused() -> None:
         else:
             with pytest.raises(ScenarioError, match=f"protocol.k = {k} cannot be kept"):
                 params(text)
+
+
+def test_the_greatest_k_that_is_named_works_and_none_beyond_it_is_taken() -> None:
+    assert max(KEPT) == K_MAX
+    text = f'kind = "skin"\nprotocol.k = {K_MAX + 1}\n[[link]]\na = "n"\nb = "pc"\n'
+    with pytest.raises(ScenarioError, match=f"protocol.k must be at most {K_MAX}, not {K_MAX + 1}"):
+        params(text)
 
 
 @pytest.mark.parametrize(("rate_hz", "period_us"), [

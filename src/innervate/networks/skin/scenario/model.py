@@ -22,6 +22,7 @@ Coordinate = Annotated[
     float, Meta(ge=-1_000_000, le=1_000_000, description="a number of mm within +-1000000")
 ]
 At = Annotated[float, keys.number("seconds", 0, limit=1_000_000)]
+K_MAX = 94  # of 1 to 100 the greatest that can be counted in parts of 840 (see rules.py)
 Hop = Annotated[int, keys.whole("microseconds", 1, 100_000)]
 CellName = Annotated[str | None, Meta(description='a name like "n1"')]
 LinkEnd = Annotated[str, Meta(max_length=200, description='an end like "n1.2", "n1" or "pc.0"')]
@@ -102,7 +103,7 @@ class ProtocolTable(keys.Table, frozen=True, kw_only=True):
     updates: Literal["periodic", "triggered", "wave"] = "wave"
     beacon_hz: Annotated[float, keys.number("beacons per second", 1, 1000)] = 250.0
     # Which of these can be counted, rules.py says.
-    k: Annotated[int, keys.whole("missed beacons", 1, 100)] | None = None
+    k: Annotated[int, keys.whole("missed beacons", 1, K_MAX)] | None = None
     r_f: Penalty | None = None
     r_r: Penalty | None = None
     m: Annotated[int, keys.whole("periods", 1, 255)] | None = None

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil
 
-from innervate.networks.skin.scenario.model import CommandTable, EventTable, SkinScenario
+from innervate.networks.skin.scenario.model import K_MAX, CommandTable, EventTable, SkinScenario
 from innervate.scenario.actions.cables import TABLE
 from innervate.scenario.events import Finding, exact, in_order, in_time, own_keys, refuse
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
 
 ONE = 840  # p_f = 1 in fixed point [skin 5]
-K_MAX = 100
 # sim/clocks.py computes time_us * drift_ppm * 2^30 / 10^6 in 64 bits with sign: duration_s *
 # drift_ppm has to stay below 2^33, less a little for the rounding of the drift.
 DRIFT_S_PPM = 8_000_000_000
