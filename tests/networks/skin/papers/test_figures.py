@@ -3,7 +3,7 @@ import re
 import numpy as np
 import pytest
 
-from innervate.networks.skin.papers import FIGURES, experiment
+from innervate.networks.skin.papers import FIGURES, eq3, experiment
 from innervate.papers.experiment import FAILS, HOLDS, reading
 from innervate.plot import style
 from tests.fixtures.papers import CHEAP
@@ -35,6 +35,20 @@ def test_bars_and_lines_lie_within_their_panels(name):
     with style.house():
         figure = experiment(name).draw(results.of(name), True)
     assert [found for ax in figure.axes for found in beyond(ax)] == []
+
+
+@pytest.mark.parametrize("moved", [(True, False), (True,), (False,), ()])
+def test_a_legend_names_only_clocks_that_have_points(moved):
+    """With few seeds a free running skin may never move, and the first setup of none."""
+    got = results.of("eq3")
+    for setup in eq3.SETUPS:
+        for flag in eq3.CLOCKS:
+            if flag not in moved or setup == eq3.SETUPS[0]:
+                got[eq3.sizes(setup, flag, True).key] = [[]]
+    with style.house():
+        ax = experiment("eq3").draw(got, True).axes[2]
+    named = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert named == [*(eq3.CLOCKS[flag] for flag in eq3.CLOCKS if flag in moved), "2 max(H)"]
 
 
 def beyond(ax):

@@ -150,11 +150,12 @@ def _signs(ax: Axes, got: Measured) -> None:
 
 def _sizes(ax: Axes, got: Measured) -> None:
     for i, (lock_step, name) in enumerate(CLOCKS.items()):
+        drawn = [place for place, setup in enumerate(SETUPS) if moves_of(got, setup, lock_step)]
         for place, setup in enumerate(SETUPS):
             found = moves_of(got, setup, lock_step)
             x = np.full(len(found), place + 0.15 * (2 * i - 1))
             ax.plot(x, found, style.MARKERS[i], color=style.SERIES[i], ms=2.6,
-                    label=name if place == 0 else None)  # fmt: skip
+                    label=name if [place] == drawn[:1] else None)  # fmt: skip
     for place, setup in enumerate(SETUPS):
         ax.plot([place - 0.4, place + 0.4], [2 * skin(setup)[0]] * 2, color=style.BLACK, lw=1.2,
                 label="2 max(H)" if place == 0 else None)  # fmt: skip
