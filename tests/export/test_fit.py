@@ -11,6 +11,7 @@ from innervate import scenario
 from innervate.cli import app, capturing
 from innervate.export import capture, fitting, measure, pcapng
 from innervate.export.errors import ExportError
+from innervate.export.measured import Way
 from innervate.live import status, tap
 from innervate.networks.mesh.export import statuslog
 from tests.live.net import Mesh, until
@@ -62,6 +63,25 @@ def test_a_mesh_comes_back_with_its_links_and_their_quality(tmp_path):
     assert same, lines
     [apart] = [line for line in lines if line.startswith("quality")]
     assert float(apart.split()[-3]) < 0.1, apart
+
+
+def test_ways_that_only_one_side_has_are_named_or_counted(tmp_path):
+    found = captured(RING | {"duration_s": 8}, tmp_path / "ring.pcapng")
+    text = fitting.scenario_of(found, "ring")
+    ways = [(a, b) for a in range(5) for b in range(5) if (a - b) % 5 in (2, 3)]
+    found.ways[ways[0]] = Way(got=1, lost=10)  # 9.1 %
+    found.ways[ways[1]] = Way(got=1, lost=9)  # 10 %
+    del found.ways[1, 2]
+    lines, same = fitting.check(text, found)
+    assert not same
+    assert lines[1:4] == [
+        "  captured only: n0 to n3", "  simulated only: n1 to n2",
+        "  not named, as less than 10 % of their frames came in: 1 captured only, 0 simulated only",
+    ]  # fmt: skip
+    found.ways.update((way, Way(got=1)) for way in ways)
+    lines, _ = fitting.check(text, found)
+    assert lines[1].endswith("n3 to n1 and 2 more")
+    assert not any("not named" in line for line in lines)
 
 
 def test_a_skin_comes_back_with_its_cables_latency_and_loss(tmp_path):

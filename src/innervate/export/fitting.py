@@ -63,7 +63,12 @@ def check(text: str, found: Measured) -> tuple[list[str], bool]:
     missing = _clear(captured, simulated), _clear(simulated, captured)
     for word, keys in zip(("captured only", "simulated only"), missing, strict=True):
         if keys:
-            lines.append(f"  {word}: {', '.join(f'{a} to {b}' for a, b in keys[:SHOWN])}")
+            lines.append(f"  {word}: {_named(keys)}")
+    faint = (len(captured) - len(shared) - len(missing[0]),
+             len(simulated) - len(shared) - len(missing[1]))  # fmt: skip
+    if any(faint):
+        lines.append(f"  not named, as less than {100 * CLEAR:.0f} % of their frames came in: "
+                     f"{faint[0]} captured only, {faint[1]} simulated only")  # fmt: skip
     if apart:
         lines.append(f"quality: apart by {sum(apart) / len(apart):.4f} on average, "
                      f"{max(apart):.4f} at most")  # fmt: skip
@@ -73,6 +78,12 @@ def check(text: str, found: Measured) -> tuple[list[str], bool]:
             continue
         lines.append(f"delay, {what}: {low:.0f} to {high:.0f} us, median {middle:.0f} us")
     return lines, not any(missing)
+
+
+def _named(keys: list[Any]) -> str:
+    """The first of some ways, and how many more there are."""
+    more = f" and {len(keys) - SHOWN} more" if len(keys) > SHOWN else ""
+    return ", ".join(f"{a} to {b}" for a, b in keys[:SHOWN]) + more
 
 
 def _clear(ways: dict[tuple[str, str], Way], others: dict[tuple[str, str], Way]) -> list[Any]:
