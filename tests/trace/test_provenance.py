@@ -1,10 +1,13 @@
 import hashlib
 import json
+import os
 import platform
 import subprocess
 from pathlib import Path
 
 import innervate
+from innervate.kernel.clock import wall_s
+from innervate.trace import provenance as provenance_module
 from innervate.trace.provenance import checkout, provenance
 
 
@@ -33,6 +36,19 @@ def test_outside_a_checkout(tmp_path):
     assert checkout(tmp_path) == (None, None)
     (tmp_path / ".git").mkdir()
     assert checkout(tmp_path) == (None, None)
+
+
+def test_a_git_that_hangs_is_not_waited_for(tmp_path, monkeypatch):
+    (tmp_path / ".git").mkdir()
+    slow = tmp_path / "bin" / "git"
+    slow.parent.mkdir()
+    slow.write_text("#!/bin/sh\nexec sleep 60\n")
+    slow.chmod(0o755)
+    monkeypatch.setenv("PATH", str(slow.parent), prepend=os.pathsep)
+    monkeypatch.setattr(provenance_module, "PATIENCE_S", 0.2)
+    begun = wall_s()
+    assert checkout(tmp_path) == (None, None)
+    assert wall_s() - begun < 30
 
 
 def test_in_a_checkout(tmp_path):

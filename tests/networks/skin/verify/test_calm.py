@@ -142,3 +142,37 @@ def test_where_there_is_no_room_for_what_comes_before_a_round_it_is_counted(said
 
     assert len(kept(Tiny(), played)[0]) == 1
     assert seen == [counted]
+
+
+@pytest.mark.parametrize(("said", "drawn", "counted"), [
+    (s.TOO_MANY, 0, 3), (s.TOO_MANY, 1, 6), (0, s.TOO_MANY, 0), (0, 0, 0),
+])  # fmt: skip
+def test_where_there_is_no_room_for_what_a_round_sends_it_is_counted(said, drawn, counted):
+    """Once for each order in which the nodes have their turns, and each choice that was drawn."""
+
+    def turn(world, node, choice):
+        world.found[0], world.found[1] = said, drawn
+        return True
+
+    play = fair.build(Of(settle=None, turn=turn, is_settled=lambda world: True))[-1]
+    seen = []
+
+    def played(world, source, target, _):
+        play(world._replace(orders=[0, 1] * 3), source, target, 2, 0, 1)
+        seen.extend((target.run[s.LEFT_OUT], target.run[s.GENERATED]))
+
+    assert kept(Tiny(), played) == ([], [])
+    assert seen == [counted, 6 if drawn else 3]
+
+
+def test_what_rounds_had_no_room_for_is_added_up():
+    def play(world, source, target, nodes, begin, end):
+        target.run[s.LEFT_OUT], target.run[s.GENERATED], target.run[s.NEXT] = 3, 5, -end
+
+    tiny = Tiny()
+    given = np.frombuffer(tiny.twin.row(), np.int64).copy()
+    source = fair._Rows(tiny.model, True, given.data, len(given), 1 << 20)
+    player = fair._Player(tiny.model, True, play, fair.Fair(bound=9), None)
+    for _ in range(2):
+        player.round(source, player.nodes)
+    assert (player.fair.left_out, player.fair.played) == (6, 10)
