@@ -47,6 +47,11 @@ def test_how_a_disaster_ended(arrivals, delivered, said):
     assert none.endswith("; no packet was delivered in 3 s.")
 
 
+def test_a_disaster_to_which_nobody_came_in_time():
+    summary = {"offered": 0, "delivered": 0, "duration_slots": None, "duration_s": 0.1}
+    assert report._disaster(run_of(), summary) == "No robot started in the 0.1 s of the run."
+
+
 @pytest.mark.parametrize(("delivered", "median", "end"), [
     (0, None, "none was delivered."), (3, None, "60 % of them were delivered."),
     (5, 10, "100 % of them were delivered, half within 10 slots (2.08 ms)."),

@@ -44,9 +44,10 @@ def delivery(run: Any, bins: int = charts.BINS) -> Figure:
 
 def alarms(run: Any) -> Figure:
     """Each crossing: when the monitor knew, and how far the robot was out by then."""
-    found = [crossing for crossing in all_crossings(run.result) if crossing.accepted_us != NEVER]
+    crossings = all_crossings(run.result)
+    found = [crossing for crossing in crossings if crossing.accepted_us != NEVER]
     if not found:
-        return nothing("no alarm reached the monitor")
+        return nothing("no alarm reached the monitor" if crossings else "no fence was crossed")
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
     for flooded, marker, colour in ((False, "o", style.BLUE), (True, "^", style.ORANGE)):
         part = [crossing for crossing in found if crossing.flooded == flooded]

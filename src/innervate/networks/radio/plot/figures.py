@@ -44,7 +44,7 @@ def throughput(run: Any, bins: int = charts.BINS) -> Figure:
     filled, mean = charts.filled(run.result, bins), radio.throughput(run.result)
     if mean is None:
         return chart(filled)
-    head = f"share of the time, %; dashed: throughput {mean:.3f}"
+    head = f"Share of the time, %; dashed: throughput {mean:.3f}"
     return chart(replace(filled, head=head, even=100 * mean))
 
 

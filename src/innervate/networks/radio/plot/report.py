@@ -66,6 +66,8 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
 
 def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
     plan, offered = result.plan, summary["offered"]
+    if not offered:
+        return f"No robot started in the {summary['duration_s']:g} s of the run."
     starts = [times[0] for times in plan.arrivals if len(times)]
     spread_us = max(starts, default=0) - min(starts, default=0)
     how = f"within {words.ms_words(spread_us / 1e3)}" if spread_us else "at once"
@@ -143,7 +145,9 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         found.append((told.slots_words(delay["p99"]), "99 % were delivered within that"))
     if summary["jain"] is not None:
         found.append((f"{summary['jain']:.3f}", "Jain's index of fairness, 1 is even"))
-    found.append((f"{summary['collisions']:,}", "collisions"))
+    found.append(
+        (f"{summary['collisions']:,}", "collision" if summary["collisions"] == 1 else "collisions")
+    )
     return [*found, page.took(summary, result.ended_us / 1e6)]
 
 
