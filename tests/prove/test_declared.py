@@ -44,9 +44,9 @@ KNOWN = {
 }  # fmt: skip
 
 
-def network(most=9, many=0, **protocol):
+def network(most=9, many=0, least=0, **protocol):
     """A network whose state has an x up to `most`, and which may send so many reports."""
-    fields = Of(STATE=(("x", 0, 0, most, "", ""),), FRAME=(("y", 0, 3, 7, "", ""),),
+    fields = Of(STATE=(("x", 0, least, most, "", ""),), FRAME=(("y", 0, 3, 7, "", ""),),
                 PARAMS=(("z", 0, 0, many, "", ""),))  # fmt: skip
     return Of(name="some", protocol=Of(TIMERS=2, **protocol), fields=fields,
               has=lambda part: part in ("protocol", "fields"))  # fmt: skip
@@ -71,6 +71,14 @@ RANGE = "every field stays in its declared range: state.x"
 def test_what_a_handler_is_told_may_be_anything_up_to_its_most(handler, told, most):
     assert refuted(network(most), handler, *told) == []
     assert refuted(network(most - 1), handler, *told) == [RANGE]
+
+
+@pytest.mark.parametrize(("handler", "told"), [
+    ("on_start", ["cause"]), ("on_frame", ["port", "frame"]), ("on_timer", [0]),
+    ("on_input", ["kind", "frame"]), ("at_any_time", ["cause"]),
+])  # fmt: skip
+def test_what_a_handler_is_told_may_be_nothing(handler, told):
+    assert refuted(network(MASK30, least=1), handler, *told) == [RANGE]
 
 
 def test_an_outbox_holds_what_its_protocol_says_or_sixteen():

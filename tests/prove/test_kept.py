@@ -15,7 +15,7 @@ from innervate.prove.theory import source
 @pytest.fixture
 def asked(tmp_path, monkeypatch):
     """Ask whether something holds; how often it had to be proved for that."""
-    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path / "not" / "yet"))
     protocol = tmp_path / "protocol"
     protocol.mkdir()
     (protocol / "cell.py").write_text("one")
