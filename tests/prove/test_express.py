@@ -126,7 +126,9 @@ def played(name, n=(0, 9), m=(0, 9)):
     )
     for part in s.parts["parts"]:
         stage.store.update(unknowns(stage.terms, part))
-    told = stage.record("told", tuple((one, 0, *ends, "", "") for one, ends in (("n", n), ("m", m))))
+    told = stage.record(
+        "told", tuple((one, 0, *ends, "", "") for one, ends in (("n", n), ("m", m)))
+    )
     numbers = [stage.store[told, one, None] for one in "nm"]
     return stage.play(name, name, [s, *numbers, stage.out], [])
 

@@ -109,8 +109,8 @@ def test_the_greatest_mesh_that_may_be_drawn():
         "failover": fuzz.FAILOVERS[-1], "discovery": "each", "retry": False, "reliable": False,
         "tables": False, "activation": False, "mtu": 127, "transmissions": 3,
     }  # fmt: skip
-    assert found["flow"] == 4 * [{"from": 23, "to": "all", "every_s": 2.0, "count": 60,
-                                  "bytes": 27, "start_s": 0.8 * end_s, "priority": False}]  # fmt: skip
+    flow = {"from": 23, "to": "all", "every_s": 2.0, "count": 60, "bytes": 27}
+    assert found["flow"] == 4 * [flow | {"start_s": 0.8 * end_s, "priority": False}]
     assert found["event"] == 10 * [{"at_s": 0.95 * end_s, "action": action, **at}]
     assert not {"fence", "robot"} & found.keys()
 
