@@ -4,7 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from innervate.networks.mesh.verify import command
+from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.command import _extent
+from innervate.verify.errors import VerifyError
 from innervate.verify.explore import Tally
 
 
@@ -24,3 +27,64 @@ def test_how_far_it_came_and_from_where_it_settles(fair, beats, said):
     model = SimpleNamespace(beats=beats)
     found = SimpleNamespace(fair=fair, longest=7, model=model, tally=tally)
     assert _extent(SimpleNamespace(found=found)) == said
+
+
+LINE = ((0, 1), (1, 2))
+
+
+def options(**keys):
+    usual = {"rule": "", "graph": "all", "budget": "", "liveness": True, "states": 0, "walks": 0,
+             "seed": None, "memory": "2G"}  # fmt: skip
+    return SimpleNamespace(**usual | keys)
+
+
+@pytest.mark.parametrize(("rule", "failovers"), [
+    ("", ("search", "graph")), ("all", mesh_model.FAILOVERS), ("random", ("random",)),
+])  # fmt: skip
+def test_what_is_asked_for_is_explored(rule, failovers):
+    found = command.wanted_of(options(rule=rule))
+    assert (found.failovers, found.links, found.seed, found.live) == (failovers, (), 1, True)
+    found = command.wanted_of(options(rule=rule, graph="line", budget="deaths=2", liveness=False,
+                                      states=5, walks=6, seed=7))  # fmt: skip
+    assert (found.failovers, found.links, found.seed, found.live) == (failovers, LINE, 7, False)
+    assert (found.budget, found.states, found.walks) == ("deaths=2", 5, 6)
+
+
+@pytest.mark.parametrize("keys", [{"rule": "paper"}, {"budget": "dead=1"}, {"graph": "0-1"}])
+def test_what_cannot_be_asked_is_refused_at_once(keys):
+    with pytest.raises(VerifyError):
+        command.wanted_of(options(**keys))
+
+
+@pytest.mark.parametrize(("ended", "told", "unit", "rest"), [
+    ("complete", None, "states", ["all states"]), ("walked", None, "walks ", None),
+    ("broken", SimpleNamespace(sentences=["It goes."], lines=lambda: ["1. It goes."]), "states",
+     ["BROKEN after 1 events", "1. It goes."]),
+])  # fmt: skip
+def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, rest, monkeypatch):
+    tally = Tally(states=1234, generated=5678, depth=9, wall_s=2.34, ended=ended)
+    model = SimpleNamespace(beats=0, links=LINE, failover="search")
+    found = SimpleNamespace(fair=0, longest=7, model=model, tally=tally)
+    case = SimpleNamespace(found=found, name="a message", story=told, as_dict=lambda: {"it": 1})
+    seen = []
+
+    def run(name, model, wanted, progress):
+        seen.append(progress("0-1", tally))
+        return case
+
+    monkeypatch.setattr(command.cases, "run", run)
+    said = []
+    made = command._explore("a message", model, None, lambda *told: said.append(told) or True)
+    head, *lines = made.lines
+    assert head.startswith(
+        f"{'0-1 1-2':24} search    a message        1,234 {unit}      5,678 succ"
+    )
+    assert "successors     2.3 s" in head
+    if rest is not None:
+        assert head.endswith(rest[0])
+        assert [line.strip() for line in lines] == rest[1:]
+    assert (made.record, made.story, made.stem) == ({"it": 1}, told, "mesh-counterexample")
+    assert (made.is_broken, made.is_complete) == (told is not None, ended == "complete")
+    assert (made.play is None) == (told is None)
+    assert seen == [True]
+    assert said == [(f"0-1: 1,234 states, 9 events deep, {tally.per_s / 1e3:.0f} k/s", 0, 0)]

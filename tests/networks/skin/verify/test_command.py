@@ -155,3 +155,56 @@ def test_unreduced_nothing_is_forgotten_and_no_more_ticks_are_had_than_it_took(
 ):
     model = cases._whole(found(ticks=ticks, depth=depth))
     assert (model.lean, model.budget.ticks) == (False, wanted)
+
+
+def asked(**keys):
+    usual = {"rule": "", "updates": "all", "graph": "all", "cells": None, "budget": "",
+             "prompt": False, "liveness": True, "starts": 0, "walks": 0, "seed": None,
+             "states": 0, "memory": "2G", "plain": False, "reduce": True}  # fmt: skip
+    return [one.args for one in command.explorations(None, SimpleNamespace(**usual | keys))]
+
+
+def test_skins_of_up_to_two_cells_are_explored_under_the_rule_that_keeps_its_promise():
+    found = asked()
+    assert {model.rule for model, *_ in found} == {"feasible"}
+    assert {model.graph.cells for model, *_ in found} == {1, 2}
+    assert {model.updates for model, *_ in found} == set(cases.UPDATES)
+    assert [first for *_, first in found] == [True] + [False] * (len(found) - 1)
+    assert {wanted.seed for _, wanted, _ in found} == {1}
+    found = asked(rule="paper", graph="pair", seed=7, cells=1)
+    assert {(model.rule, wanted.seed) for model, wanted, _ in found} == {("paper", 7)}
+    assert {model.graph.cells for model, *_ in asked(cells=1)} == {1}
+
+
+@pytest.mark.parametrize(("plain", "is_compiled", "is_told"), [
+    (False, False, True), (True, False, False), (False, True, False), (True, True, False),
+])  # fmt: skip
+def test_who_has_to_wait_for_the_compiler_is_told_so(plain, is_compiled, is_told, monkeypatch):
+    monkeypatch.setattr(command.compilation, "is_compiled", lambda name: is_compiled)
+    assert bool(command.notice(SimpleNamespace(plain=plain))) == is_told
+
+
+@pytest.mark.parametrize("plain", [True, False])
+@pytest.mark.parametrize(("first", "words", "is_told"), [
+    (True, "what is left out", True), (False, "what is left out", False), (True, "", False),
+])  # fmt: skip
+def test_what_is_left_out_is_told_once(plain, first, words, is_told, monkeypatch):
+    marked, made, said = [], case(), []
+
+    def run(model, wanted, progress):
+        assert progress("pair", tally(depth=3))
+        return made
+
+    monkeypatch.setattr(command.cases, "run", run)
+    monkeypatch.setattr(command.compilation, "mark_compiled", marked.append)
+    monkeypatch.setattr(command.assumptions, "told", lambda model: words)
+    monkeypatch.setattr(command.assumptions, "grounds", lambda model: {"page": "it"})
+    found = command._explore(made.model, Wanted(plain=plain), first,
+                             lambda *told: said.append(told) or True)  # fmt: skip
+    assert found.lines == [*command._lines(made), *([words] if is_told else [])]
+    assert found.record == made.as_dict() | {"reductions": {"page": "it"}}
+    assert (found.is_broken, found.is_complete, found.story) == (False, True, None)
+    assert marked == ([] if plain else [command.COMPILED])
+    ((text, *rest),) = said
+    assert text.startswith("pair: 7 states, 3 events deep, ")
+    assert rest == [0, 0]
