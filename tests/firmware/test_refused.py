@@ -95,6 +95,11 @@ REFUSED = {
     "values = state.list\nstate.r[0] = bump(state.list, 0) + values[0]": ORDER,
     "state.r[0] = bumps(state) + state.list[0]": ORDER,
     "state.r[0] = state.a < counts(state)": ORDER,
+    "state.list[counts(state)] = state.a": ORDER,
+    "state.list[counts(state)] = counts(state)": ORDER,
+    "state.list[state.a] = counts(state)": ORDER,
+    "state.list[state.a] += counts(state)": ORDER,
+    "state.list[counts(state)] += 1": "an index that changes things stands in C twice",
     "state.r[0] = 1 < sets(state) < 3": "a chain of comparisons with a call that changes things",
     "state.r[0] = now or timer": "`or` of what is not 0 or 1 is not in the dialect",
     "state.r[0] = state.p or now or timer": "`or` of what is not 0 or 1 is not in the dialect",
@@ -125,6 +130,10 @@ REFUSED = {
     "state.a = state + 1": "state is no number",
     "state.a = 1 if state else 2": "is no number",
     "state.a = not state": "is no number",
+    "state.a += state.list": "state.list is no number",
+    "state.a += nothing(state)": "nothing(state) is no number",
+    "state.a /= 2": "div is not in the dialect",
+    "a += 1": "is no constant and was given no value",
     "state.a = state < 1": "is no number",
     "state.a = unknown + 1": "is no constant and was given no value",
     "del state.a": "delete is not in the dialect",
@@ -134,7 +143,9 @@ TAKEN = (
     "state.r[0] = sets(state) + looks(state)", "state.a = 2147483647", "state.a = -2147483647",
     "state.r[0] = 1 < looks(state) < 3", "state.r[0] = state.p or now < 3 or timer",
     "state.r[0] = state.a + looks(state)", "state.r[0] = bump(state.list, 0) + state.a",
-    "state.r[0] = bumps(state) + looks(state)",
+    "state.r[0] = bumps(state) + looks(state)", "state.list[now] = counts(state)",
+    "state.list[counts(state)] = now", "state.a += looks(state)", "state.a = counts(state)",
+    "state.list[looks(state)] += 1",
 )  # fmt: skip
 
 

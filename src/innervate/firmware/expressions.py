@@ -83,7 +83,7 @@ class Expressions:
         return isinstance(node, ast.Name) and self.made.types[node.id].what == "out"
 
     def _BinOp(self, node: ast.BinOp) -> tuple[str, int]:
-        self._check_order(node, node.left, node.right)
+        self.check_order(node, node.left, node.right)
         if isinstance(node.op, ast.FloorDiv | ast.Mod):
             facts = [self.facts.of(self.made, part).natural for part in (node.left, node.right)]
             if not all(facts):
@@ -140,7 +140,7 @@ class Expressions:
 
     def _Compare(self, node: ast.Compare) -> tuple[str, int]:
         parts = [node.left, *node.comparators]
-        self._check_order(node, *parts)
+        self.check_order(node, *parts)
         if len(parts) > 2 and any(self.is_impure(part) for part in parts):
             raise self.made.refuse(node, "a chain of comparisons with a call that changes things")
         texts = [
@@ -151,7 +151,7 @@ class Expressions:
 
     def _Call(self, node: ast.Call) -> tuple[str, int]:
         assert isinstance(node.func, ast.Name)
-        self._check_order(node, *node.args)
+        self.check_order(node, *node.args)
         texts = [self.text(argument) for argument in node.args]
         if node in self.made.calls:
             return f"{self.prefix}_{self.made.calls[node].name}({', '.join(texts)})", ATOM
@@ -171,7 +171,7 @@ class Expressions:
             for inner in ast.walk(node)
         )
 
-    def _check_order(self, node: ast.expr, *parts: ast.expr) -> None:
+    def check_order(self, node: ast.AST, *parts: ast.expr) -> None:
         """Python goes from left to right; C goes as it likes.
 
         Raises:

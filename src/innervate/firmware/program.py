@@ -203,8 +203,8 @@ class _Reader:
         self._store(node.targets[0], self.type(node.value), node.value)
 
     def _AugAssign(self, node: ast.AugAssign) -> None:
-        self.type(node.value)
-        self._store(node.target, INT, node.value)
+        whole = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)
+        self._store(node.target, self.type(whole), node.value)
 
     def _store(self, target: ast.expr, kind: Type, value: ast.expr) -> None:
         made = self.made

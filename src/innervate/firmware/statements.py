@@ -89,6 +89,8 @@ class Statements:
             self._put(depth, f"{left} = {self.expressions.text(node.value)};",
                       self._note(node.end_lineno or 0))  # fmt: skip
             return
+        if isinstance(target, ast.Subscript):
+            self.expressions.check_order(node, target.slice, node.value)
         text = self.expressions.text(target)
         self._put(depth, f"{text} = {self._narrowed(target, node.value)};",
                   self._note(node.end_lineno or 0))  # fmt: skip
@@ -96,6 +98,8 @@ class Statements:
     def _AugAssign(self, node: ast.AugAssign, depth: int, _declared: list[str]) -> None:
         whole = ast.BinOp(node.target, node.op, node.value)
         ast.copy_location(whole, node)
+        if isinstance(node.target, ast.Subscript) and self.expressions.is_impure(node.target.slice):
+            raise self.made.refuse(node, "an index that changes things stands in C twice")
         target, note = self.expressions.text(node.target), self._note(node.end_lineno or 0)
         if isinstance(node.target, ast.Name) and type(node.op) in BINARY:
             self._put(depth, f"{target} = {self.expressions.text(whole)};", note)

@@ -393,3 +393,7 @@ def test_any_tlvs_will_do(tlvs, first):
     found = said(packet(first, *(pack("BB", kind, len(body)) + body for kind, body in tlvs)))
     if isinstance(found, list):
         in_range(found)
+
+
+def test_4_packets_are_looked_for_at_the_port_that_babel_has():
+    assert Packets.wireshark == ("udp.port", 6696)

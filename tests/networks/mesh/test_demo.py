@@ -5,6 +5,7 @@ from types import SimpleNamespace as Of
 
 import pytest
 
+from innervate.firmware.records import layout, records_of
 from innervate.live.errors import LiveError
 from innervate.networks.mesh import board, demo, run
 from innervate.networks.mesh import frames as wire
@@ -88,9 +89,11 @@ def test_a_piece_is_shown_as_one_where_it_can_be_one(kind, flags, dest, seq, is_
 
 
 def test_frames_of_one_call_have_room_for_all_acks_and_a_whole_queue():
-    """An ack of nine names and a packet of the longest, as structs in C: both end on 4 bytes."""
-    assert fields.GATHERED * 38 + (fields.QUEUE + 2) * 152 == board.FRAME_BYTES
-    assert board.node(32).frame_bytes == board.FRAME_BYTES > fields.QUEUE * const.MTU
+    """Each up to where its body is in use: of an ack to a gathered frame nothing of it is."""
+    places, whole = layout(records_of(board.node(32))["frame"])
+    ack, *_ = dict(places)["body"]
+    assert fields.GATHERED * ack + (fields.QUEUE + 2) * whole == board.FRAME_BYTES
+    assert board.node(32).frame_bytes == board.FRAME_BYTES
 
 
 @pytest.mark.parametrize(
