@@ -93,6 +93,12 @@ def test_records_lie_as_c_lays_them_out():
             assert length == fields[name].length
 
 
+@pytest.mark.parametrize(("most", "size"), [(255, 3), (65_535, 6), (70_000, 12)])
+def test_a_record_is_filled_up_to_the_widest_of_its_numbers_alone(most, size):
+    fields = fields_of((("x", 0, 0, most, "", ""), ("y", 2, 0, most, "", "")))
+    assert layout(fields)[1] == ctypes.sizeof(struct_of(fields)) == size
+
+
 def test_a_struct_in_c_says_ranges_and_meanings():
     text = struct_text("some_t", ordered(), "what it is").splitlines()
     assert text[0] == "/** what it is */"

@@ -7,6 +7,7 @@ import pytest
 from innervate.networks.mesh.verify import cases, fuzz
 from innervate.networks.mesh.verify.cases import MeshCase, MeshWanted
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel, parse
+from tests.networks.draws import Draw
 
 LINE = ((0, 1), (1, 2))
 SHORT = (("e2e_tries", 1), ("transmissions", 1))
@@ -52,30 +53,6 @@ def test_a_case_is_recorded_with_what_came_of_it(story):
         "wall_s": 1.235, "ended": "complete", "fair": 2, "longest": 6,
         "broken": story and "loops", "story": story and ["it goes round"],
     }  # fmt: skip
-
-
-class Draw:
-    """Draws the least or the most, and whatever is as likely as its share says."""
-
-    def __init__(self, place, share):
-        self.place, self.share = place, share
-
-    def randint(self, low, high):
-        return (low, high)[self.place]
-
-    uniform = randint
-
-    def randrange(self, count):
-        return (0, count - 1)[self.place]
-
-    def choice(self, values):
-        return values[-self.place]
-
-    def sample(self, values, count):
-        return list(values)[:count] if not self.place else list(values)[-count:][::-1]
-
-    def random(self):
-        return self.share
 
 
 def test_the_least_mesh_that_may_be_drawn():

@@ -141,6 +141,20 @@ def test_frames_and_acks_that_a_story_loses_are_counted_from_their_message_on():
     assert losses(offer, air, offer, lost) == [Loss(2, 1, 2, const.DATA, 0)]
 
 
+@pytest.mark.parametrize(("nth", "found"), [
+    (0, [(9, "cut"), (21, "restore")]), (1, [(29, "cut"), (41, "restore")]), (2, None),
+])  # fmt: skip
+def test_a_loss_is_a_cut_for_as_long_as_its_frame_is_on_the_air(nth, found, monkeypatch):
+    told = []
+    monkeypatch.setattr(replay, "_deaths", lambda story: [])
+    monkeypatch.setattr(replay, "_losses", lambda story: [Loss(1, 2, 1, const.DATA, nth)])
+    monkeypatch.setattr(replay, "_transmissions", lambda text, loss: [(10, 20), (30, 40)])
+    monkeypatch.setattr(replay, "_text", lambda story, seed, events: told.append(events) or "it")
+    assert replay._timed(None, 1) == ("it" if found else "")
+    wanted = [(at, f'action = "{what}"\nlink = [1, 2]') for at, what in found or ()]
+    assert told[-1] == wanted
+
+
 ASKS = "gateways that are asked"
 
 

@@ -81,14 +81,13 @@ class Asked:
 
     def __init__(self, depth: int) -> None:
         self.depth = depth
-        self.script: tuple[int, ...] = ()
-        self.ranges: list[int] = []
-        self.own = rng.seeded(1)
-        self.answer = 0
+        self.begin(())
 
     def begin(self, script: tuple[int, ...]) -> None:
         """A run begins whose first draws are those of `script`."""
-        self.script, self.ranges, self.own, self.answer = script, [], rng.seeded(7), 0
+        self.script = script
+        self.ranges: list[int] = []
+        self.own, self.answer = rng.seeded(7), 0
 
     def ask(self, count: int) -> None:
         """A station draws out of so many."""
