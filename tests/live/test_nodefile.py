@@ -2,7 +2,7 @@ import pytest
 
 from innervate.live.build import build, keys_of
 from innervate.live.errors import LiveError
-from innervate.live.nodefile import load
+from innervate.live.nodefile import address, load
 from innervate.networks.mesh.live.parameters import IP, mesh_parameters
 from innervate.networks.mesh.protocol.fields import PARAMS
 from innervate.networks.mesh.scenario.profiles import IP as SCENARIOS_IP
@@ -141,3 +141,26 @@ def test_no_node_is_made_that_could_not_send(tmp_path, text, says):
     with pytest.raises(LiveError) as caught:
         build(load(path))
     assert says in str(caught.value)
+
+
+@pytest.mark.parametrize("host", [
+    "h", "n1", "my_host", "3com.example", "node-1.lan", "host.", "r\u00e4uber.local", "a." * 126,
+])  # fmt: skip
+def test_a_host_can_have_a_name(host):
+    assert address(f"{host}:4700", "here") == (host, 4700)
+
+
+@pytest.mark.parametrize("host", [
+    "", ".", "-h", "a..b", "a b", "*", "127.1", "1.2.3.4.", "256.0.0.1", "x" * 64, "a." * 128,
+    "\u00e4" * 60,
+])  # fmt: skip
+def test_what_cannot_be_a_name_is_no_host(host):
+    with pytest.raises(LiveError, match="is no address"):
+        address(f"{host}:4700", "here")
+
+
+def test_tables_too_deep_for_whoever_reads_them_are_refused(tmp_path):
+    for text in (f"a{'.a' * 3_000} = 1", f"[a{'.a' * 3_000}]"):
+        with pytest.raises(LiveError, match="nested too deeply") as caught:
+            load(write(tmp_path, text))
+        assert len(str(caught.value)) < 300

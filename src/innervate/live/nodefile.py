@@ -18,7 +18,8 @@ from innervate.live.machine import machine
 from innervate.network import find, networks
 
 PYTHON, C, AUTO = "python", "c", "auto"  # what runs a node's protocol
-HOST = re.compile(r"(?=.{1,253}$)[A-Za-z0-9_]([A-Za-z0-9_-]{0,62}\.)*[A-Za-z0-9_-]{1,63}")
+HOST = re.compile(r"\w[\w-]*(\.\w[\w-]*)*\.?")
+HOST_MAX = 253  # characters
 
 
 class UdpTable(Struct, frozen=True, forbid_unknown_fields=True, tag="udp", tag_field="kind"):
@@ -191,11 +192,18 @@ def address(text: str, where: str) -> tuple[str, int]:
 
 
 def _is_host(host: str) -> bool:
-    """True if it is an address of IPv4 or can be a name, of which the last part is no number."""
+    """True if it is an address of IPv4 or can be a name, of which the last part is no number.
+
+    A name can have one letter, others than ASCII's, and a point at its end.
+    """
     try:
         ipaddress.IPv4Address(host)
     except ValueError:
-        return bool(HOST.fullmatch(host)) and not host.rpartition(".")[2].isdigit()
+        is_name = HOST.fullmatch(host) and not host.rstrip(".").rpartition(".")[2].isdigit()
+        try:
+            return bool(is_name) and len(host.encode("idna").rstrip(b".")) <= HOST_MAX
+        except UnicodeError:  # a part that is too long
+            return False
     return True
 
 

@@ -11,6 +11,7 @@ from typing import Any
 TEXT_MAX = 1024  # characters
 WHOLE_MAX = 2**63 - 1
 DIGITS_MAX = 4300  # what Python reads of a decimal number
+DEPTH_MAX = 100  # tables and lists in each other
 SHOWN = 60  # characters of a text that is wrong
 _LONG = re.compile(rf"[0-9](?:_?[0-9]){{{DIGITS_MAX},}}")
 _DEEP = re.compile(r"[\[{](?:\s*[\[{]){99}")
@@ -111,16 +112,18 @@ def shown(text: str) -> str:
     return whole if len(whole) <= SHOWN else whole[:SHOWN] + "..."
 
 
-def _faults(value: Any, name: str) -> Iterator[str]:
-    if isinstance(value, dict):
+def _faults(value: Any, name: str, depth: int = 0) -> Iterator[str]:
+    if depth > DEPTH_MAX:
+        yield f"{shown(name)}: lists or tables are nested too deeply"
+    elif isinstance(value, dict):
         for key, one in value.items():
             below = f"{name}.{shown(key)}" if name else shown(key)
             if _wrong_text(key):
                 yield f"{below}: a name that {_wrong_text(key)}"
-            yield from _faults(one, below)
+            yield from _faults(one, below, depth + 1)
     elif isinstance(value, list):
         for i, one in enumerate(value):
-            yield from _faults(one, f"{name}.{i}")
+            yield from _faults(one, f"{name}.{i}", depth + 1)
     elif isinstance(value, str) and _wrong_text(value):
         yield f"{name}: a text that {_wrong_text(value)}"
     elif isinstance(value, int) and abs(value) > WHOLE_MAX:

@@ -193,6 +193,8 @@ def test_whatever_changes_the_carrier_it_is_told(at_once, carriers, event, told)
         ([("cut", 20), ("restore", 21)], 0, {"cut": 1}),
         ([("cut", -20), ("restore", 21)], 0, {"cut": 1}),
         ([("cut", -20), ("restore", -10)], 1, {}),
+        ([("restore", 20)], 1, {}),
+        ([("cut", -20), ("restore", -10), ("restore", 20)], 1, {}),
     ],
 )
 def test_a_frame_whose_link_was_cut_in_the_middle_is_lost(at_once, event, arrived, lost):
