@@ -225,6 +225,8 @@ def set_power(world, i, j):
 def set_cut(world, i, j, cut):
     """No signal between two nodes, either way, or again as before; what is half over is lost."""
     nodes = world.run[0].nodes
+    if world.cut[i * nodes + j] == cut:
+        return
     world.cut[i * nodes + j] = cut
     world.cut[j * nodes + i] = cut
     set_power(world, i, j)
