@@ -243,10 +243,11 @@ class Net:
                 if self.is_told and not act.c & URGENT:
                     down.append(one)
                     continue
-                if act.b > 0 and not self.on_air:
+                ends = self.ends_of(number, act.a)
+                if act.b > 0 and ends and not self.on_air:
                     late.append((now + act.b, act.a, one))
                     continue
-                for end in self.ends_of(number, act.a):
+                for end in ends:
                     ways[end] = (*ways[end], one)
             elif act.kind not in (DELIVER, REPORT):
                 broken = broken or "the outbox holds what is no action"

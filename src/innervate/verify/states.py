@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -58,6 +59,8 @@ def is_still(state: State) -> bool:
 
 
 def most_frames(state: State) -> int:
-    """How many frames are where most are: on a cable one way, or held back in a node."""
-    held = (frames for node in state.nodes for frames in (node.down, node.late))
-    return max(map(len, (*state.ways, *held)))
+    """How many frames are where most are: on a cable one way, or held back for one in a node."""
+    down = (len(node.down) for node in state.nodes)
+    late = (count for node in state.nodes
+            for count in Counter(port for _, port, _ in node.late).values())  # fmt: skip
+    return max(*map(len, state.ways), *down, *late)

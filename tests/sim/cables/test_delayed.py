@@ -11,7 +11,7 @@ from innervate.live.nodefile import load
 from innervate.network import networks
 from innervate.topology import free_graph
 from innervate.verify.declared import Net
-from innervate.verify.states import Budget
+from innervate.verify.states import Budget, most_frames
 from tests.live import time_by_hand
 from tests.own import alone, made
 
@@ -113,6 +113,24 @@ def test_explored_it_leaves_at_its_time_or_is_lost_with_the_memory_of_its_node(l
     assert left.nodes[0].timers == ((0, 500_000 - DELAY_US),)  # so much of its time has passed
     assert after["n0 loses its memory"].nodes[0].late == ()
     assert after["n1 loses its memory"].nodes[0].late == begun.nodes[0].late
+
+
+def test_an_exploration_holds_back_as_many_frames_for_a_port_as_it_has_on_a_cable(late):
+    """Frames for ports without a cable leave nowhere, whenever."""
+    path = late.folder / "protocol.py"
+    once = f"out.frame[send(out, 0, {DELAY_US}, 0)].kind = 1"
+    each = f"for p in range(12):\n            out.frame[send(out, p % 4, {DELAY_US}, 0)].kind = 1"
+    path.write_text(
+        path.read_text().replace(once, each).replace("TIMERS = 1", "TIMERS = 1\nOUTBOX = 16")
+    )
+    scenarios.load(late.scenario)
+    network = networks()["late"]
+    net = Net(
+        network.protocol, network.fields, free_graph([("n0.W", "n1.W"), ("n0.E", "n1.E")]), {}
+    )
+    begun = net.begin(Budget()).state
+    assert [port for _, port, _ in begun.nodes[0].late] == [0, 1, 0, 1, 0, 1]
+    assert most_frames(begun) == 3
 
 
 NODE = """
