@@ -380,6 +380,13 @@ def test_what_any_network_breaks_is_told(words):
     assert started(*good.pop("actions", ()), **good).broken == ""
 
 
+def test_a_handler_that_knows_no_such_name_cannot_go_on():
+    def fail():
+        return unheard_of  # noqa: F821
+
+    assert started(also=fail).broken.startswith("a handler cannot go on: tests/verify/")
+
+
 def test_a_timer_below_0_is_none_either():
     assert started((TIMER, -1, 5, 0)).broken == "there is no such timer"
     assert started((SEND, -1, 0, 0)).broken == "a frame is sent on a port that no node has"

@@ -13,7 +13,7 @@ from innervate.verify.states import State, Step
 
 MOST = 6  # changes that a sentence has room for
 DRAWN = {"rng", "choice", "asked"}  # a generator's own
-ERRORS = (ArithmeticError, AttributeError, IndexError, TypeError, ValueError)
+ERRORS = (ArithmeticError, AttributeError, IndexError, NameError, TypeError, ValueError)
 
 Before = Mapping[State, tuple[State, str] | None]
 
