@@ -64,6 +64,21 @@ def test_a_second_link_that_cannot_be_opened_closes_the_first(tmp_path, kind):
     asyncio.run(main())
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_node_that_is_started_twice_runs_on(tmp_path, kind):
+    async def main():
+        async with build(write(tmp_path, KINDS[kind], free_port(), free_port())) as node:
+            engine = node.engine
+            with pytest.raises(LiveError, match="n0: runs already; stop it"):
+                await node.start()
+            assert (node.idle(), node.engine, node.paths[0].up) == ("", engine, True)
+            await node.stop()
+            await node.start()
+            assert node.idle() == ""
+
+    asyncio.run(main())
+
+
 def test_a_misplaced_state_file_closes_all_links(tmp_path):
     port = free_port()
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from innervate.live.engine import Engine, Stack, clock_us
+from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path
 from innervate.live.machine import machine
 from innervate.live.nodefile import PYTHON, C
@@ -82,8 +83,10 @@ class LiveNode:
         """Open the links and switch the protocol on; where that fails all is closed again.
 
         Raises:
-            LiveError: a link cannot be opened as written.
+            LiveError: a link cannot be opened as written, or the node runs already; it goes on.
         """
+        if not self.idle():
+            raise LiveError(f"{self.name}: runs already; stop it before it is started anew")
         self.is_stopped = False
         try:
             await self._switch_on()
