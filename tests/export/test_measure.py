@@ -175,7 +175,9 @@ CHECKED = [
         BOTH.format(2, 3, 2), "  simulated only: n2 to n0",
         "quality: apart by 0.0000 on average, 0.0000 at most"]),
     ([(0, 1, 90), (1, 0, 70), (2, 0, 9)], True, [
-        BOTH.format(2, 3, 2), "quality: apart by 0.0000 on average, 0.0000 at most"]),
+        BOTH.format(2, 3, 2),
+        "  not named, as less than 10 % of their frames came in: 0 captured only, 1 simulated only",
+        "quality: apart by 0.0000 on average, 0.0000 at most"]),
     ([(0, 1, 90), (1, 0, 0)], False, [
         BOTH.format(2, 1, 1), "  captured only: n1 to n0",
         "quality: apart by 0.0000 on average, 0.0000 at most"]),
