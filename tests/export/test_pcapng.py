@@ -119,6 +119,27 @@ def test_big_endian_captures_with_microseconds_are_read(tmp_path):
     assert (packet.time_ns, packet.data, packet.flags) == (5_000_001_000, b"abc", 0)
 
 
+@pytest.mark.parametrize(("code", "ticks", "time_ns"), [
+    (6, 3_000_005, 3_000_005_000), (9, 7, 7), (3, 7, 7_000_000), (0x80, 7, 7_000_000_000),
+    (0x81, 7, 3_500_000_000), (0x8A, 1536, 1_500_000_000),
+])  # fmt: skip
+def test_ticks_are_powers_of_ten_or_of_two(tmp_path, code, ticks, time_ns):
+    import struct
+
+    def block(kind, body):
+        total = struct.pack("<I", 12 + len(body))
+        return struct.pack("<I", kind) + total + body + total
+
+    resolution = struct.pack("<HHBxxxHH", pcapng.RESOLUTION, 1, code, 0, 0)
+    path = written(
+        tmp_path,
+        block(pcapng.SECTION, struct.pack("<IHHq", pcapng.MAGIC, 1, 0, -1))
+        + block(pcapng.INTERFACE, struct.pack("<HHI", 148, 0, 0) + resolution)
+        + block(pcapng.PACKET, struct.pack("<IIIII", 0, 0, ticks, 0, 0)),
+    )
+    assert [packet.time_ns for packet in Capture(path).packets()] == [time_ns]
+
+
 def fail_in_the_middle(file):
     file.write(b"half")
     raise KeyError

@@ -156,6 +156,7 @@ def test_what_is_not_there_or_does_not_fit_is_one_line(alone, capsys):
         ("mesh", "queue=9"): "does not fit into 8 places",
         ("mesh", "monitor=32"): "monitor=32 is none of 32 nodes",
         ("radio", "packet_slots=300"): "frames of up to 316 bytes; lines carry 245",
+        ("radio", "packet_slots=230"): "frames of up to 246 bytes; lines carry 245",
         ("radio", "--sealed"): "--sealed is for nodes that speak on lines",
         ("skin", "--prefix", "9x"): "begin with a letter",
         ("skin", "--out", str(tmp_path / "full")): "not empty",
@@ -166,6 +167,10 @@ def test_what_is_not_there_or_does_not_fit_is_one_line(alone, capsys):
         assert said in line
     with pytest.raises(FirmwareError, match=r"not in 100\.\.1000000"):
         Library(library_of("skin", []).role, {"beacon_us": 1}).source("skin.h")
+
+
+def test_a_line_carries_frames_that_just_fit(tmp_path):
+    assert main(["firmware", "radio", "packet_slots=229", "--out", str(tmp_path)]) == 0
 
 
 def test_a_class_is_as_large_as_it_has_to_be(tmp_path):

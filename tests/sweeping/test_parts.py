@@ -155,6 +155,8 @@ def test_new_workers_take_the_place_of_all_that_were_there():
         return made[-1]
 
     pool = Pool(make, 1)
+    assert (pool.workers, pool.ahead, Pool(make, 3).ahead) == (1, 2, 6)
+    made.pop().shutdown()
     assert pool.submit(len, "ab").result() == 2
     pool.renew()
     old, new = made

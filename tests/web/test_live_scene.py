@@ -59,7 +59,8 @@ def test_a_skin_is_its_honeycomb_and_cells_have_the_scenarios_names(tmp_path):
 
 
 def test_a_team_has_its_scenarios_name(tmp_path):
-    assert drawn(beside(tmp_path, RADIO, ("s0",)), "radio").name == "team"
+    found = drawn(beside(tmp_path, RADIO, ("s0",)), "radio")
+    assert (found.name, found.origin_m) == ("team", (0, 0))
 
 
 def test_without_a_scenario_of_theirs_nodes_are_drawn_by_who_hears_whom(tmp_path):

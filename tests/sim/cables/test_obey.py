@@ -32,6 +32,11 @@ def begins(node):
     return ("on_start", node, NOW + 100 * (node + 1), MEMORY_LOST)
 
 
+def test_a_cell_has_four_ends_and_the_pc_those_behind_all_cells(do):
+    found = [commands.ends_of(do.world, node) for node in (0, 1, SINK)]
+    assert found == [(0, 4), (4, 8), (8, len(do.world.ends))]
+
+
 STOPS = ("on_stop", NOW, 1)
 ON_OR_OFF = {
     (KILL, ALIVE): ([STOPS], DEAD), (KILL, DEAD): ([], DEAD), (KILL, OFF): ([STOPS], DEAD),

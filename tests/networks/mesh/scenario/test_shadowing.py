@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from innervate.networks.mesh.scenario.profiles import PROFILES
 from innervate.scenario import loads, plan
 
 
@@ -21,3 +22,9 @@ def test_shadowing_and_directions_are_as_wide_as_asked_for():
     levels = [(there + back) / 200 + 40 for there, back in at]
     assert sum(x * x for x in levels) / len(at) == pytest.approx(3**2 + 1 / 2, rel=0.04)
     assert sum(levels) / len(at) == pytest.approx(0, abs=0.1)
+
+
+@pytest.mark.parametrize(("profile", "megahertz"), [("250k", 2440), ("38k4", 868)])
+def test_the_first_metre_takes_whole_decibels_of_a_free_wave(profile: str, megahertz: int) -> None:
+    loss_db = 20 * math.log10(4 * math.pi * megahertz * 1e6 / 299_792_458)
+    assert PROFILES[profile].loss_1m_cdb == 100 * round(loss_db)
