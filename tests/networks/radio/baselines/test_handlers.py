@@ -8,7 +8,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, SET_TIMER
 from innervate.dialect.outbox import SEND as SEND_IT
 from innervate.dialect.rng import seeded
-from innervate.networks.radio.baselines import contend, passing, tree
+from innervate.networks.radio.baselines import contend, passing, slots, tree
 from innervate.networks.radio.baselines import station as entry
 from innervate.networks.radio.baselines.common import LISTEN, SEND, STOPPED
 from innervate.networks.radio.baselines.fields import BASELINE
@@ -51,6 +51,19 @@ class Alone:
 def test_a_slot_began_so_long_ago_as_the_clock_says(mac):
     station = Alone(mac).given(1000, CLOCK, handle=3, ago=30)
     assert (station.mark, station.step) == (970, 3)
+
+
+@pytest.mark.parametrize(
+    ("period_us", "ahead"),
+    [(1 << 26, 2), (1 << 25, 6), (1 << 20, 254), (1 << 18, 1022), (100, 1024)],
+)
+def test_dice_are_thrown_for_so_many_slots_as_a_timer_reaches(period_us, ahead):
+    alone = Alone("p-persistent")
+    alone.params.period_us, alone.params.p_q15 = period_us, 0
+    slots.throw(alone.station, alone.params, 700, alone.out)
+    acts = [alone.out.action[i] for i in range(alone.out.count[0])]
+    assert acts[-1].kind == SET_TIMER
+    assert (acts[-1].b, alone.station.attempt) == (700 + ahead * period_us, 0)
 
 
 @pytest.mark.parametrize("kind", [PACKET, FORCE])
