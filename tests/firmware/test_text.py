@@ -92,6 +92,9 @@ def on_timer(state, params, now, timer, out):
     state.byte = -MOST
     state.byte = state.half
     state.half = state.half  # of one type
+
+
+
     state.list[0] = state.list[1]
     state.byte += state.n
     state.half = now + timer
@@ -167,7 +170,7 @@ def left(state, count):
 '''
 IN_C = """\
 /* Doc.
- * own_lines.py:43 */
+ * own_lines.py:46 */
 static void own_none(own_state_t *state)
 {
     if (state->a) {
@@ -177,7 +180,7 @@ static void own_none(own_state_t *state)
 }
 
 /* Doc.
- * own_lines.py:50 */
+ * own_lines.py:53 */
 static int32_t own_maybe(const own_state_t *state)
 {
     if (state->a) {
@@ -190,7 +193,7 @@ static int32_t own_maybe(const own_state_t *state)
 }
 
 /* Doc.
- * own_lines.py:73 */
+ * own_lines.py:76 */
 static int32_t own_left(const own_state_t *state, int32_t count)
 {
     int32_t where = 3;
@@ -212,25 +215,25 @@ static int32_t own_left(const own_state_t *state, int32_t count)
 }
 
 /* Doc.
- * own_lines.py:58 */
+ * own_lines.py:61 */
 static int32_t own_falls(own_state_t *state, int32_t count)
 {
     if (count) {
         return 3;
     }
-    const int32_t turn_end_62 = state->n;
-    for (int32_t turn_ = 0; turn_ < turn_end_62; turn_++) {
+    const int32_t turn_end_65 = state->n;
+    for (int32_t turn_ = 0; turn_ < turn_end_65; turn_++) {
         state->a = 1;
     }
     for (int32_t i = 2; i < count; i++) {
         state->a = (int8_t)i;
     }
-    const int32_t k_end_66 = count;
-    for (int32_t k = 0; k < k_end_66; k++) {
+    const int32_t k_end_69 = count;
+    for (int32_t k = 0; k < k_end_69; k++) {
         count = 7;
     }
-    const int32_t at_end_68 = own_abs(count);
-    for (int32_t next_at = 0; next_at < at_end_68; next_at++) {
+    const int32_t at_end_71 = own_abs(count);
+    for (int32_t next_at = 0; next_at < at_end_71; next_at++) {
         int32_t at = next_at;
         at = at + state->b;
     }
