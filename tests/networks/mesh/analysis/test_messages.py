@@ -282,3 +282,9 @@ def test_what_was_to_happen_after_the_end_has_not_happened():
     plan = made(faults=[fault(*one) for one in dies]).plan
     assert messages.deaths_us(plan, END_US) == [S, 5 * S]
     assert messages.deaths_us(plan, S) == []
+
+
+def test_who_was_handed_what_when_is_in_order_of_time_then_node_then_handle():
+    places = [(0, 0, 0), (0, 0, 65_535), (0, 1, 0), (0, 255, 65_535), (1, 0, 0), (1 << 37, 3, 4)]
+    keys = [int(messages._key(*place)) for place in places]
+    assert keys == sorted(set(keys))
