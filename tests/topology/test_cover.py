@@ -111,6 +111,13 @@ def test_shapes_without_a_size_are_refused_by_the_links_name(tmp_path, shape, wo
     assert str(caught.value) == f"link arm has {words} above 0"
 
 
+@pytest.mark.filterwarnings("ignore:overflow")
+def test_a_surface_without_a_finite_area_is_none(tmp_path):
+    box = robot_of(tmp_path, '<box size="1e160 1e160 1"/>')
+    with pytest.raises(TopologyError, match="a mesh of link arm has no surface"):
+        cells_from_urdf(box, "*", None, 10.0)
+
+
 def test_a_box_is_as_large_as_it_says_each_way(tmp_path):
     box = robot_of(tmp_path, '<box size="0.1 0.2 0.3"/>')
     _, places = cells_from_urdf(box, "*", None, 20.0)
