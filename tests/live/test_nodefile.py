@@ -164,3 +164,13 @@ def test_tables_too_deep_for_whoever_reads_them_are_refused(tmp_path):
         with pytest.raises(LiveError, match="nested too deeply") as caught:
             load(write(tmp_path, text))
         assert len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize("interface", ["eth0", "10.0.2.1:4700", "::1", "localhost"])
+def test_an_interface_is_named_by_its_address(tmp_path, interface):
+    group = f'kind = "multicast"\ngroup = "239.77.12.5:47012"\ninterface = "{interface}"'
+    serial = 'kind = "serial"\ndevice = "/dev/null"'
+    with pytest.raises(LiveError) as caught:
+        build(load(write(tmp_path, GOOD.replace(serial, group))))
+    said = f'link.1.interface: "{interface}" is no IPv4 address; write that of the interface'
+    assert said in str(caught.value)

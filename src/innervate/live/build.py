@@ -18,6 +18,7 @@ from innervate.live.nodefile import (
     UdpTable,
     address,
 )
+from innervate.live.plain import shown
 from innervate.live.state import State
 from innervate.network import networks
 
@@ -63,7 +64,7 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, MulticastTable):
         from innervate.live.udp import MulticastLink
 
-        own, _ = _ipv4(f"{table.interface}:0", f"{where}.interface")
+        own = _interface(table.interface, f"{where}.interface")
         return MulticastLink(_ipv4(table.group, f"{where}.group"), own, port)
     if isinstance(table, SerialTable):
         from innervate.live.serial import SerialLink
@@ -73,6 +74,21 @@ def _link(table: Any, where: str, port: int) -> Link:
             raise LiveError(f"{where}.baud: this system has no {table.baud} baud; try 115200")
         return SerialLink(table.device, table.baud, port, table.far)
     raise LiveError(f"{where}: this kind of node has no such link")
+
+
+def _interface(text: str, where: str) -> str:
+    """An interface by its own address.
+
+    Raises:
+        LiveError: it is none.
+    """
+    try:
+        return str(ipaddress.IPv4Address(text))
+    except ValueError:
+        raise LiveError(
+            f'{where}: "{shown(text)}" is no IPv4 address; write that of the interface, like '
+            '"10.0.2.1"'
+        ) from None
 
 
 def _ipv4(text: str, where: str) -> tuple[str, int]:
