@@ -51,7 +51,7 @@ def test_the_pc_starts_again_and_everybody_comes_back():
             for path in skin.cables["pc", 0]:
                 path.cut = True
             await until(lambda: all(cell.status()["parent"] is None for cell in skin.cells))
-            skin.pc.engine.stop()
+            await skin.pc.stop()
             for path in skin.cables["pc", 0]:
                 path.cut = False
             await skin.pc.start()
