@@ -209,9 +209,9 @@ def test_keys_are_taken_over_by_a_hangup_and_what_else_has_changed_is_said(proce
 
 @pytest.mark.parametrize(
     ("engine", "why", "sealed", "end"),
-    [("python", "", True, "1 paths"), ("auto", "", True, "1 paths, in C"),
-     ("auto", "no compiler", True, "1 paths, not in C: no compiler"),
-     ("python", "", False, "1 paths; no key: frames can be read and forged by anybody in reach")],
+    [("python", "", True, "1 path"), ("auto", "", True, "1 path, in C"),
+     ("auto", "no compiler", True, "1 path, not in C: no compiler"),
+     ("python", "", False, "1 path; no key: frames can be read and forged by anybody in reach")],
 )  # fmt: skip
 def test_the_line_by_which_a_node_says_that_it_is_ready(process, engine, why, sealed, end):
     process.engine, process.node.not_in_c = engine, why

@@ -161,7 +161,8 @@ class Process:
         table = self.loaded.table
         of = f" of {table.nodes}" if table.nodes else ""
         text = f"ready: {table.kind} {table.role or 'node'} {table.number}{of}, "
-        text += f"{len(self.node.paths)} paths"
+        count = len(self.node.paths)
+        text += f"{count} path" if count == 1 else f"{count} paths"
         if self.engine != PYTHON:
             why = self.node.not_in_c
             text += f", not in C: {why}" if why else ", in C"
