@@ -66,6 +66,14 @@ def test_dice_are_thrown_for_so_many_slots_as_a_timer_reaches(period_us, ahead):
     assert (acts[-1].b, alone.station.attempt) == (700 + ahead * period_us, 0)
 
 
+@pytest.mark.parametrize("before", [tree.NOTHING, tree.NOISE, tree.READ])
+def test_whatever_was_before_its_clock_was_set_a_station_of_the_tree_knows_of_no_resolution(before):
+    alone = Alone("tree", heard=before, told=before, depth=3, branches=5)
+    tree.begin(alone.station, alone.params, 700, alone.out)
+    known = (alone.station.heard, alone.station.told, alone.station.depth, alone.station.branches)
+    assert known == (tree.NOTHING, tree.NOTHING, tree.OUT, 0)
+
+
 @pytest.mark.parametrize("kind", [PACKET, FORCE])
 @pytest.mark.parametrize("mac", ["csma-cd-d1", "csma-cd-d2", "csma-cd-d2p", "dcf"])
 def test_a_packet_for_an_idle_channel_is_sent_at_once_whatever_was_waited_for_before(mac, kind):
