@@ -106,7 +106,9 @@ def test_who_sends_at_once_is_not_heard_but_waits_in_the_node(bare):
     assert lost.get("collision", 0) + lost.get("sending", 0) >= 2, lost
 
 
-def test_a_carrier_is_told_when_it_comes_and_goes(bare, monkeypatch):
+@pytest.fixture
+def carriers(monkeypatch):
+    """Who was told of its carrier, in order: node, busy."""
     told = []
     was = listening.tell_carrier
 
@@ -115,13 +117,17 @@ def test_a_carrier_is_told_when_it_comes_and_goes(bare, monkeypatch):
         told.append((node, world.radios[node].told))
 
     monkeypatch.setattr(listening, "tell_carrier", noted)
+    return told
+
+
+def test_a_carrier_is_told_when_it_comes_and_goes(bare, carriers):
     in_line(bare, nodes=2, link=ENDS[:1])
-    assert told == [(1, 1), (0, 0), (1, 0), (0, 1), (1, 0), (0, 0)]  # news, and passed on
-    told.clear()
+    assert carriers == [(1, 1), (0, 0), (1, 0), (0, 1), (1, 0), (0, 0)]  # news, and passed on
+    carriers.clear()
     noise = [{"at_s": 0.05, "action": "jam", "node": 1, "noise_dbm": -60},
              {"at_s": 0.06, "action": "quiet", "node": 1}]  # fmt: skip
     in_line(bare, nodes=2, link=ENDS[:1], event=noise, input=[])
-    assert told == [(1, 1), (1, 0)]
+    assert carriers == [(1, 1), (1, 0)]
 
 
 @pytest.fixture
@@ -144,20 +150,6 @@ def is_known"""
         + after.partition("def is_known")[2]
     )
     return bare
-
-
-@pytest.fixture
-def carriers(at_once, monkeypatch):
-    """Who was told of its carrier in a run of `at_once`, in order: node, busy."""
-    told = []
-    was = listening.tell_carrier
-
-    def noted(world, do, node, time):
-        was(world, do, node, time)
-        told.append((node, world.radios[node].told))
-
-    monkeypatch.setattr(listening, "tell_carrier", noted)
-    return told
 
 
 LONG = {"air.bits_per_s": 1_000, "nodes": 3, "link": ENDS}  # a frame takes more than 50 ms
