@@ -229,9 +229,10 @@ def test_a_goal_holds_up_to_its_edge_and_not_beyond(name, goal, holds, beyond):
         assert any(one.startswith(goal) for one in refuted(name, ends)), ends
 
 
-def test_a_draw_may_be_0_and_is_below_what_it_is_from():
-    ((drawn, many, _),) = played("draws", (5, 5)).machine.draws
-    assert (drawn.low, drawn.high, many.low) == (0, 4, 5)
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_a_draw_may_be_0_and_is_below_what_it_is_from(count):
+    ((drawn, many, _),) = played("draws", (count, count)).machine.draws
+    assert (drawn.low, drawn.high, many.low) == (0, count - 1, count)
 
 
 def test_what_is_not_sent_may_be_anything():
