@@ -25,6 +25,13 @@ class Own:
         assert text.count(old) == 1, (file, old)
         path.write_text(text.replace(old, new))
 
+    def rewrite(self, name, text):
+        """Put another function in the place of one of the protocol's, up to the next."""
+        path = self.folder / "protocol.py"
+        before, _, after = path.read_text().partition(f"def {name}(")
+        _, following, rest = after.partition("\n\n\ndef ")
+        path.write_text(before + text.rstrip() + (following + rest if following else "\n"))
+
     def line(self, file, text):
         """The number of the first line that has a text."""
         lines = (self.folder / file).read_text().splitlines()

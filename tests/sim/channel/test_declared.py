@@ -61,18 +61,16 @@ def test_who_sends_while_it_sends_is_told(talk):
 @pytest.fixture
 def at_once(talk):
     """Nodes that send 15 slots as soon as they are given something."""
-    path = talk.folder / "protocol.py"
-    before, _, _ = path.read_text().partition("def on_input")
-    path.write_text(
-        before
-        + """def on_input(node, params, now, kind, item, out):
+    talk.rewrite(
+        "on_input",
+        """def on_input(node, params, now, kind, item, out):
     'Say it now.'
     frame = out.frame[send(out, 0, 0, 0)]
     frame.kind = SAID
     frame.slots = params.length_slots
     frame.value = item.value
     frame.made_at = item.made_at
-"""
+""",
     )
     return talk
 

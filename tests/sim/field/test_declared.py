@@ -133,21 +133,16 @@ def test_a_carrier_is_told_when_it_comes_and_goes(bare, carriers):
 @pytest.fixture
 def at_once(bare):
     """Nodes without a medium access that send as soon as they are given something."""
-    path = bare.folder / "protocol.py"
-    before, _, after = path.read_text().partition("def on_input")
-    path.write_text(
-        before
-        + """def on_input(node, params, now, kind, item, out):
+    bare.rewrite(
+        "on_input",
+        """def on_input(node, params, now, kind, item, out):
     'Send it now.'
     frame = out.frame[send(out, 0, 0, 0)]
     frame.kind = NEWS
     frame.to = ALL
     frame.hops = 1
     frame.seq = item.value
-
-
-def is_known"""
-        + after.partition("def is_known")[2]
+""",
     )
     return bare
 
