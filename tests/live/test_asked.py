@@ -1,6 +1,7 @@
 """What a node's process answers on its socket, request by request, and how it takes over keys."""
 
 import asyncio
+import re
 
 import pytest
 
@@ -218,3 +219,7 @@ def test_the_line_by_which_a_node_says_that_it_is_ready(process, engine, why, se
     if not sealed:
         process.node.sealer = None
     assert process._ready() == f"ready: mesh node 3 of 5, {end}"
+    process.node.is_awake = True
+    paths, no_key = re.fullmatch("([^;]*)(;.*)?", end).groups("")
+    ready = f"ready: mesh node 3 of 5, {paths}, keeps processors awake{no_key}"
+    assert process._ready() == ready

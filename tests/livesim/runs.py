@@ -31,7 +31,6 @@ class Found(NamedTuple):
 def run(seed, kind=None, **given):
     """The run of a seed, of the kind that it stands for or of this one."""
     world = World(seed)
-    kinds = sorted(KINDS)
     prints, nets, told = [0], [], {}
 
     def note(source, _target, data):
@@ -42,12 +41,18 @@ def run(seed, kind=None, **given):
         nets.append(net)
 
     with suppress(Broken), Nonces(world):  # what is broken is told by `world.broken`
-        KINDS[kind or kinds[seed % len(kinds)]](world, watch, told, given)
+        KINDS[kind or kind_of(seed)](world, watch, told, given)
     world.end()
     gc.collect()
     what = told.pop("what")
     told["datagrams"] = nets[0].sent
     return Found(what, world.now / SECOND, world.broken, told, prints[0])
+
+
+def kind_of(seed):
+    """The kind of network that a seed stands for."""
+    kinds = sorted(KINDS)
+    return kinds[seed % len(kinds)]
 
 
 def _mesh(world, watch, told, given):

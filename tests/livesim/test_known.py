@@ -26,6 +26,14 @@ def test_nothing_is_taken_from_a_recording_by_a_node_that_was_killed(seed):
     assert broken(seed, sealed=True, in_order=False, hurts=hurts, old_lives=True) == []
 
 
+# A packet of an earlier life that was under way for seconds: it came behind messages of the next
+# life, or had the router forget which of those it had handed up.
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [900_009, 900_078])
+def test_a_packet_of_an_earlier_life_is_not_taken_for_a_new_one(seed):
+    assert runs.run(seed, "mesh").broken == []
+
+
 # A channel that was started anew told stations that had sent meanwhile that they listen again, and
 # an answer to somebody else was proof of what nobody had heard.
 @pytest.mark.parametrize("seed", [9_000_001, pytest.param(333_057, marks=pytest.mark.slow)])

@@ -251,7 +251,8 @@ class Machine_off(Machine):
     def _off(self, *_):
         raise PowerCut
 
-    socket = open_serial = listen_at = read_text = create = sync = replace = remove = _off
+    socket = open_serial = listen_at = read_text = create = _off
+    sync = replace = remove = keep_awake = _off
 
 
 def inside(life, what, *args):

@@ -22,6 +22,7 @@ from innervate.live import private
 from innervate.live.errors import LiveError
 
 ANSWER_S = 5.0
+IDLE_STATES = Path("/dev/cpu_dma_latency")  # Linux: the longest that a wake-up may take, us
 
 Socket = socket.socket
 
@@ -161,6 +162,16 @@ class Machine:
             OSError: there was none, or it cannot be removed.
         """
         path.unlink()
+
+    def keep_awake(self) -> IO[bytes]:
+        """Processors that have nothing to do wait without sleeping, until this file is closed.
+
+        Raises:
+            OSError: the system cannot, or this user may not.
+        """
+        file = open(IDLE_STATES, "r+b", buffering=0)  # noqa: SIM115 - open is what keeps it so
+        file.write((0).to_bytes(4, sys.byteorder))
+        return file
 
 
 _THIS = Machine()

@@ -166,6 +166,8 @@ class Process:
         if self.engine != PYTHON:
             why = self.node.not_in_c
             text += f", not in C: {why}" if why else ", in C"
+        if self.node.is_awake:
+            text += ", keeps processors awake"
         if self.node.sealer is None:
             text += "; no key: frames can be read and forged by anybody in reach"
         return text

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from innervate.live.engine import Engine, Stack, clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path
-from innervate.live.machine import machine
+from innervate.live.machine import IDLE_STATES, machine
 from innervate.live.nodefile import PYTHON, C
 from innervate.live.receipts import STOPPED, Receipt
 from innervate.live.state import State
@@ -47,11 +47,14 @@ class LiveNode:
         is_stopped: True = it ran, and does not any more.
         ended: is told why, if what runs the stack ends by itself; then nothing moves any more.
         not_in_c: why its protocol does not run as C; "" = it does.
+        is_awake: True = the machine's processors do not sleep while it runs.
         requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
     is_stopped = False
+    is_awake = False
     _is_open = False
+    _wakefulness: IO[bytes] | None = None
 
     def __init__(
         self,
@@ -100,6 +103,8 @@ class LiveNode:
             self.stack, self._transmit, self._deliver, self._note_report, self._settled
         )
         self.engine.ended = lambda why: self.ended(why)
+        if self.is_awake:
+            self._keep_awake()
         for link in self.links:
             await link.open(self._receive)
         self._is_open = True
@@ -118,9 +123,21 @@ class LiveNode:
             self.sealer.stop()
         for link in self.links:
             link.close()
+        if self._wakefulness is not None:
+            self._wakefulness.close()
+            self._wakefulness = None
         if self._is_open:  # else another may run that keeps its state there
             self._is_open = False
             self.save()
+
+    def _keep_awake(self) -> None:
+        try:
+            self._wakefulness = machine().keep_awake()
+        except OSError as error:
+            raise LiveError(
+                f"awake = true: {IDLE_STATES}: {error.strerror}; let this user write to it, "
+                "or take the line out"
+            ) from None
 
     def idle(self) -> str:
         """Why nothing can be handed down now; "" if it can."""

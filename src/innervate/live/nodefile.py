@@ -75,6 +75,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     Attributes:
         roles: what `role` can be.
         nodes_max: most nodes that a network can have.
+        awake: the machine's processors do not sleep while the node runs.
     """
 
     roles: ClassVar[tuple[str, ...]] = ("node",)
@@ -90,6 +91,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     socket: str | None = None
     state: str | None = None
     engine: Literal["python", "c", "auto"] = "python"
+    awake: bool = False
     metrics: str | None = None
     keys: KeysTable | None = None
     protocol: dict[str, int] = {}

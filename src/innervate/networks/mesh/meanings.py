@@ -25,7 +25,7 @@ MEANINGS = {
     "data": "what the application sends",
     "mark": "number of the packet and 16384: this is a piece",
     "message": "number of the packet that the first piece went in",
-    "in_order": "1: the whole has its turn among its origin's messages in order",
+    "in_order": "1: in turn with its origin's other messages; 2: and the origin is new there",
     "at": "byte of the message with which the piece begins",
     "size": "bytes of the message, less one",
     "acked": "seq of each packet that has arrived",

@@ -7,7 +7,7 @@ import pytest
 from innervate.live.receipts import ACCEPTED, DELIVERED, EXPIRED, HOP_ACKED
 from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.long import Long
-from innervate.networks.mesh.live.pieces import HEAD_BYTES, Pieces, read_piece
+from innervate.networks.mesh.live.pieces import HEAD_BYTES, NO_TURN, Pieces, read_piece
 
 DEST, ROOM = 7, HEAD_BYTES + 10  # ten bytes of the message in a packet
 
@@ -41,14 +41,14 @@ def test_pieces_are_as_long_as_there_is_room_and_the_last_is_the_rest(size, size
     for (receipt, _), body, seq in zip(pieces, bodies, range(65_534, 65_600), strict=False):
         head = long.head(receipt.at, seq & 65_535)
         piece = read_piece(seq & 65_535, head + body)
-        assert (piece.at, piece.is_last, piece.in_order) == (receipt.at, receipt.is_last, False)
+        assert (piece.at, piece.is_last, piece.turn) == (receipt.at, receipt.is_last, NO_TURN)
         whole = received.take(1, piece, 0)
     assert whole == (True, payload)
 
 
 @pytest.mark.parametrize("chained", [False, True])
 def test_the_last_piece_goes_when_all_others_have_their_end_and_those_before_it(chained):
-    chains = Chains()
+    chains = Chains(is_drawn=False)
     long = Long(DEST, 0, bytes(25), ROOM, chains if chained else None)
     chains.sent(1, DEST, 40, True)
     assert long.in_order == chained

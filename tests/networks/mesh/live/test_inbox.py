@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.networks.mesh.live.inbox import Inbox
+from innervate.networks.mesh.live.inbox import HAD, HAD_US, Inbox
 from innervate.networks.mesh.live.pieces import IDLE_US, Piece
 from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
@@ -18,12 +18,14 @@ class Orderly:
     """Notes what it is given."""
 
     def __init__(self):
-        self.taken, self.repeated, self.stopped = [], [], 0
+        self.taken, self.repeated, self.stopped, self.new = [], [], 0, []
 
     def take(self, message):
+        self.new.append(message.is_new)
         self.taken.append((message.sender, message.seq, message.before, message.payload))
 
     def again(self, message):
+        self.new.append(message.is_new)
         self.repeated.append((message.sender, message.seq, message.before, message.payload))
 
     def counters(self):
@@ -75,6 +77,22 @@ def test_a_message_in_order_begins_with_the_one_before_it(flags, dest, body, bef
     run(come)
 
 
+@pytest.mark.parametrize(("before", "is_new"), [
+    (b"\x80\x0a", True), (b"\x80\x09", False), (b"\x80\x0b", False), (b"\x00\x0a", False),
+])  # fmt: skip
+@pytest.mark.parametrize("is_again", [False, True])
+def test_a_message_of_an_origin_that_is_new_comes_after_none(before, is_new, is_again):
+    def come():
+        one = inbox()
+        one.note(frame(before + b"text"), is_again)
+        one.hand_up()
+        (found,) = one.orderly.repeated if is_again else one.orderly.taken
+        assert found[2] == (32_779 if before == b"\x80\x0b" else 10)
+        assert one.orderly.new == [is_new]
+
+    run(come)
+
+
 def test_a_copy_is_not_counted_nor_handed_up():
     def come():
         one = inbox()
@@ -86,12 +104,43 @@ def test_a_copy_is_not_counted_nor_handed_up():
     run(come)
 
 
+def test_what_came_before_is_a_copy_whatever_the_router_says():
+    async def main():
+        one = inbox()
+
+        def come(text, seq=10, origin=5, before=9):
+            one.note(frame(bytes([0, before]) + text, seq, origin=origin), False)
+
+        come(b"text")
+        come(b"text", before=8)  # what was between has expired
+        come(b"text", seq=11)
+        come(b"text", origin=6)
+        come(b"of another life")
+        await asyncio.sleep(HAD_US / 1e6 - 0.001)
+        come(b"text", seq=11)
+        await asyncio.sleep(0.002)
+        come(b"text", seq=11)
+        for seq in range(100, 100 + HAD - 1):
+            come(b"", seq)
+        come(b"text", seq=11)  # it is the oldest of those that are known
+        come(b"", seq=9000)
+        come(b"text", seq=11)
+        one.hand_up()
+        return one
+
+    one = time_by_hand.run(main())
+    text = [one for one in one.orderly.taken if one[3] != b""]
+    assert [(sender, seq) for sender, seq, *_ in text] == [
+        (5, 10), (5, 11), (6, 10), (5, 10), (5, 11), (5, 11)]  # fmt: skip
+    assert [seq for _, seq, *_ in one.orderly.repeated] == [10, 11, 11]
+
+
 def piece(seq, at, data, size=4, in_order=0, message=10):
     mark = (seq + PIECE_AHEAD) & 65_535
     return frame(struct.pack(PIECE_STRUCT, mark, message, in_order, at, size - 1) + data, seq)
 
 
-@pytest.mark.parametrize("in_order", [0, 1])
+@pytest.mark.parametrize("in_order", [0, 1, 2])
 def test_pieces_are_acknowledged_as_they_come_and_the_last_with_the_whole(in_order):
     def come():
         one = inbox()
@@ -100,12 +149,14 @@ def test_pieces_are_acknowledged_as_they_come_and_the_last_with_the_whole(in_ord
             one.hand_up()
         assert one.outcomes == {"pieces received": 2, "messages received": 1}
         assert one.got == [(5, b"abcd")]
+        assert one.orderly.new == [in_order == 2]
         assert one.told == ([(5, 10)] if in_order else [(5, 10), (5, 11)])
         assert one.orderly.taken == [(5, 11, 11 if in_order else None, b"abcd")]
         one.note(piece(11, 2, b"cd", in_order=in_order), True)  # it was not heard that it came
         one.hand_up()
         assert one.orderly.repeated == ([(5, 11, 11, b"")] if in_order else [])
-        assert one.told[2 - in_order :] == ([] if in_order else [(5, 11)])
+        assert one.told[1 if in_order else 2 :] == ([] if in_order else [(5, 11)])
+        assert one.orderly.new == [in_order == 2] * (2 if in_order else 1)
         assert one.outcomes == {"pieces received": 2, "messages received": 1}
         assert one.held() == {"messages": 0, "bytes": 0}
 

@@ -11,15 +11,25 @@ from innervate.dialect.arith import later
 
 
 class Chains:
-    """Our messages that are to come in order and have no end yet, by recipient."""
+    """Our messages that are to come in order and have no end yet, by recipient.
 
-    def __init__(self) -> None:
+    Args:
+        is_drawn: True = our numbers begin at a random one, not behind those that we had.
+    """
+
+    def __init__(self, is_drawn: bool) -> None:
+        self._is_drawn = is_drawn
+        self._reached: set[int] = set()  # recipients that had one from us
         self._open: defaultdict[int, list[int]] = defaultdict(list)  # numbers, the newest last
         self._by_handle: dict[int, tuple[int, int]] = {}
 
     def before(self, dest: int, seq: int) -> int:
         """The number of the message before a new one; its own = there is none to wait for."""
         return self._open[dest][-1] if self._open.get(dest) else seq
+
+    def is_new(self, dest: int) -> bool:
+        """True if our numbers may be far behind those that a recipient had of an earlier life."""
+        return self._is_drawn and dest not in self._reached
 
     def is_open(self, dest: int) -> bool:
         """True if the end of one to this recipient will be told."""
@@ -40,6 +50,7 @@ class Chains:
             return
         left = [one for one in self._open[dest] if one != seq]
         if is_delivered:
+            self._reached.add(dest)
             left = [one for one in left if later(one, seq)]
         self._open[dest] = left
         if not left:

@@ -7,12 +7,15 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from innervate.dialect.arith import later
+from innervate.dialect.arith import MASK16, later
 from innervate.live.engine import clock_us
 from innervate.live.streams import Arrivals
-from innervate.networks.mesh.live.order import BEFORE_BYTES, Message, Orderly
-from innervate.networks.mesh.live.pieces import Piece, Pieces, read_piece
+from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD, Message, Orderly
+from innervate.networks.mesh.live.pieces import NEW, NO_TURN, Piece, Pieces, read_piece
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
+
+HAD = 320  # messages of a sender that are known again, as many as the router's window has
+HAD_US = 30_000_000  # a packet is tried for 26 s at most
 
 
 class Inbox:
@@ -38,21 +41,43 @@ class Inbox:
         self._acknowledge = acknowledge
         self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before
         self._sweep: asyncio.TimerHandle | None = None
+        self._had: dict[int, dict[int, tuple[int, int]]] = {}  # by sender and number: what, when
 
     def note(self, frame: Any, is_again: bool) -> None:
         """A message, or a piece of one, came; the record is used again."""
-        body, before = bytes(frame.body[: frame.length]), None
+        body, before, is_new = bytes(frame.body[: frame.length]), None, False
         piece = None
         if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
             piece = read_piece(frame.seq, body)
             before = int.from_bytes(body[:BEFORE_BYTES], "big")
-            if later(before, frame.seq):  # the mark of a last piece that it came after, and expired
+            is_new = before == (frame.seq + NEW_AHEAD) & MASK16
+            if is_new or later(before, frame.seq):  # that of a last piece before it, which expired
                 before = frame.seq
             body = body[BEFORE_BYTES:]
+        if piece is None:
+            is_again = self._is_copy(frame.origin, frame.seq, body) or is_again
         if not is_again:
             self.outcomes["messages received" if piece is None else "pieces received"] += 1
-        message = Message(frame.origin, frame.seq, before, body)
+        message = Message(frame.origin, frame.seq, before, body, is_new)
         self._came.append((message, piece, is_again))
+
+    def _is_copy(self, sender: int, seq: int, body: bytes) -> bool:
+        """True if this message came before, and the router does not know.
+
+        Its window begins anew with the first packet of a sender that was switched on. If that was
+        under way while its sender was switched off and on again, what came of the new life since
+        then is forgotten there.
+        """
+        now, what = clock_us(), hash(body)
+        had = self._had.setdefault(sender, {})
+        known, at = had.get(seq, (0, now - HAD_US))
+        if known == what and now - at < HAD_US:
+            return True
+        had.pop(seq, None)
+        had[seq] = what, now
+        if len(had) > HAD:
+            del had[next(iter(had))]
+        return False
 
     def put_own(self, number: int, payload: bytes) -> None:
         """A long message of this node to itself."""
@@ -92,16 +117,17 @@ class Inbox:
         sender, seq = message.sender, message.seq
         is_kept, whole = self.pieces.take(sender, piece, clock_us())
         self._arm()
-        ordered = seq if piece.in_order and piece.is_last else None
+        ordered = seq if piece.turn != NO_TURN and piece.is_last else None
+        is_new = piece.turn == NEW
         if whole is not None:
             self.outcomes["messages received"] += 1
-            self._up(Message(sender, seq, ordered, whole))
+            self._up(Message(sender, seq, ordered, whole, is_new))
             if ordered is None:
                 self._acknowledge(sender, seq)
         elif is_kept and ordered is None:
             self._acknowledge(sender, seq)
         elif is_kept:  # it came before, and may have been too late for its turn
-            self.orderly.again(Message(sender, seq, ordered, b""))
+            self.orderly.again(Message(sender, seq, ordered, b"", is_new))
 
     def _up(self, message: Message) -> None:
         self.arrivals.put((message.sender, message.payload))

@@ -14,7 +14,7 @@ from typing import Any
 from innervate.dialect.arith import MASK16
 from innervate.live.receipts import ACCEPTED, DELIVERED, EXPIRED, FINAL, HOP_ACKED, Receipt
 from innervate.networks.mesh.live.chains import Chains
-from innervate.networks.mesh.live.pieces import HEAD_BYTES, SIZE_MAX
+from innervate.networks.mesh.live.pieces import HEAD_BYTES, NEW, NO_TURN, SIZE_MAX, TURN
 from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
 
 WAITING_MAX = 64 * SIZE_MAX  # bytes of all long messages of a node that have no end yet
@@ -85,7 +85,8 @@ class Long:
         if self._message < 0:
             self._message = seq
         mark, size = (seq + PIECE_AHEAD) & MASK16, len(self.payload) - 1
-        return struct.pack(PIECE_STRUCT, mark, self._message, int(self.in_order), at, size)
+        turn = NO_TURN if self._chains is None else NEW if self._chains.is_new(self.dest) else TURN
+        return struct.pack(PIECE_STRUCT, mark, self._message, turn, at, size)
 
     def told(self, piece: PieceReceipt, state: str, reason: str) -> None:
         """What became of a piece."""

@@ -15,6 +15,7 @@ from innervate.live.receipts import Receipt, check_bytes
 from innervate.live.state import State
 from innervate.live.streams import Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
+from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.inbox import Inbox
 from innervate.networks.mesh.live.order import Callback, Orderly
 from innervate.networks.mesh.live.outgoing import Outgoing, refused
@@ -165,6 +166,7 @@ class MeshNode(LiveNode):
 
         By how much is drawn: where a disk was full, nobody noted those that were used last.
         """
+        self.outgoing.chains = Chains(self.state.numbers < 0)
         if self.state.numbers >= 0:
             self.stack.first = (self.state.numbers + machine().chance.getrandbits(12)) & MASK16
         await super()._switch_on()

@@ -20,6 +20,8 @@ WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
 BUFFER = 256
 REMEMBERED = 256  # numbers of messages that came too late: a router keeps no more apart
 ANEW = 320  # numbers behind the newest, as in the router's windows (duplicates.py)
+NEW_AHEAD = 32_768  # in place of the message before, so far ahead: numbers were drawn at random
+QUIET_US = 30_000_000  # a packet is under way for 26 s at most: behind that none is an old one
 BEFORE_BYTES = 2  # in front of the payload: the number of the message before
 
 # Takes the sender's number and the payload.
@@ -34,12 +36,14 @@ class Message(NamedTuple):
         seq: its number.
         before: the number of the one before it, `seq` = there is none; None = order is no matter.
         payload: what it says.
+        is_new: its sender drew its numbers at random, and does not know that we had one of them.
     """
 
     sender: int
     seq: int
     before: int | None
     payload: bytes
+    is_new: bool = False
 
 
 class Held(NamedTuple):
@@ -65,6 +69,7 @@ class Order:
         last: the newest one that was handed up already, None = nothing was heard of this sender.
         wait_us: how long a message waits for one before it.
         buffer: how many may wait.
+        now: when that one was handed up, us.
 
     Attributes:
         late: messages that came when those behind them had been handed up: they are dropped.
@@ -72,8 +77,11 @@ class Order:
         dropped: numbers of the newest ones that were not, and never will be.
     """
 
-    def __init__(self, last: int | None, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
+    def __init__(
+        self, last: int | None, wait_us: int = WAIT_US, buffer: int = BUFFER, now: int = 0
+    ) -> None:
         self.last = last
+        self.last_at = now  # when it was handed up, us
         self.wait_us = wait_us
         self.buffer = buffer
         self.late = 0
@@ -81,12 +89,19 @@ class Order:
         self.ended: list[int] = []
         self.dropped: deque[int] = deque(maxlen=REMEMBERED)
 
-    def take(self, seq: int, before: int, payload: bytes, now: int) -> list[bytes]:
+    def take(
+        self, seq: int, before: int, payload: bytes, now: int, is_new: bool = False
+    ) -> list[bytes]:
         """A message came; what may be handed up now. `before == seq`: there is none to wait for."""
-        if self._is_late(seq, before):
+        if self._is_late(seq, before, is_new or now - self.last_at >= QUIET_US):
             self.late += 1
             self.dropped.append(seq)
             return []
+        ready = self._put(seq, before, payload, now)
+        self.last_at = now if ready else self.last_at
+        return ready
+
+    def _put(self, seq: int, before: int, payload: bytes, now: int) -> list[bytes]:
         ready: list[bytes] = []
         if before == seq:
             old = [one for one in self.held if self._is_before(one.seq, seq)]
@@ -98,13 +113,13 @@ class Order:
             return self._skip() if len(self.held) > self.buffer else ready
         return ready + self._up(seq, payload) + self._follow()
 
-    def again(self, seq: int, before: int, now: int) -> list[bytes]:
+    def again(self, seq: int, before: int, now: int, is_new: bool = False) -> list[bytes]:
         """A message that waits came again, and may be after another one now; what may go up."""
         found = [one for one in self.held if one.seq == seq]
         if not found:
             return []
         self.held.remove(found[0])
-        return self.take(seq, before, found[0].payload, now)
+        return self.take(seq, before, found[0].payload, now, is_new)
 
     def is_up(self, seq: int) -> bool:
         """True if a message that came was handed up: it neither waits nor came too late."""
@@ -115,20 +130,21 @@ class Order:
         ready: list[bytes] = []
         while self.held and self.due() <= now:
             ready += self._skip()
+        self.last_at = now if ready else self.last_at
         return ready
 
     def due(self) -> int:
         """When somebody has waited long enough, us; only while messages are held."""
         return min(one.due for one in self.held)
 
-    def _is_late(self, seq: int, before: int) -> bool:
-        """True if a message is too late; far behind, one without another before it is not.
+    def _is_late(self, seq: int, before: int, may_be_new: bool) -> bool:
+        """True if a message is too late; far behind, one without another before it may not be.
 
-        Then its sender has begun anew with a number drawn at random.
+        Then its sender has begun anew with a number drawn at random, or after many starts unheard.
         """
         if self.last is None or later(seq, self.last):
             return False
-        return before != seq or (self.last - seq) & MASK16 < ANEW
+        return before != seq or not may_be_new or (self.last - seq) & MASK16 < ANEW
 
     def _had(self, before: int) -> bool:
         """True if there is nothing more to wait for before a message that comes after that one."""
@@ -180,33 +196,34 @@ class Orderly:
         self.buffer = buffer
         self.arrivals: Arrivals[tuple[int, bytes]] = Arrivals(is_spread=True)
         self._orders: dict[int, Order] = {}
-        self._newest: dict[int, int] = {}
+        self._newest: dict[int, tuple[int, int]] = {}  # its number, and when it came, us
         self._again: asyncio.TimerHandle | None = None
 
     def take(self, message: Message) -> None:
         """A message came; callbacks are called for whatever it sets free."""
-        sender, seq, before, payload = message
+        sender, seq, before, payload, is_new = message
+        now = clock_us()
         if before is None:
             self._hand_up(sender, [payload])
             return
         if not self.arrivals.callbacks:  # nobody wants order yet
             self._orders.pop(sender, None)
-            self._newest[sender] = seq
+            self._newest[sender] = seq, now
             self.on_up(sender, seq)
             return
         order = self._orders.get(sender)
         if order is None:
-            last = self._newest.get(sender)
-            order = self._orders[sender] = Order(last, self.wait_us, self.buffer)
-        self._hand_up(sender, order.take(seq, before, payload, clock_us()), order)
+            last, last_at = self._newest.get(sender, (None, now))
+            order = self._orders[sender] = Order(last, self.wait_us, self.buffer, last_at)
+        self._hand_up(sender, order.take(seq, before, payload, now, is_new), order)
         self._arm()
 
     def again(self, message: Message) -> None:
         """A message that came before came again: its sender was not told that it was handed up."""
-        sender, seq, before, _ = message
+        sender, seq, before, _, is_new = message
         order = self._orders.get(sender)
         if order is not None and before is not None:
-            self._hand_up(sender, order.again(seq, before, clock_us()), order)
+            self._hand_up(sender, order.again(seq, before, clock_us(), is_new), order)
         if order is None or order.is_up(seq):
             self.on_up(sender, seq)
 

@@ -18,7 +18,7 @@ from innervate.live.receipts import (
 )
 from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt
-from innervate.networks.mesh.live.order import BEFORE_BYTES
+from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD
 from innervate.networks.mesh.live.pieces import SIZE_MAX
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.live.turns import Turns
@@ -51,6 +51,7 @@ class Outgoing:
         outcomes: what became of them is counted here, by words.
 
     Attributes:
+        chains: which messages others come after.
         turns: those that wait for a place in the router.
         receipts: by the router's name for them; pieces of long ones have their own.
     """
@@ -67,7 +68,7 @@ class Outgoing:
         self.turns = Turns(stack, self._new_item)
         self.receipts: dict[int, Receipt] = {}
         self._outcomes = outcomes
-        self._chains = Chains()
+        self.chains = Chains(True)
         self._handle = 0
         self._long_bytes = 0  # of long messages
         self._feeding = False
@@ -114,7 +115,7 @@ class Outgoing:
             return refused(REASONS[NO_ROUTE])
         if self._long_bytes + len(payload) > WAITING_MAX:
             return refused("queue full")
-        chains = self._chains if flags & ORDERED else None
+        chains = self.chains if flags & ORDERED else None
         long = Long(dest, flags | ORDERED, payload, payload_limit(params), chains)
         handle = self._take_handle(long.receipt)
         self._long_bytes += len(payload)
@@ -165,7 +166,7 @@ class Outgoing:
             chained = self._head(handle, item) if item.flags & ORDERED else None
             self._hand_down(item)
             if chained is not None and chained[1] == self._stack.node.seq:
-                self._chains.sent(handle, *chained, bool(item.flags & END_TO_END))
+                self.chains.sent(handle, *chained, bool(item.flags & END_TO_END))
             if resolve(self._stack.node, self._stack.params, item.dest) == self._stack.node.number:
                 self._end(handle, DELIVERED)  # to ourselves: it was handed up
             elif not item.flags & END_TO_END or item.dest == ALL:
@@ -184,7 +185,9 @@ class Outgoing:
             head = receipt.long.head(receipt.at, seq)
             item.body[: len(head)] = head
             return (dest, seq) if receipt.is_last and receipt.long.in_order else None
-        before = self._chains.before(dest, seq)
+        before = self.chains.before(dest, seq)
+        if before == seq and self.chains.is_new(dest):
+            before = (seq + NEW_AHEAD) & MASK16
         item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
         return dest, seq
 
@@ -192,7 +195,7 @@ class Outgoing:
         """Nothing goes any more: whoever waits for the end of a message is told so."""
         for handle in list(self.receipts):
             self._end(handle, EXPIRED, STOPPED)
-        self.turns, self._chains = Turns(self._stack, self._new_item), Chains()
+        self.turns, self.chains = Turns(self._stack, self._new_item), Chains(True)
         self._long_bytes = 0
 
     def status(self) -> dict[str, Any]:
@@ -221,7 +224,7 @@ class Outgoing:
         """Nothing changes any more for a message; `is_there`: what that says of its recipient."""
         receipt = self.receipts.pop(handle, None)
         self.turns.ended(handle, is_there)
-        self._chains.ended(handle, state == DELIVERED)
+        self.chains.ended(handle, state == DELIVERED)
         if receipt is not None:
             what = "pieces" if isinstance(receipt, PieceReceipt) else "messages"
             self._outcomes[f"{what} {state}"] += 1

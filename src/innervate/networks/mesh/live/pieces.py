@@ -22,6 +22,8 @@ IDLE_US = 30_000_000  # a piece is tried for 26 s at most: then its sender is go
 PRESSED_US = 5_000_000  # where there is no room for another message
 HAD = 8  # messages of a sender that were handed up: copies of their pieces may still come
 
+NO_TURN, TURN, NEW = range(3)  # the whole among its sender's messages in order; NEW: see order.py
+
 Name = tuple[int, int, int]  # of a message: its sender, the number of its first packet, its bytes
 
 
@@ -30,14 +32,14 @@ class Piece(NamedTuple):
 
     Attributes:
         message: the number of the packet that its first piece was in.
-        in_order: the whole has its turn among its sender's messages.
+        turn: NO_TURN, TURN or NEW.
         at: its place in the message, in bytes.
         size: bytes of the whole.
         data: its bytes.
     """
 
     message: int
-    in_order: bool
+    turn: int
     at: int
     size: int
     data: bytes
@@ -52,8 +54,8 @@ def read_piece(seq: int, body: bytes) -> Piece | None:
     """The piece in the payload of an ORDERED packet; None = it is a whole message."""
     if not is_piece(0, seq, body):
         return None
-    _, message, in_order, at, size = struct.unpack_from(PIECE_STRUCT, body)
-    return Piece(message, bool(in_order), at, size + 1, body[HEAD_BYTES:])
+    _, message, turn, at, size = struct.unpack_from(PIECE_STRUCT, body)
+    return Piece(message, turn, at, size + 1, body[HEAD_BYTES:])
 
 
 class Open:
