@@ -14,8 +14,11 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from contextlib import nullcontext
 from importlib.util import find_spec
 from pathlib import Path
+
+from innervate.live.machine import machine
 
 ENDS = ("-m", "benchmarks.live.hop_ends")
 OTHERS = "benchmarks.live.hop_others"
@@ -131,7 +134,15 @@ def main():
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--engines", nargs="+", default=["python", "c"], metavar="ENGINE")
     parser.add_argument("--realtime", action="store_true", help="before other work (as root)")
+    parser.add_argument("--awake", action="store_true", help="no processor sleeps (Linux, as root)")
     args = parser.parse_args()
+    awake = machine().keep_awake() if args.awake else nullcontext()
+    with awake:
+        compare(args)
+
+
+def compare(args):
+    """A table of all sides."""
     if args.realtime:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(20))
     settings = dict(one.split("=") for one in args.set)
