@@ -24,6 +24,7 @@ from innervate.plot.svg import Drawing, Point
 TEXT_PX = 12.0
 KEY_PX, COLUMN_PX, GAP_PX = 22.0, 235.0, 20.0  # of a key: a row, the least column, what parts two
 LETTER_PX = 6.6  # of small words
+EDGE_IN, TITLE_IN = 0.03, 0.25  # round a figure, and above it for its title
 _STEP = re.compile(r"([MLHlhvaz])([^MLHlhvaz]*)")
 _NUMBER = re.compile(r"-?\d*\.?\d+")
 _RULE = re.compile(r"([^{}]+)\{([^}]*)\}")
@@ -31,10 +32,16 @@ _RULE = re.compile(r"([^{}]+)\{([^}]*)\}")
 
 def figure(drawing: Drawing, title: str = "", width_in: float = style.WIDE_IN) -> Figure:
     """A figure that shows a drawing, `width_in` wide."""
-    made = style.figure(width_in, width_in * drawing.height / drawing.width + 0.25 * bool(title))
-    ax = made.subplots()
+    wide = width_in - 2 * EDGE_IN
+    high, head = wide * drawing.height / drawing.width, TITLE_IN * bool(title)
+    made = style.figure(width_in, high + head + 2 * EDGE_IN)
+    whole_in = made.get_figheight()
+    # A layout would have to guess how much room words above and below the axes take.
+    made.set_layout_engine(None)
+    place = (EDGE_IN / width_in, EDGE_IN / whole_in, wide / width_in, high / whole_in)
+    ax = made.add_axes(place)
     ax.set_title(title)
-    paint(ax, drawing, width_in)
+    paint(ax, drawing, wide)
     return made
 
 
