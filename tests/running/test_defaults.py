@@ -53,7 +53,7 @@ def test_it_is_summed_up(done):
          "All 3 messages are delivered, none of 9 frames is lost."),
         (Counts(nodes=2, off=(1,), sent=9, arrived=8, lost_by={"cut": 1}), DEGRADED,
          "1 of 2 nodes is off, 1 of 9 frames is lost."),
-        (Counts(nodes=2, off=(0, 1), sent=9, arrived=8), DOWN, "All 2 nodes are off."),
+        (Counts(nodes=2, off=(0, 1), sent=9, arrived=8), DOWN, "Both nodes are off."),
         (Counts(nodes=2, sent=9, lost_by={"noise": 9}), DOWN, "None of 9 frames arrived."),
         (Counts(nodes=2, sent=9, arrived=9, offered=3, dropped_by={"loop": 3}), DOWN,
          "None of 3 messages was delivered."),

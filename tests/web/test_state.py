@@ -82,6 +82,13 @@ def test_the_headline_of_those_that_are_all_joined():
     assert (found.level, found.text) == ("ok", "All 4 nodes answer.")
 
 
+def test_the_headline_of_one_and_of_two_that_answer():
+    room = SimpleNamespace(**vars(ROOM) | {"places": P[:2], "links": LINKS[:1]})
+    room.number = {place: at for at, place in enumerate(P[:2])}
+    told = {at: {"counters": {}} for at in range(2)}
+    assert State(room, told).judge().text == "Both nodes answer."
+
+
 def test_where_nobody_answers_nodes_are_counted_and_not_their_ports():
     places = [P[0], Place(1, 0), Place(1, 1)]
     room = SimpleNamespace(**vars(ROOM) | {"places": places, "links": []})

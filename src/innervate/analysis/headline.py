@@ -44,6 +44,13 @@ class Headline(NamedTuple):
         return {"level": self.level, "text": self.text}
 
 
+def every(count: int, what: str) -> str:
+    """All of them: "the only cell", "both cells", "all 30 cells"."""
+    if count > 2:
+        return f"all {count:,} {what}s"
+    return f"both {what}s" if count == 2 else f"the only {what}"
+
+
 def silent(count: int, what: str) -> Headline:
     """Of a network of which nobody answers; `what` one of them is called."""
     who = f"None of the {count:,} {what}s answers." if count > 1 else f"The only {what} is silent."

@@ -10,7 +10,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.folders import blamed
 from innervate.network import NetworkError, networks
@@ -185,12 +185,14 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     nodes, off = counts.nodes, counts.off
     lost, dropped = sum(counts.lost_by.values()), sum(counts.dropped_by.values())
     if nodes and len(off) == nodes:
-        return Headline(DOWN, f"All {nodes:,} nodes are off.", off)
+        who = every(nodes, "node").capitalize()
+        return Headline(DOWN, f"{who} {'is' if nodes == 1 else 'are'} off.", off)
     if lost and not counts.arrived:
-        return Headline(DOWN, f"None of {counts.sent:,} frames arrived.", off)
+        return Headline(DOWN, _none(counts.sent, "frame", "arrived", "did not arrive"), off)
     missing = 0 if goes_on else max(counts.offered - counts.delivered - dropped, 0)
     if (dropped or missing) and not counts.delivered:
-        return Headline(DOWN, f"None of {counts.offered:,} messages was delivered.", off)
+        said = _none(counts.offered, "message", "was delivered", "was not delivered")
+        return Headline(DOWN, said, off)
     if not (counts.sent or counts.offered or off):
         return Headline(NO_DATA, "No frame was sent.")
     wrong = [
@@ -206,15 +208,21 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
 
 
 def _well(counts: Counts) -> str:
-    kept = f"none of {counts.sent:,} frames is lost."
+    kept = "no frame is lost." if counts.sent < 2 else f"none of {counts.sent:,} frames is lost."
     if counts.delivered > counts.offered > 0:
         return f"{counts.offered:,} messages are delivered {counts.delivered:,} times, {kept}"
     under_way = counts.offered - counts.delivered
     if under_way > 0:
         return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
     if counts.offered:
-        return f"All {counts.offered:,} messages are delivered, {kept}"
+        what = every(counts.offered, "message").capitalize()
+        return f"{what} {'is' if counts.offered == 1 else 'are'} delivered, {kept}"
     return kept.capitalize()
+
+
+def _none(count: int, what: str, did: str, did_not: str) -> str:
+    """That not one of them did something, or that the only one did not."""
+    return f"None of {count:,} {what}s {did}." if count > 1 else f"The only {what} {did_not}."
 
 
 def _part(count: int, total: int, what: str, how: str) -> str:

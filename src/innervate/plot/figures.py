@@ -37,10 +37,10 @@ def draw_one(
         return figures[figure](run, **options)
 
 
-def chart(one: charts.Steps | charts.Bars | None) -> Figure:
-    """What a report shows, as a figure; None if there is nothing to be shown."""
+def chart(one: charts.Steps | charts.Bars | None, lacking: str = "") -> Figure:
+    """What a report shows, as a figure; of None one that says what is `lacking`."""
     if one is None:
-        return nothing("nothing to show")
+        return nothing(lacking)
     return paint.figure(captioned(one.drawing, one.text), one.head, style.COLUMN_IN)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, OK, Headline, silent
+from innervate.analysis.headline import DEGRADED, OK, Headline, every, silent
 from innervate.analysis.ways import NOWHERE, Numbers, reach
 from innervate.web.live_map import Link, Map, Place, Status
 
@@ -104,7 +104,8 @@ class State:
         if self.unconnected:
             apart = f"{self.unconnected:,} of {count:,} {self.noun}s"
             return Headline(DEGRADED, f"No links join {apart} with the others.")
-        return Headline(OK, f"All {count:,} {self.noun}s answer.")
+        who = every(count, self.noun)
+        return Headline(OK, f"{who[0].upper()}{who[1:]} answer{'s' if count == 1 else ''}.")
 
     def word(self, place: Place, name: str, otherwise: Any) -> Any:
         """What a node says of itself."""

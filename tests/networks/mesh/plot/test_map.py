@@ -121,6 +121,39 @@ def test_crossings_are_numbered_up_to_a_most(parse, texts):
     assert "1" in texts(field_map(result, sheet, "map", some[:1]))
 
 
+def written(parse, drawing):
+    """Per text of a drawing its box, as letters of 6.6 px and 11 px high."""
+    found = {}
+    for one in parse(drawing).iter():
+        if one.tag.endswith("text"):
+            long, x, y = 6.6 * len(one.text), float(one.get("x")), float(one.get("y"))
+            left = x - {"middle": 0.5, "end": 1}.get(one.get("text-anchor"), 0) * long
+            found[one.text] = (left, y - 9, left + long, y + 2)
+    return found
+
+
+def test_the_names_of_two_nodes_lie_beside_their_only_link(parse):
+    plan = plan_of(node=FIELD["node"][:2], standby=[], robot=[], monitor=0, event=[],
+                   fence=None)  # fmt: skip
+    drawing = field_map(SimpleNamespace(plan=plan, ended_us=9_000_000), Sheet(plan), "map")
+    (link,) = shapes(parse, drawing)["mesh"]
+    (begin, end), level = sorted(float(link.get(x)) for x in ("x1", "x2")), float(link.get("y1"))
+    boxes = written(parse, drawing)
+    for left, top, right, low in (boxes["n0 gateway"], boxes["n1"]):
+        assert right < begin or left > end or low < level or top > level
+
+
+@pytest.mark.parametrize("beside_m", [3, 6, 7.8, 8.1, 8.4])
+def test_no_name_lies_on_the_pin_of_a_crossing(parse, beside_m):
+    places = [*FIELD["node"][:5], {"name": "n5", "x_m": 125.0, "y_m": 0.0}]
+    places[4] = {"name": "near", "x_m": 125.0 - beside_m, "y_m": 22.5}
+    result = result_of(node=places)
+    drawing = field_map(result, Sheet(result.plan), "map", [crossing(10_000_000)])
+    x, y = map(float, shapes(parse, drawing)["warn"][0].get("d")[1:].split("l")[0].split(","))
+    for left, top, right, low in filter(None, [written(parse, drawing).get("near")]):
+        assert right < x - 5 or left > x + 5 or low < y - 13 or top > y
+
+
 def test_where_nobody_knows_places_no_crossing_has_one(parse):
     result, sheet = result_of(), Sheet(plan_of())
     sheet.metres = False

@@ -178,3 +178,15 @@ def test_nothing_is_written_on_nodes_and_lines():
     lined.block_line([(0, 100), (400, 100)])
     for x in range(60, 360, 60):
         assert lined.put((x, 100), "node", 10) == ((x, 90), "middle")  # above it
+
+
+@pytest.mark.parametrize(("lines", "anchor"), [
+    ([], "start"), ([((100, 100), (200, 100))], "end"),
+    ([((100, 100), (200, 100)), ((0, 100), (100, 100))], "middle"),
+    ([((0, 0), (200, 0))], "start"),  # far from here
+    ([((x, 0), (x, 400)) for x in (110, 112, 90, 100, 101)], "end"),  # one; two elsewhere
+])  # fmt: skip
+def test_a_name_lies_on_as_few_lines_as_it_can(lines, anchor):
+    names = Labels(400, 400)
+    names.avoid(lines)
+    assert names.put((100, 100), "n1", 9.0)[1] == anchor

@@ -72,6 +72,7 @@ def test_what_happened_is_told_in_the_order_in_which_it_did(view):
     (report(c.REPORT_GATEWAY, 1, 1), [("n1 leads as gateway", "info")]),
     (report(c.REPORT_GATEWAY, 1, 0), []),  # another leads
     (report(c.REPORT_TABLES, 0, 4, 0), [("tables are out", "info")]),
+    (report(c.REPORT_TABLES, 0, 4, 1), [("tables are out, but 1 node has none", "bad")]),
     (report(c.REPORT_TABLES, 0, 4, 2), [("tables are out, but 2 nodes have none", "bad")]),
     (report(c.REPORT_EXPIRED, 3), [("n3 gave a message up", "bad")]),
     (report(c.REPORT_ALARM, 4, c.CROSS, 4), [("robot n4 has crossed the fence", "bad")]),

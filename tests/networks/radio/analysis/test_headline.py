@@ -241,6 +241,8 @@ def test_running_stations():
     four = {i: told[i] for i in range(4)}
     assert headline(of_stations(four, 5, (4,), 0.0, PARAMS))[::2] == (DEGRADED, (4,))
     assert headline(of_stations({}, 5, (0, 1, 2, 3, 4), 0.0, PARAMS)).level == NO_DATA
+    two = {i: station(1, 1) for i in range(2)}
+    assert headline(of_stations(two, 2, (), 0.0, PARAMS)).text == "Both packets were delivered."
     idle = {i: station(0, 0) for i in range(5)}
     assert headline(of_stations(idle, 5, (), 0.0, PARAMS)).level == OK
 

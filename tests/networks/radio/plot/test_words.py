@@ -44,6 +44,8 @@ def test_a_report_in_words(code, b, said):
 ])  # fmt: skip
 def test_an_event_in_words(action, said):
     assert words.fault_words(Of(action=action, node=2, value=3)) == f"station 2: {said}"
+    one = said.replace("3 CR-Rs", "CR-R")
+    assert words.fault_words(Of(action=action, node=2, value=1)) == f"station 2: {one}"
 
 
 def test_what_became_of_packets_of_robots_that_were_off():

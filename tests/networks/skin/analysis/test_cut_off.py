@@ -197,7 +197,7 @@ def test_the_observer_agrees_with_a_search_along_the_cables():
         (SkinFacts(3, silent=(0, 1)), DEGRADED,
          "2 of 3 cells (0, 1) do not answer; the other cell has a way to the PC."),
         (SkinFacts(3, silent=(0, 1, 2)), NO_DATA, "No cell answers: nothing is known of the skin."),
-        (SkinFacts(2, off=(0, 1)), DOWN, "All 2 cells are switched off."),
+        (SkinFacts(2, off=(0, 1)), DOWN, "Both cells are switched off."),
         (SkinFacts(1, cut_off=(0,)), DOWN,
          "The only cell is cut off: no cable joins it with the PC any more."),
         (None, NO_DATA, "Nobody watched who had a way to the PC."),

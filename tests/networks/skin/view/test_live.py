@@ -114,7 +114,7 @@ def test_a_command_is_sent_by_the_pc_and_told_when_all_have_it():
     assert view.news(told, lambda i: f"c{i}") == []
     assert view.news(without(three(), 0, 1), lambda i: f"c{i}") == []  # no cell answers
     told[1]["command"] = 7
-    assert view.news(told, lambda i: f"c{i}") == [("command 7 came to all 2 cells", "good")]
+    assert view.news(told, lambda i: f"c{i}") == [("command 7 came to both cells", "good")]
     assert view.news(told, lambda i: f"c{i}") == []  # once
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import (
     DELIVERED,
@@ -212,9 +212,7 @@ def _part(part: int, whole: int, what: str) -> str:
     """'1 of 91 messages', 'the only crossing', 'both robots', 'all 30 nodes'."""
     if part < whole:
         return f"{part:,} of {_count(whole, what)}"
-    if whole > 2:
-        return f"all {_count(whole, what)}"
-    return f"both {what}s" if whole == 2 else f"the only {what}"
+    return every(whole, what)
 
 
 def _is(count: int) -> str:

@@ -34,12 +34,12 @@ def field(run: Any) -> Figure:
 
 def latency(run: Any) -> Figure:
     """Share of the messages delivered within a time."""
-    return chart(charts.latency(run.result, run.summary))
+    return chart(charts.latency(run.result, run.summary), "no message was delivered")
 
 
 def delivery(run: Any, bins: int = charts.BINS) -> Figure:
     """Share of the messages offered in each part of the run that were delivered."""
-    return chart(charts.over_time(run.result, bins))
+    return chart(charts.over_time(run.result, bins), "no message was offered")
 
 
 def alarms(run: Any) -> Figure:

@@ -106,8 +106,11 @@ def field_map(
         to = hop.to if hop.to < plan.nodes else _next_of(way, hop, monitor_of(plan))
         names.block_line([places[hop.node], places[to]])
         arrow(drawing, places[hop.node], places[to], sheet.dot + 3, "way")
+    pins = _pins(field, crossings)
+    for x, y in pins:
+        names.block((x, y - 8), 8.0)
     nodes(field, places, ringed)
-    marks(field, crossings)
+    marks(field, pins)
     return drawing
 
 
@@ -133,9 +136,10 @@ def ground(field: Field) -> None:
     if edges:
         rings = _rings(plan, sheet)
         drawing.path("".join(svg.polyline(ring) + "z" for ring in rings), "zone")
-    for a, b in plan.good:
-        if not (plan.robots[a] or plan.robots[b]):
-            drawing.line(*sheet.between(a, b), "mesh" if on[a] and on[b] else "mesh gone")
+    links = [(a, b) for a, b in plan.good if not (plan.robots[a] or plan.robots[b])]
+    for a, b in links:
+        drawing.line(*sheet.between(a, b), "mesh" if on[a] and on[b] else "mesh gone")
+    names.avoid(sheet.between(a, b) for a, b in links)
     for ring in _rings(plan, sheet) if edges else ():
         drawing.path(svg.polyline(ring) + "z", "fence")
         names.block_line([*ring, ring[0]])
@@ -179,17 +183,22 @@ def walks(field: Field) -> None:
             names.block_line(points[:CORNERS_MAX])
 
 
-def marks(field: Field, crossings: Sequence[Crossing]) -> None:
-    """Where robots left the fence, numbered in order of time."""
-    drawing, plan, sheet, names, _ = field
-    walk_of = {walk.node: walk for walk in plan.walks}
-    for i, crossing in enumerate(crossings[:CROSSINGS_MAX] if sheet.metres else ()):
-        at = sheet.of_cm(position_cm(walk_of[crossing.robot], crossing.crossed_us))
-        drawing.path(pin(at), "warn")
-        names.block((at[0], at[1] - 8), 6.0)
-        place = names.put((at[0], at[1] - 8), str(i + 1), 8.0, strong=True)
+def _pins(field: Field, crossings: Sequence[Crossing]) -> list[Point]:
+    """Where robots left the fence, in order of time; none if the sheet has no metres."""
+    walk_of = {walk.node: walk for walk in field.plan.walks}
+    return [
+        field.sheet.of_cm(position_cm(walk_of[crossing.robot], crossing.crossed_us))
+        for crossing in (crossings[:CROSSINGS_MAX] if field.sheet.metres else ())
+    ]
+
+
+def marks(field: Field, pins: Sequence[Point]) -> None:
+    """Pins where robots left the fence, numbered."""
+    for i, (x, y) in enumerate(pins, 1):
+        field.drawing.path(pin((x, y)), "warn")
+        place = field.names.put((x, y - 8), str(i), 9.0, strong=True)
         if place is not None:
-            drawing.text(place[0], str(i + 1), "alarm strong", place[1])
+            field.drawing.text(place[0], str(i), "alarm strong", place[1])
 
 
 def pin(at: Point) -> str:

@@ -132,6 +132,12 @@ class Labels:
     def __init__(self, width: float, height: float) -> None:
         self._limits = (2.0, 2.0, width - 2, height - 2)
         self._taken: list[Box] = []
+        self._lines = np.zeros((0, 4))
+
+    def avoid(self, lines: Iterable[tuple[Point, Point]]) -> None:
+        """Where there is a choice, names lie on as few of these lines as they can."""
+        ends = [(*start, *end) for start, end in lines]
+        self._lines = np.array(ends, np.float64).reshape(-1, 4)
 
     def block(self, centre: Point, radius: float) -> None:
         """Nothing may be written there."""
@@ -163,12 +169,22 @@ class Labels:
             ((x - slant, y - slant), "end"),
             ((x - slant, y + slant + 8), "end"),
         )
-        for place, anchor in places:
-            box = _box(place, anchor, long)
-            if self._is_free(box):
-                self._taken.append(box)
-                return place, anchor
-        return None
+        boxes = [_box(place, anchor, long) for place, anchor in places]
+        free = [i for i, box in enumerate(boxes) if self._is_free(box)]
+        if not free:
+            return None
+        best = min(free, key=lambda i: self._crossed(boxes[i]))
+        self._taken.append(boxes[best])
+        return places[best]
+
+    def _crossed(self, box: Box) -> int:
+        """How many of the lines that names avoid run through a box."""
+        way = self._lines[:, 2:] - self._lines[:, :2]
+        way[way == 0] = 1e-9
+        parts = [(np.array(corner) - self._lines[:, :2]) / way for corner in (box[:2], box[2:])]
+        begin = np.minimum(*parts).max(axis=1, initial=0.0)
+        end = np.maximum(*parts).min(axis=1, initial=1.0)
+        return int(np.count_nonzero(begin < end))
 
     def _is_free(self, box: Box) -> bool:
         low_x, low_y, high_x, high_y = self._limits

@@ -16,6 +16,7 @@ from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
+from innervate.plot.words import number_of
 from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
 from innervate.sim.field.states import ALIVE, DEAD, ON_AIR
 from innervate.web.engine import Engine, Rows
@@ -112,7 +113,8 @@ class MeshView(View):
         elif code == c.REPORT_GATEWAY and a == node:
             log.say(at, f"{name[node]} leads as gateway")
         elif code == c.REPORT_TABLES:
-            missing = f", but {b} nodes have none" if b else ""
+            lack = f"{number_of(b, 'node')} {'has' if b == 1 else 'have'} none"
+            missing = f", but {lack}" if b else ""
             log.say(at, f"tables are out{missing}", "bad" if b else "info")
         elif code == c.REPORT_EXPIRED:
             log.often("expired", at, f"{name[node]} gave a message up", "bad")

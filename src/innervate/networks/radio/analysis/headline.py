@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.analysis.words import figure_words
 
 NAMED = 4  # so many robots are named one by one
@@ -158,7 +158,7 @@ def _counts(facts: RadioFacts) -> list[str]:
         yet = "was delivered" if facts.ended else "has been delivered yet"
         return [f"of {_count(expected, 'packet', 'packets')} none {yet}"] if expected else []
     if facts.delivered == expected:
-        which = "the packet was" if expected == 1 else f"all {expected:,} packets were"
+        which = "the packet was" if expected == 1 else f"{every(expected, 'packet')} were"
         return [f"{which} delivered"] if expected else []
     was = "was" if facts.delivered == 1 else "were"
     share = f"{facts.delivered:,} of {_count(expected, 'packet', 'packets')} {was} delivered"

@@ -14,6 +14,7 @@ from innervate.plot.charts import Axis, Bar, Bars, Mark, Steps, distribution
 
 MARKS_MAX = 8
 BINS = 60
+NOTHING = "No packet was delivered."  # why a chart is empty
 
 
 def came(result: Any) -> Steps:
@@ -40,6 +41,8 @@ def filled(result: Any, bins: int = BINS) -> Steps:
         if x.low <= fault.at_us / 1e6 <= x.high
     ]
     text = f"In % of the time, in steps of {words.ms_words(1e3 * width)}."
+    if not share.any():
+        text = NOTHING
     return Steps(seconds, share, x, y, "The channel, filled with delivered packets", text, marks)
 
 
@@ -80,6 +83,8 @@ def shares(result: Any, summary: Mapping[str, Any]) -> Bars:
         text += f" Over one round of {n} turns: {summary['jain_round']:.3f}."
     if result.plan.saturated:
         text = f"{text} Without the first tenth of all packets.".strip()
+    if not any(counts):
+        return Bars(stations(counts), "Packets delivered, station by station", NOTHING)
     even = sum(counts) / n if n > 1 else None
     return Bars(stations(counts), "Packets delivered, station by station", text, even)
 

@@ -31,7 +31,8 @@ def timeline(run: Any, from_us: int | None = None, to_us: int | None = None) -> 
 
 def delay(run: Any) -> Figure:
     """Share of the packets delivered within a delay."""
-    return chart(charts.delays(run.result, radio.summarize(run.result)))
+    found = charts.delays(run.result, radio.summarize(run.result))
+    return chart(found, "no packet was delivered")
 
 
 def fairness(run: Any) -> Figure:

@@ -87,8 +87,8 @@ _ACTIONS = {
     JOIN: "switched on",
     KILL: "switched off without warning",
     LEAVE: "told to leave",
-    GARBLE: "next {value} CR-Rs garbled",
-    FADE: "next {value} CR-Rs not heard by anybody",
+    GARBLE: "next {many} garbled",
+    FADE: "next {many} not heard by anybody",
 }
 
 
@@ -127,7 +127,8 @@ def report_words(protocol: str, code: int, a: int, b: int) -> str:
 
 def fault_words(fault: Any) -> str:
     """An event of the scenario."""
-    what = _ACTIONS.get(fault.action, "something happened").format(value=fault.value)
+    many = "CR-R" if fault.value == 1 else f"{fault.value} CR-Rs"
+    what = _ACTIONS.get(fault.action, "something happened").format(many=many)
     return f"station {fault.node}: {what}"
 
 

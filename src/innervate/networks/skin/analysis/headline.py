@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import NamedTuple
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.analysis.words import share_words
 
 NAMED_MAX = 3
@@ -103,8 +103,7 @@ def _who(
 ) -> tuple[str, str, str]:
     """(some cells in words, the verb, the pronoun): "2 of 20 cells (n1, n2)", "are", "them"."""
     if len(nodes) == facts.cells:
-        return (f"all {facts.cells:,} cells", "are", "them") if facts.cells > 1 else (
-            "the only cell", "is", "it")  # fmt: skip
+        return every(facts.cells, "cell"), *(("are", "them") if facts.cells > 1 else ("is", "it"))
     names = ", ".join(label(node) for node in sorted(nodes))
     shown = f" ({names})" if len(nodes) <= NAMED_MAX else ""
     verb, them = ("is", "it") if len(nodes) == 1 else ("are", "them")
@@ -115,7 +114,7 @@ def _before(facts: SkinFacts) -> list[str]:
     if not facts.cut_off_before:
         return []
     few = f"{facts.cut_off_before:,} of {facts.cells:,} cells"
-    who = f"all {facts.cells:,} cells" if facts.cut_off_before == facts.cells else few
+    who = every(facts.cells, "cell") if facts.cut_off_before == facts.cells else few
     verb = "was" if facts.cut_off_before == 1 else "were"
     return [f"{who} {verb} cut off from the PC for a time"]
 

@@ -259,7 +259,12 @@ class Digest:
         if not loads:
             return None
         bars = [
-            charts.Bar(f"port {i}", load, f"{load:,} cells", f"p{i % 8}" if self._tells else "bar")
+            charts.Bar(
+                f"port {i}",
+                load,
+                words.number_of(load, "cell"),
+                f"p{i % 8}" if self._tells else "bar",
+            )
             for i, load in enumerate(loads)
         ]
         even = sum(loads) / len(loads) if len(loads) > 1 else None

@@ -73,7 +73,7 @@ def routes(run: Any, time_s: float | None = None) -> Figure:
 
 def loads(run: Any) -> Figure:
     """Cells that each interface port serves at the end, against the even split."""
-    return chart(Digest(run.result, run.summary).loads())
+    return chart(Digest(run.result, run.summary).loads(), "there is no interface port")
 
 
 def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) -> Figure:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from innervate.analysis.headline import every
 from innervate.networks.skin.scenario.orders import ALL, Order
-from innervate.plot.words import ms_words, number_of
+from innervate.plot.words import ms_words
 from innervate.web.errors import Refused
 from innervate.web.history import Logbook
 from innervate.web.messages import Give, number
@@ -50,8 +51,8 @@ def reached(log: Logbook, graph: Any, given: Given, at_us: int, number: int, cel
             "came", at_us, f"command {number} came to {graph.label(cell)} after {took}", "good"
         )
     elif given.reached == graph.cells:
-        every = number_of(graph.cells, "cell")
-        log.often("came", at_us, f"command {number} came to all {every} after {took}", "good")
+        whom = every(graph.cells, "cell")
+        log.often("came", at_us, f"command {number} came to {whom} after {took}", "good")
 
 
 def table(order: Order, target: dict[str, Any]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.headline import Headline
+from innervate.analysis.headline import Headline, every
 from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
 from innervate.networks.skin.analysis.headline import SkinFacts, skin_headline
 from innervate.web.errors import Refused
@@ -183,7 +183,7 @@ class SkinLiveView(LiveView):
             whom = [cell] if cell is not None else list(has)
             if whom and all(has.get(one) == given for one in whom):
                 del self._under_way[given]
-                who = name(cells[cell]) if cell is not None else f"all {len(whom):,} cells"
+                who = name(cells[cell]) if cell is not None else every(len(whom), "cell")
                 found.append((f"command {given} came to {who}", "good"))
         return found
 
