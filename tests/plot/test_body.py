@@ -60,6 +60,24 @@ def test_deliveries_come_first_then_what_was_reported_most():
     assert len(body._series(result(rows))) == 3
 
 
+@pytest.mark.parametrize(("kind", "names"), [
+    ("babel", {1: "route", 2: "drop", 3: "link"}), ("flooding", {2: "gave up"}),
+    ("rpl", {1: "no route", 5: "parent"}), ("mesh", {}),
+])  # fmt: skip
+def test_reports_have_the_names_that_any_part_of_the_protocol_gives_them(kind, names):
+    found = body._report_names(kind)
+    assert {code: found[code] for code in names} == names
+
+
+@pytest.mark.parametrize("faults", [(), (Of(at_us=700_000),)])
+def test_lines_in_charts_are_said_to_be_events(faults):
+    drawn = body._over_time(Of(
+        ended_us=2_000_000, rows={"deliveries": np.array([(5,)], [("time", "i8")])},
+        plan=Of(kind="babel", faults=faults),
+    ))  # fmt: skip
+    assert ('class="mark"' in drawn) == ("dashed: the events below" in drawn) == bool(faults)
+
+
 def test_so_many_charts_are_shown():
     made = result([(at, 0, code) for code in range(20) for at in range(code + 1)])
     text = body._over_time(made)
@@ -118,7 +136,7 @@ def test_lines_and_letters_are_as_wide_as_the_figure_makes_them():
     whole.text((3, 4), "a $b", "small", "middle")
     for width_in in (1.0, 2.0):
         made, (line, rect) = painted(whole, width_in)
-        scale = 0.72 * width_in
+        scale = 0.72 * (width_in - 2 * paint.EDGE_IN)
         assert line.get_facecolor()[3] == 0.0
         assert colors.to_rgba(rect.get_facecolor())[3] > 0.0
         style = dict(paint._rules())["cable"]

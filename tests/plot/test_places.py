@@ -102,5 +102,5 @@ def test_messages_in_words(sent, came, words):
     frames = {"sent": 1234, "arrived": 1200, "lost": 34,
               "lost_by": {"cut": 3, "noise": 31, "off": 0}}  # fmt: skip
     lines = traffic_lines({"frames": frames, "messages": messages})
-    assert lines[0] == "Frames: 1,234 sent, 1,200 arrived, 34 lost, 31 noise, 3 cut"
+    assert lines[0] == "Frames: 1,234 sent, 1,200 arrived, 34 lost: 31 noise, 3 cut"
     assert lines[1:] == ([words] if words else [])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from html import escape
 from typing import Any
@@ -99,6 +100,7 @@ def _over_time(result: Any) -> str:
     """How often what was reported and delivered, added up over time."""
     end_s = max(result.ended_us / 1e6, 1e-6)
     marks = [charts.Mark(fault.at_us / 1e6, "") for fault in result.plan.faults]
+    text = "So many so far; dashed: the events below." if marks else "So many so far."
     figures = []
     for name, times in _series(result)[:CHARTS_MAX]:
         shown = charts.Steps(
@@ -106,7 +108,7 @@ def _over_time(result: Any) -> str:
             charts.Axis(0, max(1, len(times))), f"{name} over time",
             marks=marks[: charts.BARS_MAX],
         )  # fmt: skip
-        figures.append(figure(shown.drawing, name, "So many so far."))
+        figures.append(figure(shown.drawing, name, text))
     return section("Over time", pictures(figures, "two"))
 
 
@@ -124,13 +126,16 @@ def _series(result: Any) -> list[tuple[str, Any]]:
 
 
 def _report_names(kind: str) -> dict[int, str]:
-    """What a protocol calls the codes of its reports: its constants REPORT_..."""
+    """What a protocol, or a module beside it, calls the codes of its reports: REPORT_..."""
     network = networks()[kind]
-    constants = vars(network.protocol) if network.has("protocol") else {}
-    head = "REPORT_"
+    if not network.has("protocol"):
+        return {}
+    package, head = network.protocol.__package__, "REPORT_"
+    beside = [one for name, one in sorted(sys.modules.items()) if name.startswith(f"{package}.")]
     return {
         code: name.removeprefix(head).lower().replace("_", " ")
-        for name, code in constants.items() if name.startswith(head)
+        for one in (*(beside if package else ()), network.protocol)
+        for name, code in vars(one).items() if name.startswith(head)
     }  # fmt: skip
 
 

@@ -25,7 +25,7 @@ def traffic_lines(summary: Mapping[str, Any]) -> list[str]:
     frames, messages = summary["frames"], summary["messages"]
     lines = [
         f"Frames: {frames['sent']:,} sent, {frames['arrived']:,} arrived, "
-        f"{frames['lost']:,} lost{_reasons(frames['lost_by'])}"
+        f"{frames['lost']:,} lost{_reasons(frames['lost_by']).replace(', ', ': ', 1)}"
     ]
     if messages["sent"] or messages["delivered"]:
         # A protocol that hands up what no user gave (a token, say) delivers without being sent.

@@ -130,7 +130,7 @@ def test_nothing_is_said_to_be_sent_that_nobody_gave():
     messages = {"sent": 0, "delivered": 3, "dropped_by": {}, "latency_ms": latency}
     frames = {"sent": 4, "arrived": 3, "lost": 1, "lost_by": {"cut": 1}}
     assert traffic_lines({"frames": frames, "messages": messages}) == [
-        "Frames: 4 sent, 3 arrived, 1 lost, 1 cut", "Messages: 3 delivered",
+        "Frames: 4 sent, 3 arrived, 1 lost: 1 cut", "Messages: 3 delivered",
     ]  # fmt: skip
     told = traffic_lines({"frames": frames, "messages": messages | {"sent": 5}})
     assert told[1] == "Messages: 5 sent, 3 delivered"

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from innervate.networks.skin.analysis import touch
+from innervate.networks.skin.analysis.frames import lost_at_start
 from innervate.networks.skin.plot import map as skinmap
 from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.history import History
@@ -288,5 +289,8 @@ class Digest:
             for reason, count in sorted(lost.items(), key=lambda item: -item[1])
         ]
         total = f"{data['lost']:,} of {data['sent']:,} samples were lost"
+        first = lost_at_start(self.result)
+        if first:
+            total += f", {first:,} of them before cells had a way for the first time"
         return charts.Bars(bars, "Where samples were lost", f"{total}.",
                            label="Lost samples by reason")  # fmt: skip
