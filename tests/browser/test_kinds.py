@@ -1,6 +1,7 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser.servers import beside, click, expect
+from tests.browser.servers import beside, click, expect, place
+from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN
 
 RADIO = """
 kind = "radio"
@@ -63,3 +64,74 @@ def test_a_mesh(look, tmp_path):
         expect(page.locator("#selected-facts")).to_contain_text("link, cut")
         expect(page.locator("#recovery .more")).to_contain_text("home")
         assert page.evaluate(PAINTED, "#stage") > 1000
+
+
+BABEL = """
+kind = "babel"
+name = "a ring"
+nodes = 5
+duration_s = 119.7
+"""
+
+
+def test_a_network_that_does_not_say_who_has_a_way(look, tmp_path):
+    """Who is cut off is known from its cables; when it has recovered nobody says."""
+    path = tmp_path / "babel.toml"
+    path.write_text(BABEL)
+    with beside(path, 0.1) as address:
+        page = look(address)
+        label = page.locator("#unconnected .label")
+        expect(label).to_have_text("cut off")
+        expect(page.locator("#clock")).to_contain_text("/ 1:59.7 min")
+        for cable in ("n0 - n1", "n0 - n4"):
+            click(page, cable)
+            expect(page.locator("#selected-facts")).to_have_text("link, cut")
+        expect(page.locator("#unconnected output")).to_have_text("4")
+        expect(page.locator("#unconnected .more")).to_have_text("of 5 nodes")
+        expect(page.locator("#recovery")).to_be_hidden()
+
+
+TWO = """
+kind = "mesh"
+name = "two"
+duration_s = 60
+[[node]]
+name = "home"
+x_m = 0
+y_m = 0
+[[node]]
+name = "far"
+x_m = 25
+y_m = 0
+"""
+
+
+def test_the_line_round_who_is_selected_leaves_its_name_free(look, tmp_path):
+    path = tmp_path / "two.toml"
+    path.write_text(TWO)
+    with beside(path, None) as address:
+        page = look(address, script=WRITTEN)
+        click(page, "far")
+        expect(page.locator("#selected-facts")).to_contain_text("switched off")
+        page.evaluate(DRAWN)
+        stage = page.locator("#stage").bounding_box()
+        x, y = place(page, "far")
+        x, y = x - stage["x"], y - stage["y"]
+        words = [one for canvas in page.evaluate(WORDS_OF, "#stage canvas") for one in canvas]
+        ((_, left, top, right, low),) = [one for one in words if one[0] == "far"]
+        apart = max(left - x, x - right, 0) ** 2 + max(top - y, y - low, 0) ** 2
+        assert apart**0.5 > 6 + 6 + 2.5  # a node, the line's middle, half of its width
+
+
+def test_an_empty_plot_says_so_and_one_of_a_thing_is_one(look, tmp_path):
+    path = tmp_path / "two.toml"
+    path.write_text(TWO)
+    with beside(path, None) as address:
+        page = look(address, script=WRITTEN)
+        expect(page.locator("#stage")).to_have_attribute(
+            "aria-label", "Map of two: 2 nodes, 1 link"
+        )
+        written = f"({WORDS_OF})('.plot canvas').flat().map(([text]) => text)"
+        page.wait_for_function(f"() => {written}.includes('nothing yet')")
+        page.wait_for_function(f"() => {written}.includes('1 node')")
+        assert not page.evaluate(f"{written}.includes('1 nodes')")

@@ -60,7 +60,7 @@ class DeclaredView(View):
             for i, (x, y) in enumerate(self._places())
         ]
         return {"nodes": nodes, "links": self.cables.scene(), "ports": 0, "fence": None,
-                "series": self.series, "fields": self.shown}  # fmt: skip
+                "series": self.series, "fields": self.shown, "recovers": False}  # fmt: skip
 
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""

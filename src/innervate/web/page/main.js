@@ -16,6 +16,7 @@ import { Connection, TOKEN } from "./socket.js";
 import { LAYERS, Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
 import { Tip } from "./tip.js";
+import { plural } from "./words.js";
 
 const VIEWS = { skin: SkinView, mesh: MeshView, radio: RadioView };
 const SOURCES = { simulation: "simulation", run: "recorded run", live: "live nodes" };
@@ -133,8 +134,8 @@ function showScene(scene) {
     ["look", "only selects"],
   ]);
   $("stage").classList.toggle("acts", acts);
-  $("stage").setAttribute("aria-label", `Map of ${scene.name}: ${scene.nodes.length} nodes, `
-    + `${scene.links.length} links`);
+  $("stage").setAttribute("aria-label", `Map of ${scene.name}: `
+    + `${plural(scene.nodes.length, "node")}, ${plural(scene.links.length, "link")}`);
   const runs = scene.kind === "radio" && !isLive; // nobody tells who sent when
   $("timeline").hidden = !runs;
   timeline.network = runs ? network : null;

@@ -13,6 +13,7 @@ const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, p
 const FAIR = 0.6;
 const WAYS = ["", "no way to the gateway", "cut off from the gateway"];
 const CROSS_PX = 7; // round the cross of a cut, where no name goes
+export const NAME_PX = 9; // between a node and its name: the line round who is selected lies there
 const HEAD_PX = 24; // so much of both ends of an arrow names keep off
 const LINK_PX = 5; // how near a click must be to a link
 const FONT = "12px system-ui, sans-serif";
@@ -255,7 +256,7 @@ export class MeshView {
       context.font = strong ? `600 ${FONT}` : FONT;
       const colour = state ? colours.alarm : strong ? colours.ink : colours.soft;
       for (const text of texts) {
-        const at = names.put(text, stage.x[i], stage.y[i], dot + (state ? 9 : 4));
+        const at = names.put(text, stage.x[i], stage.y[i], dot + NAME_PX);
         if (at) word(context, text, ...at, colour, colours.ground, context.font);
         if (at) break;
       }

@@ -61,13 +61,14 @@ export function showNumbers(network) {
     } else show("recovery", shown, more, look);
   }
   const isOnAir = network.kind === "radio" || network.scene.ways === false; // who hears has no way
-  const label = isOnAir ? offWord(network) : "without a way";
+  const tellsWays = network.scene.recovers !== false;
+  const label = isOnAir ? offWord(network) : tellsWays ? "without a way" : "cut off";
   $("unconnected").querySelector(".label").textContent = label;
   $("since").querySelector(".label").textContent = `since the last ${isOnAir ? "failure" : "cut"}`;
-  $("recovery").hidden = isOnAir;
+  $("recovery").hidden = isOnAir || !tellsWays;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
-  const off = apart ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
+  const off = apart && tellsWays ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
     isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
 }

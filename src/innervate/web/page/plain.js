@@ -1,7 +1,7 @@
 // Any network: nodes and links as those of a mesh, coloured by the fields that its protocol has.
 import { colours, shade } from "./colours.js";
 import { Labels } from "./labels.js";
-import { MeshView } from "./mesh.js";
+import { MeshView, NAME_PX } from "./mesh.js";
 import { affected, affectedSample, arrow, cross, stroke, word } from "./shapes.js";
 import { LAYERS } from "./stage.js";
 import { off, offWord } from "./words.js";
@@ -75,7 +75,7 @@ export class PlainView extends MeshView {
     });
     affected(context, network, stage, dot + 5);
     nodes.forEach(({ label }, i) => {
-      const at = names.put(label, stage.x[i], stage.y[i], dot + 4);
+      const at = names.put(label, stage.x[i], stage.y[i], dot + NAME_PX);
       if (at) word(context, label, ...at, colours.soft, colours.ground, FONT);
     });
   }

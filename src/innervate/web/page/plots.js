@@ -73,6 +73,13 @@ export class Plots {
     }
     context.lineJoin = "round";
     stroke(context, colours.accent, 1.8, curve);
+    if (!shown.length) {
+      const isOver = points.some(([, v]) => v !== null);
+      const text = isOver ? "nothing in this time" : "nothing yet";
+      context.textAlign = "center";
+      word(context, text, (GUTTER + width - SIDE) / 2, up(most / 2), colours.soft, colours.panel,
+        FONT);
+    }
     for (const [name, look] of Object.entries(EVENTS)) {
       const path = new Path2D();
       for (const t of this.network.marks[name].filter((at) => at >= from)) {

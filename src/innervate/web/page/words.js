@@ -3,15 +3,15 @@
 /** A time of the network: milliseconds, or microseconds where single events are looked at. */
 export function clock(t_s, digits = 3) {
   if (t_s < 100) return `${t_s.toFixed(digits)} s`;
-  const minutes = Math.floor(t_s / 60);
-  return `${minutes}:${(t_s - 60 * minutes).toFixed(digits).padStart(digits + 3, "0")} min`;
+  const rounded = Number(t_s.toFixed(digits)); // 119.9999 s are 2:00.000 min, not 1:60.000
+  const minutes = Math.floor(rounded / 60);
+  const seconds = (rounded - 60 * minutes).toFixed(digits);
+  return `${minutes}:${seconds.padStart(digits ? digits + 3 : 2, "0")} min`;
 }
 
 /** How long a run lasts, without more digits than it has. */
 export function whole(t_s) {
-  if (t_s < 100) return `${Number(t_s.toFixed(3))} s`;
-  const minutes = Math.floor(t_s / 60);
-  return `${minutes}:${String(Math.round(t_s - 60 * minutes)).padStart(2, "0")} min`;
+  return t_s < 100 ? `${Number(t_s.toFixed(3))} s` : clock(t_s).replace(/\.?0+ min$/, " min");
 }
 
 /** How long something took, in milliseconds or seconds. */
@@ -32,7 +32,8 @@ export function ago(s) {
 export function value(v, unit) {
   const size = Math.abs(v);
   const digits = size >= 100 || Number.isInteger(v) ? 0 : size >= 10 ? 1 : size >= 0.1 ? 2 : 3;
-  return `${v.toFixed(digits)}${unit ? ` ${unit}` : ""}`;
+  const one = v === 1 ? unit.replace(/^(cell|frame|node)s$/, "$1") : unit;
+  return `${v.toFixed(digits)}${one ? ` ${one}` : ""}`;
 }
 
 export const SPEEDS = [
