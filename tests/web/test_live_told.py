@@ -62,6 +62,11 @@ class Nodes:
         history = self.source.history
         return [one.what["text"] for one in history.after(LOG, 0, history.newest, 99)]
 
+    def marks(self):
+        history = self.source.history
+        lines = [one.what for one in history.after(LOG, 0, history.newest, 99)]
+        return [line["mark"] for line in lines if "mark" in line]
+
     def points(self):
         history = self.source.history
         return [one.what for one in history.after(SERIES, 0, history.newest, 99)]
@@ -100,6 +105,19 @@ def test_what_others_cut_is_said_and_begins_a_recovery_what_is_put_back_only_sai
     assert shown["recovery"]["cause"] == "link a - b cut, and 1 more"
     cuts = [text for text in nodes.texts() if text.startswith("link")]
     assert cuts == ["link a - b cut", "link a - b put back", "link a - b cut", "link b - c cut"]
+    assert nodes.marks()[-4:] == ["loss", "return", "loss", "loss"], "as plots show clicks"
+
+
+@pytest.mark.parametrize(("apart_s", "told"), [(1.0, 18), (6.0, 24)])
+def test_what_others_cut_is_told_again_once_it_was_calm(nodes, apart_s, told):
+    """Of a flood the first eight, and that there is more."""
+    nodes.look(1.0)
+    for _ in range(12):
+        nodes.told = all_of_them(n1={"up": (False, True)})
+        nodes.look(apart_s / 2)
+        nodes.told = all_of_them()
+        nodes.look(apart_s / 2)
+    assert sum(text.startswith(("link", "...")) for text in nodes.texts()) == told
 
 
 @pytest.mark.parametrize(("after_s", "is_ours"), [(EXPECTED_S - 0.01, True),
@@ -187,6 +205,11 @@ def test_several_that_go_are_one_cause(nodes):
     assert [text for text in nodes.texts() if "not answer" in text] == [
         "b does not answer any more", "c does not answer any more",
     ]  # fmt: skip
+    assert nodes.marks()[-2:] == ["loss", "loss"]
+    nodes.told = all_of_them()
+    nodes.look(0.5)
+    assert "c answers again" in nodes.texts()
+    assert nodes.marks()[-2:] == ["return", "return"]
 
 
 def test_nodes_are_asked_more_often_while_somebody_has_no_way(nodes):

@@ -70,9 +70,12 @@ class Logbook:
 
     FLOOD = 8
 
-    def __init__(self, history: History) -> None:
+    def __init__(self, history: History, calm_us: int | None = None) -> None:
+        """`calm_us`: a kind without a line for so long is no flood any more; None = until calm."""
         self._history = history
+        self._calm_us = calm_us
         self._written: dict[str, int] = {}
+        self._newest_us: dict[str, int] = {}
 
     def say(self, at_us: int, text: str, level: str = "info", mark: str = "") -> None:
         """A line; `level` is info, good or bad; `mark`, LOSS or RETURN, is shown in plots."""
@@ -81,13 +84,18 @@ class Logbook:
             line["mark"] = mark
         self._history.add(LOG, at_us, line)
 
-    def often(self, kind: str, at_us: int, text: str, level: str = "info") -> None:
+    def often(
+        self, kind: str, at_us: int, text: str, level: str = "info", mark: str = ""
+    ) -> None:
         """One of many lines of a kind."""
+        before_us, self._newest_us[kind] = self._newest_us.get(kind, at_us), at_us
+        if self._calm_us is not None and at_us - before_us > self._calm_us:
+            self._written[kind] = 0
         self._written[kind] = self._written.get(kind, 0) + 1
         if self._written[kind] <= self.FLOOD:
-            self.say(at_us, text, level)
+            self.say(at_us, text, level, mark)
         elif self._written[kind] == self.FLOOD + 1:
-            self.say(at_us, "... and more of that", level)
+            self.say(at_us, "... and more of that", level, mark)
 
     def calm(self) -> None:
         """Lines of all kinds are written again."""

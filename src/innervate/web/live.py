@@ -27,6 +27,7 @@ from innervate.web.source import Source
 POLL_S = 0.2
 SOON_S = 0.05  # while somebody has no way
 EXPECTED_S = 2.0  # so soon what is asked for is seen
+CALM_US = 5_000_000  # so long without a line of a kind, and the next is news again
 SLOW = 2  # who gives no answer so often in a row does not answer any more
 STATUS = {"do": "status"}
 
@@ -70,7 +71,7 @@ class Live(Source):
         self._asked_for: dict[Any, float] = {}  # what is cut or put back from here: until when
         self._last: dict[int, Status] = {}  # the newest word of those that do not answer, too
         self._never: set[int] = set()
-        self._log = Logbook(self.history)
+        self._log = Logbook(self.history, CALM_US)
         self._next = 0.0
         self._counters: Counter[str] = Counter()
         self._counted_us = 0
@@ -207,11 +208,13 @@ class Live(Source):
         self._told = told
         went = sorted(before.keys() - told.keys())
         for i in went:
-            self._log.often("went", at_us, f"{self._names[i]} does not answer any more", "bad")
+            text = f"{self._names[i]} does not answer any more"
+            self._log.often("went", at_us, text, "bad", LOSS)
         for i in sorted(told.keys() - before.keys()):
             if i in self._last:
                 again = "" if i in self._never else " again"
-                self._log.often("came", at_us, f"{self._names[i]} answers{again}", "good")
+                text, mark = f"{self._names[i]} answers{again}", RETURN if again else ""
+                self._log.often("came", at_us, text, "good", mark)
                 self._never.discard(i)
         self._last = {**self._last, **told}
         if went:
@@ -231,9 +234,9 @@ class Live(Source):
             if self._asked_for.pop(self._map.key(what), 0.0) < time.monotonic():
                 (back if up else cut).append(what)
         for what in cut:
-            self._log.often("cut", self._now_us(), self._words(what, False))
+            self._log.often("cut", self._now_us(), self._words(what, False), mark=LOSS)
         for what in back:
-            self._log.often("back", self._now_us(), self._words(what, True))
+            self._log.often("back", self._now_us(), self._words(what, True), mark=RETURN)
         if cut:
             more = f", and {len(cut) - 1} more" if len(cut) > 1 else ""
             self._lose(self._words(cut[0], False) + more)
