@@ -84,9 +84,7 @@ class Logbook:
             line["mark"] = mark
         self._history.add(LOG, at_us, line)
 
-    def often(
-        self, kind: str, at_us: int, text: str, level: str = "info", mark: str = ""
-    ) -> None:
+    def often(self, kind: str, at_us: int, text: str, level: str = "info", mark: str = "") -> None:
         """One of many lines of a kind."""
         before_us, self._newest_us[kind] = self._newest_us.get(kind, at_us), at_us
         if self._calm_us is not None and at_us - before_us > self._calm_us:

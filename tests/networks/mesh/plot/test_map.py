@@ -214,7 +214,7 @@ def test_room_for_names_is_where_no_node_and_no_ring_is(monkeypatch):
     places = {0: (1, 1), 1: (2, 2), 2: (3, 3)}
     field = mesh_map.Field(drawing, plan, SimpleNamespace(dot=5.0), names, [True] * 3)
     mesh_map.nodes(field, places, ringed=[2])
-    assert blocked == [((1, 1), 7.0), ((2, 2), 7.0), ((3, 3), 9.0)]
+    assert blocked == [((1, 1), 7.0), ((2, 2), 7.0), ((3, 3), 10.0)]
     assert put == [((2, 2), "b gateway", 14.0, True), ((1, 1), "a", 9.0, False),
                    ((3, 3), "c", 14.0, False)]  # fmt: skip
     assert drawn == [((2, 2), "b gateway", "small strong", "end"), ((1, 1), "a", "small", "end"),

@@ -196,7 +196,7 @@ def marks(field: Field, pins: Sequence[Point]) -> None:
     """Pins where robots left the fence, numbered."""
     for i, (x, y) in enumerate(pins, 1):
         field.drawing.path(pin((x, y)), "warn")
-        place = field.names.put((x, y - 8), str(i), 9.0, strong=True)
+        place = field.names.put((x, y - 8), str(i), 11.0, strong=True)
         if place is not None:
             field.drawing.text(place[0], str(i), "alarm strong", place[1])
 
@@ -212,7 +212,7 @@ def nodes(field: Field, places: dict[int, Point], ringed: Collection[int] = ()) 
     role = roles(plan)
     for node in range(plan.nodes):
         symbol(drawing, places[node], sheet.dot, role[node], on[node], _tip(plan, node, role))
-        names.block(places[node], sheet.dot + (RING_PX if node in ringed else 2))
+        names.block(places[node], sheet.dot + (RING_PX + 1 if node in ringed else 2))
     # Those with a part to play are named first: the others find what room is left.
     for node in sorted(range(plan.nodes), key=lambda i: (not role[i], i)):
         if plan.nodes > NAMED_MAX and not role[node]:
