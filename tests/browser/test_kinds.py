@@ -123,7 +123,9 @@ def test_the_line_round_who_is_selected_leaves_its_name_free(look, tmp_path):
         assert apart**0.5 > 6 + 6 + 2.5  # a node, the line's middle, half of its width
 
 
-def test_an_empty_plot_says_so_and_one_of_a_thing_is_one(look, tmp_path):
+def test_an_empty_plot_says_so_one_of_a_thing_is_one_and_nothing_that_runs_is_read_out(
+    look, tmp_path
+):
     path = tmp_path / "two.toml"
     path.write_text(TWO)
     with beside(path, None) as address:
@@ -135,3 +137,7 @@ def test_an_empty_plot_says_so_and_one_of_a_thing_is_one(look, tmp_path):
         page.wait_for_function(f"() => {written}.includes('nothing yet')")
         page.wait_for_function(f"() => {written}.includes('1 node')")
         assert not page.evaluate(f"{written}.includes('1 nodes')")
+        for running in ("#since output", "#recovery output", "#clock"):
+            expect(page.locator(running)).to_have_attribute(
+                "aria-live", "off"
+            )  # else read for ever

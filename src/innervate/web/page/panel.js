@@ -68,7 +68,8 @@ export function showNumbers(network) {
   $("recovery").hidden = isOnAir || !tellsWays;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
-  const off = apart && tellsWays ? `; ${apart === unconnected ? "cut off" : `${apart} of them cut off`}` : "";
+  const who = apart === unconnected ? "cut off" : `${apart} of them cut off`;
+  const off = apart && tellsWays ? `; ${who}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
     isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
 }
