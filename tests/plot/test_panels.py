@@ -73,3 +73,15 @@ def test_a_node_is_a_disc_with_its_name_in_the_middle(is_end, is_actor, kind, na
         "class": kind, "cx": "40", "cy": "50", "r": "15"}  # fmt: skip
     assert (text.text, text.get("class"), text.get("x"), text.get("y")) == ("n1", name, "40", "54")
     assert text.get("text-anchor") == "middle"
+
+
+@pytest.mark.parametrize(("label", "rows"), [
+    ("n12", [("n12", 104.0)]), ("left", [("left", 104.0)]), ("right", [("right", 104.0)]),
+    ("p0 r0 c0", [("p0", 95.0), ("r0", 104.0), ("c0", 113.0)]), ("a 1", [("a 1", 104.0)]),
+    ("arm 12", [("arm", 99.5), ("12", 108.5)]),
+])  # fmt: skip
+def test_a_long_name_stands_in_its_disc_word_by_word(parse, label, rows):
+    drawing = panels.panel(0)
+    panels.disc(drawing, (50.0, 100.0), label, is_end=False, is_actor=True)
+    texts = [one for one in parse(drawing).iter() if one.tag.endswith("text")][1:]
+    assert [(one.text, float(one.get("y"))) for one in texts] == rows

@@ -370,4 +370,5 @@ def answers(graph: Any) -> Iterator[tuple[str, Drawn]]:
 
 def save(drawing: Any, path: Path) -> None:
     """Write a drawing so that it can be looked at by itself."""
-    panels.save(drawing, path)
+    of_mesh = import_module("innervate.networks.mesh.plot.counterexample")
+    panels.save(drawing, path, of_mesh._MORE)  # the others have none of their own

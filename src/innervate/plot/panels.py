@@ -15,6 +15,7 @@ RADIUS = 15.0
 TOP = 34.0
 LINE = 15.0
 LETTERS = 118
+DISC_LETTERS, WORD = 4, 9.0  # of a node's disc: letters that fit side by side, a row of a word
 STYLE = """
 .node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
 .actor{stroke:var(--accent);stroke-width:2.6}
@@ -64,9 +65,12 @@ def wrapped(text: str) -> list[str]:
 
 
 def disc(panel: Drawing, place: Point, label: str, is_end: bool, is_actor: bool) -> None:
-    """A node; `is_end` where ways lead to it."""
+    """A node, the words of a long name in rows; `is_end` where ways lead to it."""
     panel.circle(place, RADIUS, "pc" if is_end else f"node{' actor' if is_actor else ''}")
-    panel.text((place[0], place[1] + 4), label, "portname" if is_end else "small", "middle")
+    lines = label.split() if len(label) > DISC_LETTERS else [label]
+    for i, line in enumerate(lines):
+        y = place[1] + 4 + WORD * (i - (len(lines) - 1) / 2)
+        panel.text((place[0], y), line, "portname" if is_end else "small", "middle")
 
 
 def arrow(panel: Drawing, start: Point, end: Point, kind: str) -> None:
