@@ -106,7 +106,7 @@ def test_the_dissector_is_written_alone_or_besides(monkeypatch, capsys, of, give
     monkeypatch.setattr(exporting, "_Source", lambda *given: asked.append(given) or made)
     wanted = ExportOptions(dissector=True, **given)
     assert exporting.export(of, wanted) == 0
-    assert asked == [where, *([("there", ["seed=4"], 7), wanted] if files else [])]
+    assert asked == [*([("there", ["seed=4"], 7), wanted] if files else []), where]
     assert "Written: x.lua" in capsys.readouterr().out
 
 

@@ -9,6 +9,9 @@ from innervate import run
 from innervate.cli.app import main
 from innervate.export.reading import Capture
 from tests.export.test_captures import SKIN
+from tests.own import Own, alone, made, own
+
+__all__ = ["alone", "own"]
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +51,29 @@ def test_the_dissector_goes_where_it_is_told_or_to_wireshark(tmp_path, monkeypat
     texts = {(folder / "innervate.lua").read_text() for folder in both}
     assert len(texts) == 1
     assert "DissectorTable" in texts.pop()
+
+
+def test_the_dissector_knows_the_network_beside_the_scenario(own, monkeypatch):
+    monkeypatch.setenv("HOME", str(own.folder))
+    assert main(["export", str(own.scenario), "--graph", "g.json", "--dissector"]) == 0
+    text = (own.folder / ".local/lib/wireshark/plugins/innervate.lua").read_text()
+    assert 'define("gossip"' in text
+
+
+def test_two_networks_with_one_link_type_have_no_dissector(alone, capsys):
+    for name in ("gossip", "talk"):
+        made(alone / name)
+    both = ["--network", "gossip", "--network", "talk"]
+    assert main(["export", "--dissector", "here", *both]) == 2
+    assert (
+        "gossip and talk both have link_type 162; give one of them another in its network.py: "
+        "150, 152, 153," in capsys.readouterr().err
+    )
+    Own(alone / "talk").change("network.py", "link_type=162", "link_type=150")
+    assert main(["export", "--dissector", "here", *both]) == 0
+    text = (alone / "here/innervate.lua").read_text()
+    assert 'define("talk", encaps.USER3' in text
+    assert 'define("gossip", encaps.USER15' in text
 
 
 @pytest.mark.parametrize(

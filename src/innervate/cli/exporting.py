@@ -19,21 +19,24 @@ if TYPE_CHECKING:
 
 def export(source: str | None, wanted: ExportOptions) -> int:
     """Write what is wanted of a run folder or a scenario; with nothing else, only the dissector."""
-    if wanted.dissector:
-        folder = None if wanted.has_files or source is None else Path(source)
-        file = dissector.install(folder)
-        print(f"Written: {file}. Wireshark and tshark load it from there.")
-        if not wanted.has_files:
-            return 0
-    if not wanted.has_files:
+    folder = None if wanted.has_files or source is None else Path(source)
+    if wanted.has_files:
+        _write_files(source, wanted)
+    elif not wanted.dissector:
         names = "--pcapng, --mcap, --rerun, --graph, --tables or --dissector"
         raise UserError(f"nothing to export; name one of {names}")
+    if wanted.dissector:  # last, as networks beside a scenario are known once it was loaded
+        file = dissector.install(folder)
+        print(f"Written: {file}. Wireshark and tshark load it from there.")
+    return 0
+
+
+def _write_files(source: str | None, wanted: ExportOptions) -> None:
     if source is None:
         raise UserError("of what? name a run folder or a scenario; see: innervate export --help")
     if wanted.csv and wanted.tables is None:
         raise UserError("--csv is for tables; name their folder with --tables")
     _Source(source, wanted.set_ or [], wanted.seed).write(wanted)
-    return 0
 
 
 class _Source:

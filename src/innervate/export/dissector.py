@@ -60,8 +60,13 @@ def install(folder: Path | None = None) -> Path:
 
 
 def source() -> str:
-    """The Wireshark dissector of all networks' frames, as Lua."""
+    """The Wireshark dissector of all networks' frames, as Lua.
+
+    Raises:
+        ExportError: two networks have one link type, by which Wireshark tells frames apart.
+    """
     known = [one for one in networks().values() if one.has("dissector") or one.has("frames")]
+    _check_link_types(known)
     head = f"-- Frames of innervate {innervate.__version__}: {', '.join(n.name for n in known)}. "
     head += "Generated: `innervate export --dissector` writes it anew."
     numbers = {
@@ -70,6 +75,18 @@ def source() -> str:
         "SEALED_END": seal.FIRST + seal.KEYS
     }  # fmt: skip
     return "\n".join([head, *_locals(numbers), "", lua("innervate.export"), *map(_network, known)])
+
+
+def _check_link_types(known: list[Network]) -> None:
+    taken: dict[int, Network] = {}
+    for network in known:
+        other = taken.setdefault(network.link_type, network)
+        if other is not network:
+            free = sorted({*range(USER0, USER0 + 16)} - {one.link_type for one in known})
+            raise ExportError(
+                f"{other.name} and {network.name} both have link_type {network.link_type}; give "
+                f"one of them another in its network.py: {', '.join(map(str, free))}"
+            )
 
 
 def lua(package: str) -> str:
