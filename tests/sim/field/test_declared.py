@@ -89,6 +89,26 @@ def test_quality_is_the_share_of_frames_that_is_received(flood):
     assert 0.5 < frames["arrived"] / frames["sent"] < 0.7
 
 
+def test_news_that_wait_stay_what_they_are_while_others_come_in(flood):
+    """Both ends say something at once; whoever passes one on has heard the other meanwhile."""
+    flood.change(
+        "protocol.py",
+        "    copy.value = frame.value\n",
+        "    copy.value = frame.value\n    report(out, 2, frame.origin, frame.value)\n",
+    )
+    flood.change("protocol.py", "import deliver, send", "import deliver, report, send")
+    given = [{"at_s": 0.1, "node": node, "item": {"value": 7 + node}} for node in (0, 2)]
+    count = 0
+    for seed in range(5):
+        heard = innervate.run(
+            flood.scenario, plain=True, seed=seed,
+            overrides={"nodes": 3, "link": ENDS, "event": [], "input": given},
+        ).numpy("reports")  # fmt: skip
+        assert (heard["b"] == 7 + heard["a"]).all(), seed
+        count += len(heard["a"])
+    assert count >= 5
+
+
 def test_how_loud_a_frame_came_in_is_known(flood):
     flood.change("protocol.py", "    node.value = frame.value\n    copy",
                  "    node.value = -frame.rssi\n    copy")  # fmt: skip
