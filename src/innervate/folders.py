@@ -238,8 +238,8 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
         found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
-        kinds = {kind for kind, _name, _fields in frames.LAYOUTS}
-        found += checks.of_kinds(files, kinds)
+        laid = {kind: {one[0] for one in fields} for kind, _name, fields in frames.LAYOUTS}
+        found += checks.of_kinds(files, laid)
     return found
 
 
@@ -248,13 +248,16 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     fields, place = network.fields, _file_of(folder, network, "fields")
     usual = [(name, getattr(fields, name, {})) for name in ("DEFAULTS", "EXPLORED")]
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
+    found += checks.of_given(place, getattr(fields, "GIVEN", ()), fields.FRAME)
     if network.medium == "channel":
         found += checks.of_taken(place, fields.PARAMS, CHANNEL_OWN)
         found += checks.of_taken(place, fields.STATE, CHANNEL_STATE, "STATE")
-    declared = {field[0] for field in (*fields.STATE, *fields.FRAME, *fields.PARAMS)}
+    tables = [*fields.STATE, *fields.FRAME, *fields.PARAMS]
+    declared = {field[0] for field in tables}
+    arrays = declared - {field[0] for field in tables if not field[1]}
     rules = [_file_of(folder, network, "invariants")] if network.has("invariants") else []
     for source in [*files, *rules]:
-        found += checks.of_uses(source, declared, network.protocol.TIMERS)
+        found += checks.of_uses(source, declared, network.protocol.TIMERS, arrays)
     return found
 
 

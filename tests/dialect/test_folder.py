@@ -105,8 +105,21 @@ def network_up(nodes):
 def test_invariants_take_what_they_are_given(file):
     assert said(folder.of_rules(file(INVARIANTS))) == [
         (1, "node_low takes 2 arguments; it is node_low(node, params, now)"),
+        (5, "helper is never looked at; begin its name with node_ or network_"),
         (7, "network_up takes 1 arguments; it is network_up(nodes, count, params)"),
     ]
+
+
+def test_a_rule_that_nobody_looks_at_is_told(file):
+    path = file("""def node_low(node, params, now):
+    return least(node)
+def least(node):
+    return node.low > 0
+def nodes_high(nodes, count, params):
+    return 1
+""")
+    what = "nodes_high is never looked at; begin its name with node_ or network_"
+    assert said(folder.of_rules(path)) == [(5, what)]
 
 
 def test_constants_are_whole_numbers_of_numbers_and_names():
@@ -171,6 +184,23 @@ def test_usual_values_are_in_their_ranges(file, values, says):
     assert all(line == 9 and says in text for line, text in found)
 
 
+SHAPE = "GIVEN is (kind, item) of each: ((1, {}),)"
+
+
+@pytest.mark.parametrize(("given", "says"), [
+    (((1, {}), (2, {"sq": 3})), None), ([[1, {"sq": 255}]], None), ((), None),
+    (1, SHAPE), ((1, {"sq": 3}), SHAPE), (((1, 2),), SHAPE), (((1, {}, 3),), SHAPE),
+    (((1, {"seq": 3}),), "GIVEN: seq is no field of FRAME"),
+    (((1, {"sq": 256}),), "GIVEN: sq must be 0 to 255, not 256"),
+    (((1, {"sq": [0, -1]}),), "GIVEN: sq must be 0 to 255, not [0, -1]"),
+    (((1, {"sq": "x"}),), "GIVEN: sq must be 0 to 255, not x"),
+])  # fmt: skip
+def test_what_the_explorer_hands_to_nodes_is_a_frames(file, given, says):
+    frame = (("sq", 0, 0, 255, "number", "of it"),)
+    found = said(folder.of_given(file("\nGIVEN = ()\n"), given, frame))
+    assert found == ([(2, says)] if says else [])
+
+
 def test_names_of_the_medium_are_taken(file):
     params = (("hops", 0, 1, 15, "", ""), ("seq", 0, 0, 1, "", ""))
     found = said(folder.of_taken(file(FIELDS), params, {"seq", "wire_us"}))
@@ -230,8 +260,46 @@ def on_timer(state, params, now, timer, out):
     ("NEWS", []), ("NEWS + 1", []), ("3", [(7, "3")]), ("NEWS + 3", [(7, "4")]), ("timer", []),
 ])  # fmt: skip
 def test_kinds_that_are_sent_have_a_layout(file, kind, wrong):
-    found = said(folder.of_kinds([file(SENDS.format(kind=kind))], {1, 2}))
+    found = said(folder.of_kinds([file(SENDS.format(kind=kind))], {1: {"seq"}, 2: set()}))
     assert [(line, text.split()[4]) for line, text in found] == wrong
+
+
+FILLS = """NEWS, HELLO = 1, 2
+def on_timer(state, params, now, timer, out):
+    frame = out.frame[send(out, 0, 0, 0)]
+    frame.kind = HELLO
+    frame.seq = 0
+    frame.made_at = now
+    frame.{field} = state.seq
+    other = out.frame[send(out, 0, 0, 0)]
+    other.kind = timer
+    other.seq = 1
+    told = out.frame[deliver(out, NEWS)]
+    told.kind = HELLO
+    told.seq = 1
+"""
+
+
+@pytest.mark.parametrize(("field", "wrong"), [
+    ("low", []), ("to", []), ("low[1]", []), ("seq", [7]), ("seq[0]", [7]),
+])  # fmt: skip
+def test_what_a_layout_has_no_bits_for_is_not_sent(file, field, wrong):
+    path = file(FILLS.format(field=field))
+    what = "seq has no bits in the layout of kind 2, and is not sent"
+    found = said(folder.of_kinds([path], {1: {"seq", "low"}, 2: {"low"}}))
+    assert found == [(line, what) for line in wrong]
+
+
+@pytest.mark.parametrize(("more", "kinds", "wrong"), [
+    ("", {1}, [2]), ("", {0, 1}, []), ("    frame.kind = 1\n", {1}, []),
+    ("    fill(frame, 2)\n", {1}, []), ("    other = frame\n", {1}, []),
+    ("    other = frame.seq\n", {1}, [2]),
+])  # fmt: skip
+def test_a_frame_is_sent_with_a_kind(file, more, kinds, wrong):
+    text = "def on_timer(state, params, now, timer, out):\n"
+    text += "    frame = out.frame[send(out, 0, 0, 0)]\n    frame.seq = 4\n" + more
+    found = said(folder.of_kinds([file(text)], {kind: {"seq"} for kind in kinds}))
+    assert found == [(line, "frame is sent without a kind; set one") for line in wrong]
 
 
 USES = """from innervate.dialect import arith
@@ -253,3 +321,15 @@ def test_fields_and_timers_that_are_used_are_there(file):
         (8, "sets timer -1, and TIMERS = 2; write TIMERS = 0"), (8, near),
         (9, "zzzzzz is no field that fields.py declares"),
     ]  # fmt: skip
+
+
+def test_fields_with_a_length_are_set_place_by_place(file):
+    path = file("""def on_start(node, params, now, cause, out):
+    node.seen[0] = node.seen[1]
+    node.seq = 0
+    node.seen = 0
+    node.seen += 1
+""")
+    found = said(folder.of_uses(path, {"seen", "seq"}, 1, {"seen"}))
+    what = "seen has a length; set its places one by one, seen[i]"
+    assert found == [(4, what), (5, what)]

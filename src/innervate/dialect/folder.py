@@ -11,6 +11,7 @@ from innervate.dialect.checker import broken_rules, functions_of
 MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
 NOTED = {"kind", "made_at", "rssi"}  # fields of a frame that no layout has to name
+MEDIUM = {"to", "slots"}  # and those that the medium looks at
 FIELD = "a field is (name, length, low, high, unit, meaning)"
 HANDLERS = {
     "on_start": "(state, params, now, cause, out)",
@@ -73,9 +74,13 @@ def of_source(path, known, home, handlers):
 
 
 def of_rules(path):
-    """Invariants that do not take what they are given."""
-    found = []
-    for function in functions_of(ast.parse(path.read_text(encoding="utf-8"))):
+    """Invariants that do not take what they are given, or that nobody looks at."""
+    functions, found = functions_of(ast.parse(path.read_text(encoding="utf-8"))), []
+    used = {name for function in functions for name in _called(function)}
+    for function in functions:
+        if not function.name.startswith(tuple(RULES)) and function.name not in used:
+            what = f"{function.name} is never looked at; begin its name with node_ or network_"
+            found.append(Finding(path, function.lineno, what))
         for prefix, arguments in RULES.items():
             given = len(function.args.args)
             if function.name.startswith(prefix) and given != arguments.count(",") + 1:
@@ -164,6 +169,28 @@ def of_usual(path, tables, params):
     return found
 
 
+def of_given(path, given, frame):
+    """What is wrong with what the explorer hands to nodes: (kind, {field: value}) of each."""
+    ranges, line = {field[0]: field[2:4] for field in frame}, _lines_of(path).get(("GIVEN", ""), 1)
+    shape = "GIVEN is (kind, item) of each: ((1, {}),)"
+    if not isinstance(given, (list, tuple)):
+        return [Finding(path, line, shape)]
+    found = []
+    for one in given:
+        if not (isinstance(one, (list, tuple)) and len(one) == 2
+                and isinstance(one[0], int) and isinstance(one[1], dict)):  # fmt: skip
+            return [Finding(path, line, shape)]
+        for name, value in one[1].items():
+            each = value if isinstance(value, (list, tuple)) else [value]
+            low, high = ranges.get(name, (0, 0))
+            if name not in ranges:
+                found.append(Finding(path, line, f"GIVEN: {name} is no field of FRAME"))
+            elif not all(isinstance(one, int) and low <= one <= high for one in each):
+                what = f"GIVEN: {name} must be {low} to {high}, not {value}"
+                found.append(Finding(path, line, what))
+    return found
+
+
 def of_taken(path, fields, taken, table="PARAMS"):
     """Fields of a table that have a name of the medium's own, and would take its value's place."""
     lines = _lines_of(path)
@@ -248,12 +275,12 @@ def _wrong_layout(declared, field, many, bits, is_signed):
     return ""
 
 
-def of_kinds(paths, kinds):
-    """Frames that a protocol sends of a kind that has no layout.
+def of_kinds(paths, layouts):
+    """Frames that a protocol sends of a kind that has no layout, or with what it has no room for.
 
     Args:
         paths: the files of the protocol.
-        kinds: the numbers of those that have one.
+        layouts: by kind, the fields that its layout has.
     """
     constants, functions = {}, []
     for path in paths:
@@ -263,16 +290,56 @@ def of_kinds(paths, kinds):
     sent, found = _sent_names([function for _, function in functions]), []
     for path, function in functions:
         handed = [one.arg for one in function.args.args]
-        for part in ast.walk(function):
-            target = part.targets[0] if isinstance(part, ast.Assign) else None
-            if not (isinstance(target, ast.Attribute) and target.attr == "kind"):
+        kinds = {}
+        for part, frame, field in _set_in(function):
+            if field != "kind" or frame not in sent[function.name]:
                 continue
-            value, frame = _number(part.value, constants), getattr(target.value, "id", "")
+            value = _number(part.value, constants)
+            kinds.setdefault(frame, set()).add(value)
             is_blank = value == 0 and frame in handed  # whoever handed it on says more
-            if frame in sent[function.name] and value not in {None, *kinds} and not is_blank:
+            if value not in {None, *layouts} and not is_blank:
                 what = f"a frame of kind {value} is sent, and has no layout; add one to LAYOUTS"
                 found.append(Finding(path, part.lineno, what))
+        own = _sent_here(function)
+        found += _without_kind(path, function, own - kinds.keys(), layouts)
+        for part, frame, field in _set_in(function):
+            of = kinds.get(frame, {None}) if frame in own else {None}
+            if field in NOTED | MEDIUM or _number(part.value, constants) == 0:
+                continue
+            if of <= layouts.keys() and not any(field in layouts[kind] for kind in of):
+                what = f"{field} has no bits in the layout of kind {min(of)}, and is not sent"
+                found.append(Finding(path, part.lineno, what))
     return found
+
+
+def _set_in(function):
+    """(assignment, name of the record, field) of every field that a function sets."""
+    for part in ast.walk(function):
+        target = part.targets[0] if isinstance(part, ast.Assign) else None
+        target = target.value if isinstance(target, ast.Subscript) else target
+        if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name):
+            yield part, target.value.id, target.attr
+
+
+def _sent_here(function):
+    """What a function calls frames that it sends, where it calls nothing else so."""
+    named = [(part.targets[0].id, part.value) for part in ast.walk(function)
+             if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)]  # fmt: skip
+    others = {name for name, value in named
+              if not (isinstance(value, ast.Subscript) and "send" in _called(value))}  # fmt: skip
+    return {name for name, _ in named} - others
+
+
+def _without_kind(path, function, frames, layouts):
+    """Frames of a function that nobody gives a kind."""
+    if 0 in layouts:
+        return []
+    fields = {id(part.value) for part in ast.walk(function) if isinstance(part, ast.Attribute)}
+    on = {part.id for part in ast.walk(function) if isinstance(part, ast.Name)
+          and isinstance(part.ctx, ast.Load) and id(part) not in fields}  # fmt: skip
+    return [Finding(path, part.lineno, f"{part.targets[0].id} is sent without a kind; set one")
+            for part in ast.walk(function) if isinstance(part, ast.Assign)
+            and getattr(part.targets[0], "id", None) in frames - on]  # fmt: skip
 
 
 def _sent_names(functions):
@@ -294,13 +361,14 @@ def _sent_names(functions):
     return sent
 
 
-def of_uses(path, declared, timers):
-    """Fields that are not declared, and timers that a node does not have.
+def of_uses(path, declared, timers, arrays=frozenset()):
+    """Fields that are not declared or set as what they are not, and timers that a node lacks.
 
     Args:
         path: a file of the protocol.
         declared: names of all declared fields.
         timers: how many timers a node has.
+        arrays: of those declared, which have a length.
     """
     tree = ast.parse(path.read_text(encoding="utf-8"))
     constants, found = constants_of(tree), []
@@ -313,6 +381,10 @@ def of_uses(path, declared, timers):
                 near = "".join(f'; did you mean "{one}"?'
                                for one in get_close_matches(part.attr, declared, 1))  # fmt: skip
                 what = f"{part.attr} is no field that fields.py declares{near}"
+                found.append(Finding(path, part.lineno, what))
+        if isinstance(part, ast.Attribute) and isinstance(part.ctx, ast.Store):
+            if part.attr in arrays:
+                what = f"{part.attr} has a length; set its places one by one, {part.attr}[i]"
                 found.append(Finding(path, part.lineno, what))
         is_set = isinstance(part, ast.Call) and getattr(part.func, "id", "") == "set_timer"
         timer = _number(part.args[1], constants) if is_set and len(part.args) > 1 else None
