@@ -43,7 +43,7 @@ def test_by_the_option_and_by_the_environment(own, capsys, monkeypatch, alone):
     (alone / "far").mkdir()
     monkeypatch.chdir(alone / "far")
     (alone / "far" / "one.toml").write_text('kind = "gossip"\n')
-    assert "kind must be" in said(capsys, "check", "one.toml")
+    assert "name the folder of one of your own: --network DIR" in said(capsys, "check", "one.toml")
     assert main(["check", "one.toml", "--network", str(own.folder)]) == 0
     assert main(["check", "--network=../gossip", "one.toml"]) == 0
     assert os.environ["INNERVATE_NETWORKS"] == str(own.folder)  # for processes begun from here

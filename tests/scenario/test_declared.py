@@ -31,6 +31,16 @@ def test_what_would_never_happen_is_refused(own, table):
         loaded(own, **{table: [{**last, "at_s": 3}]})
 
 
+@pytest.mark.parametrize("wrong", ["x", 1.5, True, [1, "x"], {"a": 1}])
+def test_values_of_a_protocol_and_its_frames_are_whole_numbers(own, wrong):
+    with pytest.raises(ScenarioError, match=r"protocol\.b must be a whole number, not"):
+        loaded(own, protocol={"a": 3, "b": wrong})
+    with pytest.raises(ScenarioError, match=r"input\.0\.item\.value must be a whole number, not"):
+        loaded(own, input=[{"item": {"made_at": 1, "value": wrong}}])
+    with pytest.raises(ScenarioError, match=r"protocol\.a must be a whole number, not"):
+        loaded(own, protocol={"a": [3]})
+
+
 def test_inputs_are_repeated_up_to_the_end_and_not_at_it(own):
     given = {"at_s": 0.5, "every_s": 0.5, "node": 1, "item": {}}
     plan = scenarios.plan(loaded(own, input=[given], event=[]))

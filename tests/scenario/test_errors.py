@@ -44,7 +44,7 @@ WRONG = [
     ("2.0", "5.0", "20: event.0.at_s = 5 is outside the run; duration_s is 4"),
     ("2.0", "1e308", "20: event.0.at_s = 1e+308 is outside the run; duration_s is 4"),
     ('"skin"', f'"{"s" * 300}"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or '
-     f'"rpl", not "{"s" * 45}..."'),
+     f'"rpl", not "{"s" * 45}..."; name the folder of one of your own: --network DIR'),
     ("2.0", "4.0", "20: event.0.at_s = 4 is the end of the run, so it would never happen; make it "
      "earlier, or duration_s longer"),
     ("2.0", "[1.0, 4.0]", "20: event.0.at_s = 4 is the end of the run, so it would never happen; "

@@ -101,7 +101,8 @@ def _in_words(source: Source, raw: Any, model: type, text: str) -> ScenarioError
     match = _AT.search(text)
     key: Key = ()
     if match is not None:
-        key = tuple(m[1] if m[1] else int(m[2]) for m in _STEP.finditer(match[1]))
+        at = match[1].partition("[...]")[0]
+        key = tuple(m[1] if m[1] else int(m[2]) for m in _STEP.finditer(at))
         text = text[: match.start()]
     if "missing required field" in text:
         name = (_QUOTED.findall(text) or ["?"])[-1]
@@ -110,6 +111,11 @@ def _in_words(source: Source, raw: Any, model: type, text: str) -> ScenarioError
     value = raw
     for part in key:
         value = value[part]
+    if match is not None and "[...]" in match[1]:  # msgspec does not say which
+        key, value = next(
+            ((*key, name), one) for name, one in value.items() if not _fits(one, text)
+        )
+        return source.error(key, f"{dotted(key)} must be a whole number, not {shown(value)}")
     limit = _LIMIT.search(text)
     if limit is not None and isinstance(value, int | float) and not isinstance(value, bool):
         return source.error(key, f"{dotted(key)} must be at most {limit[2]}, not {shown(value)}")
@@ -119,6 +125,13 @@ def _in_words(source: Source, raw: Any, model: type, text: str) -> ScenarioError
         close = difflib.get_close_matches(value, re.findall(r'"(\w+)"', wanted), 1)
         hint = f'; did you mean "{close[0]}"?' if close else ""
     return source.error(key, f"{dotted(key)} must be {wanted}, not {shown(value)}{hint}")
+
+
+def _fits(value: Any, text: str) -> bool:
+    """True if a value of a table of numbers is not what msgspec speaks of."""
+    if isinstance(value, list):
+        return "`int`, got `array`" not in text and all(type(one) is int for one in value)
+    return type(value) is int
 
 
 def _wanted(model: type, key: Key) -> str:

@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -178,7 +179,10 @@ def _check_kind(source: Source, kind: object) -> str:
     except NetworkError as error:
         raise ScenarioError(str(error)) from None
     one = alternatives([f'"{name}"' for name in networks()])
-    raise source.error(("kind",), f"kind must be {one}, not {shown(kind)}")
+    hint = ""
+    if isinstance(kind, str) and kind.isidentifier() and not get_close_matches(kind, networks()):
+        hint = "; name the folder of one of your own: --network DIR"
+    raise source.error(("kind",), f"kind must be {one}, not {shown(kind)}{hint}")
 
 
 def _copy(value: Any) -> Any:
