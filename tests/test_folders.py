@@ -39,6 +39,10 @@ def test_only_a_folder_of_the_kinds_name_is_loaded(own, alone):
     assert "gossip" not in networks()
 
 
+def test_a_folder_is_known_by_its_path_or_its_text(own):
+    assert innervate.use("gossip") is innervate.use(own.folder) is networks()["gossip"]
+
+
 def test_by_the_option_and_by_the_environment(own, capsys, monkeypatch, alone):
     (alone / "far").mkdir()
     monkeypatch.chdir(alone / "far")

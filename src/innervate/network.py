@@ -182,7 +182,7 @@ def first() -> str:
     return next(iter(networks()))
 
 
-def use(folder: Path) -> Network:
+def use(folder: str | os.PathLike[str]) -> Network:
     """The network of a folder, known by its name from now on: here, and in processes begun here.
 
     Loading it runs its code. A file of it that was edited since is read again.
@@ -190,15 +190,15 @@ def use(folder: Path) -> Network:
     Raises:
         NetworkError: it is none, or is not as it must be.
     """
-    folder = folder.resolve()
-    others = [one for one in _folders() if one.resolve().name != folder.name]
-    was = folder in [one.resolve() for one in _folders()]
-    if not was or folders.is_stale(folder):
-        network = of_folder(folder)
-        os.environ[FOLDERS] = os.pathsep.join(map(str, [*others, folder]))
+    home = Path(folder).resolve()
+    others = [one for one in _folders() if one.resolve().name != home.name]
+    was = home in [one.resolve() for one in _folders()]
+    if not was or folders.is_stale(home):
+        network = of_folder(home)
+        os.environ[FOLDERS] = os.pathsep.join(map(str, [*others, home]))
         networks.cache_clear()
         assert networks()[network.name] is network
-    return next(one for one in networks().values() if one.folder == folder)
+    return next(one for one in networks().values() if one.folder == home)
 
 
 def find(kind: str, *places: Path) -> Network | None:
