@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from innervate.scenario.given import check as check
     from innervate.scenario.given import dump as dump
     from innervate.scenario.given import load as load
+    from innervate.sim.driver import InvariantBroken as InvariantBroken
     from innervate.sweeping.errors import SweepError as SweepError
     from innervate.sweeping.loading import load_sweep as load_sweep
     from innervate.sweeping.result import Sweep as Sweep
@@ -55,6 +56,7 @@ _PLACES = {
     "ChannelScenario": "scenario.declared.channel",
     "Comparison": "running.compare",
     "FieldScenario": "scenario.declared.field",
+    "InvariantBroken": "sim.driver",
     "LiveError": "live.errors",
     "Mesh": "networks.models",
     "Network": "network",

@@ -1,5 +1,6 @@
 """docs/api.md: its code runs in order, and every public name stands on it."""
 
+import inspect
 import pkgutil
 import re
 from pathlib import Path
@@ -24,3 +25,13 @@ def test_the_code_runs_in_order(tmp_path, monkeypatch):
 def test_every_name_stands_where_it_is_described(name):
     (place,) = re.findall(rf"^::: (innervate\.\S*\.{name})$", TEXT, re.MULTILINE)
     assert pkgutil.resolve_name(place) is getattr(innervate, name)
+
+
+@pytest.mark.parametrize("name", sorted(set(innervate.__all__) - {"__version__"}))
+def test_descriptions_are_shown_as_they_are_written(name):
+    """A word in <> would be a tag of the page, and of "a, b: words" only b a name."""
+    found = getattr(innervate, name)
+    members = vars(found).values() if inspect.isclass(found) else ()
+    for text in filter(None, (inspect.getdoc(one) for one in (found, *members))):
+        assert not re.search(r"<[a-z]", text), text
+        assert not re.search(r"^ +\w+, \w+: ", text, re.MULTILINE), text

@@ -103,7 +103,7 @@ class Sweep:
 
         Args:
             measures: which; all if left out.
-            level: of Student's confidence interval.
+            level: of Student's confidence interval, between 0 and 1; 0.95.
 
         Raises:
             SweepError: no such measure.
@@ -142,10 +142,10 @@ class Sweep:
             one: its value in one variant.
             other: its value in the other.
             measure: what is compared.
-            level: of the interval.
+            level: of the interval, between 0 and 1; 0.95.
 
         Returns:
-            Columns: the other keys, pairs, mean_one, mean_other, difference, low, high.
+            The other keys, pairs, mean_one, mean_other, difference, low, high.
 
         Raises:
             SweepError: the key is not varied, not paired, has no such value; no such measure.

@@ -46,7 +46,7 @@ class Question:
     """What is asked.
 
     Attributes:
-        urdf: a file, or "package:<distribution>/<robot>".
+        urdf: a file, or "package:DISTRIBUTION/ROBOT".
         links: pattern for the links that carry skin.
         rates_hz: samples per second and cell.
         ports: numbers of interface ports to try, in order.

@@ -85,7 +85,8 @@ class CablesScenario(Table, frozen=True, kw_only=True):
         drift_ppm: clocks run up to so much fast or slow.
         start_us: nodes are switched on within so long, us.
         protocol: parameters of the protocol, by name.
-        input, event: in any order.
+        input: what nodes are given by their users, in any order.
+        event: what happens to nodes and between them, in any order.
     """
 
     kind: str

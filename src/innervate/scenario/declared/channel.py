@@ -75,7 +75,8 @@ class ChannelScenario(Table, frozen=True, kw_only=True):
         duration_s: simulated time, s.
         air: the channel.
         protocol: parameters of the protocol, by name.
-        input, event: in any order.
+        input: what nodes are given by their users, in any order.
+        event: what happens to nodes and between them, in any order.
     """
 
     kind: str

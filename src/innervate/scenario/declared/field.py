@@ -119,7 +119,8 @@ class FieldScenario(Table, frozen=True, kw_only=True):
         start_us: nodes are switched on within so long, us.
         air: what all nodes' radios have.
         protocol: parameters of the protocol, by name.
-        input, event: in any order.
+        input: what nodes are given by their users, in any order.
+        event: what happens to nodes and between them, in any order.
     """
 
     kind: str
