@@ -12,7 +12,7 @@ TICK = 1
 TIMERS = 2
 OUTBOX = 4
 TRIES = 8
-REPORT_GIVEN_UP = 1
+REPORT_GIVEN_UP = 2
 
 
 def on_start(node, params, now, cause, out):

@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from innervate.dialect import counted
+from innervate.dialect import counted, sends
 from innervate.dialect import folder as checks
 from innervate.dialect.checker import functions_of
 
@@ -239,7 +239,7 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
         frames, path = network.frames, _file_of(folder, network, "frames")
         found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
         laid = {kind: {one[0] for one in fields} for kind, _name, fields in frames.LAYOUTS}
-        found += checks.of_kinds(files, laid)
+        found += sends.of_kinds(files, laid)
     return found
 
 
@@ -249,7 +249,10 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     usual = [(name, getattr(fields, name, {})) for name in ("DEFAULTS", "EXPLORED")]
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
     found += checks.of_given(place, getattr(fields, "GIVEN", ()), fields.FRAME)
+    if network.medium in MEDIA_ON_AIR and not network.over:
+        found += sends.of_delays(files)
     if network.medium == "channel":
+        found += sends.of_channel(files)
         found += checks.of_taken(place, fields.PARAMS, CHANNEL_OWN)
         found += checks.of_taken(place, fields.STATE, CHANNEL_STATE, "STATE")
     tables = [*fields.STATE, *fields.FRAME, *fields.PARAMS]

@@ -9,7 +9,7 @@ from innervate.cli import main
 from innervate.folders import CHANNEL_OWN
 from innervate.network import NetworkError, networks
 from innervate.running import run
-from tests.own import alone, own
+from tests.own import alone, made, own
 
 __all__ = ["alone", "own"]
 
@@ -111,6 +111,18 @@ def test_a_parameter_that_has_a_name_of_the_channel_is_refused(alone, capsys):
         assert main(["check-protocol", "talk", "--no-tests"]) == 2
         assert f"PARAMS: {name} is a word of the medium's own" in capsys.readouterr().out
         path.write_text(path.read_text().replace(f'"{name}"', '"length_slots"'))
+
+
+def test_what_a_medium_on_the_air_would_not_do_is_refused(alone, capsys):
+    talk = made(alone / "talk", "channel")
+    talk.change("protocol.py", "OUTBOX = 4", "OUTBOX = 4\nREPORT_SAID = 8\n#")
+    talk.change("protocol.py", "send(out, 0, 0, 0)", "send(out, 0, 500, 0)")
+    capsys.readouterr()
+    assert main(["check-protocol", "talk", "--no-tests"]) == 2
+    later, own = capsys.readouterr().out.splitlines()
+    at = f"talk/protocol.py:{talk.line('protocol.py', '500')}: "
+    assert later == at + "only over cables a frame leaves later; send it from on_timer"
+    assert own.endswith("REPORT_SAID = 8 is a report of the channel's own; choose another number")
 
 
 def test_a_word_of_python_is_no_name_of_a_network(alone, capsys):

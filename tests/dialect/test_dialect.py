@@ -18,6 +18,7 @@ PYTHON = {
     "source.py",
     "checker.py",
     "folder.py",
+    "sends.py",
     "counted.py",
     "__init__.py",
 }  # about protocols, in full Python
@@ -26,6 +27,7 @@ ABOUT = {
     "source.py",
     "checker.py",
     "folder.py",
+    "sends.py",
     "counted.py",
 }  # read files, so import what that takes
 

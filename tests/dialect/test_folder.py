@@ -4,7 +4,7 @@ import ast
 
 import pytest
 
-from innervate.dialect import folder
+from innervate.dialect import folder, sends
 from innervate.dialect.folder import HANDLERS, ON_AIR
 
 
@@ -260,7 +260,7 @@ def on_timer(state, params, now, timer, out):
     ("NEWS", []), ("NEWS + 1", []), ("3", [(7, "3")]), ("NEWS + 3", [(7, "4")]), ("timer", []),
 ])  # fmt: skip
 def test_kinds_that_are_sent_have_a_layout(file, kind, wrong):
-    found = said(folder.of_kinds([file(SENDS.format(kind=kind))], {1: {"seq"}, 2: set()}))
+    found = said(sends.of_kinds([file(SENDS.format(kind=kind))], {1: {"seq"}, 2: set()}))
     assert [(line, text.split()[4]) for line, text in found] == wrong
 
 
@@ -286,7 +286,7 @@ def on_timer(state, params, now, timer, out):
 def test_what_a_layout_has_no_bits_for_is_not_sent(file, field, wrong):
     path = file(FILLS.format(field=field))
     what = "seq has no bits in the layout of kind 2, and is not sent"
-    found = said(folder.of_kinds([path], {1: {"seq", "low"}, 2: {"low"}}))
+    found = said(sends.of_kinds([path], {1: {"seq", "low"}, 2: {"low"}}))
     assert found == [(line, what) for line in wrong]
 
 
@@ -298,8 +298,26 @@ def test_what_a_layout_has_no_bits_for_is_not_sent(file, field, wrong):
 def test_a_frame_is_sent_with_a_kind(file, more, kinds, wrong):
     text = "def on_timer(state, params, now, timer, out):\n"
     text += "    frame = out.frame[send(out, 0, 0, 0)]\n    frame.seq = 4\n" + more
-    found = said(folder.of_kinds([file(text)], {kind: {"seq"} for kind in kinds}))
+    found = said(sends.of_kinds([file(text)], {kind: {"seq"} for kind in kinds}))
     assert found == [(line, "frame is sent without a kind; set one") for line in wrong]
+
+
+def test_only_over_cables_a_frame_leaves_later(file):
+    path = file("""SOON, NOW = 3, 0
+def on_timer(state, params, now, timer, out):
+    send(out, 0, SOON, 0)
+    send(out, 0, NOW, 0)
+    send(out, 0, params.wait_us, 0)
+""")
+    what = "only over cables a frame leaves later; send it from on_timer"
+    assert said(sends.of_delays([path])) == [(3, what), (5, what)]
+
+
+def test_reports_of_a_channel_are_its_own(file):
+    path = file("from x import REPORT_LEFT\nTIMERS, REPORT_A = 1, 2\nREPORT_B = 4 * REPORT_A\n")
+    what = "REPORT_B = 8 is a report of the channel's own; choose another number"
+    assert said(sends.of_channel([path])) == [(3, what)]
+    assert said(sends.of_channel([file("REPORT_C = 1\n")]))
 
 
 USES = """from innervate.dialect import arith

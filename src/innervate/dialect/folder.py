@@ -11,7 +11,6 @@ from innervate.dialect.checker import broken_rules, functions_of
 MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
 NOTED = {"kind", "made_at", "rssi"}  # fields of a frame that no layout has to name
-MEDIUM = {"to", "slots"}  # and those that the medium looks at
 FIELD = "a field is (name, length, low, high, unit, meaning)"
 HANDLERS = {
     "on_start": "(state, params, now, cause, out)",
@@ -76,7 +75,7 @@ def of_source(path, known, home, handlers):
 def of_rules(path):
     """Invariants that do not take what they are given, or that nobody looks at."""
     functions, found = functions_of(ast.parse(path.read_text(encoding="utf-8"))), []
-    used = {name for function in functions for name in _called(function)}
+    used = {name for function in functions for name in called(function)}
     for function in functions:
         if not function.name.startswith(tuple(RULES)) and function.name not in used:
             what = f"{function.name} is never looked at; begin its name with node_ or network_"
@@ -93,7 +92,7 @@ def constants_of(tree):
     """Whole numbers that a file names, with the names it has for them."""
     found = {}
     for name, value in _assigned(tree):
-        found[name] = _number(value, found)
+        found[name] = number(value, found)
     return {name: value for name, value in found.items() if value is not None}
 
 
@@ -110,7 +109,7 @@ def _pairs(target, value):
     return []
 
 
-def _number(node, known):
+def number(node, known):
     """The value of an expression over numbers and names that are known; None if it is none."""
     names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
     odd = (ast.Call, ast.Attribute, ast.Lambda, ast.Subscript)
@@ -275,92 +274,6 @@ def _wrong_layout(declared, field, many, bits, is_signed):
     return ""
 
 
-def of_kinds(paths, layouts):
-    """Frames that a protocol sends of a kind that has no layout, or with what it has no room for.
-
-    Args:
-        paths: the files of the protocol.
-        layouts: by kind, the fields that its layout has.
-    """
-    constants, functions = {}, []
-    for path in paths:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        constants |= constants_of(tree)
-        functions += [(path, function) for function in functions_of(tree)]
-    sent, found = _sent_names([function for _, function in functions]), []
-    for path, function in functions:
-        handed = [one.arg for one in function.args.args]
-        kinds = {}
-        for part, frame, field in _set_in(function):
-            if field != "kind" or frame not in sent[function.name]:
-                continue
-            value = _number(part.value, constants)
-            kinds.setdefault(frame, set()).add(value)
-            is_blank = value == 0 and frame in handed  # whoever handed it on says more
-            if value not in {None, *layouts} and not is_blank:
-                what = f"a frame of kind {value} is sent, and has no layout; add one to LAYOUTS"
-                found.append(Finding(path, part.lineno, what))
-        own = _sent_here(function)
-        found += _without_kind(path, function, own - kinds.keys(), layouts)
-        for part, frame, field in _set_in(function):
-            of = kinds.get(frame, {None}) if frame in own else {None}
-            if field in NOTED | MEDIUM or _number(part.value, constants) == 0:
-                continue
-            if of <= layouts.keys() and not any(field in layouts[kind] for kind in of):
-                what = f"{field} has no bits in the layout of kind {min(of)}, and is not sent"
-                found.append(Finding(path, part.lineno, what))
-    return found
-
-
-def _set_in(function):
-    """(assignment, name of the record, field) of every field that a function sets."""
-    for part in ast.walk(function):
-        target = part.targets[0] if isinstance(part, ast.Assign) else None
-        target = target.value if isinstance(target, ast.Subscript) else target
-        if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name):
-            yield part, target.value.id, target.attr
-
-
-def _sent_here(function):
-    """What a function calls frames that it sends, where it calls nothing else so."""
-    named = [(part.targets[0].id, part.value) for part in ast.walk(function)
-             if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)]  # fmt: skip
-    others = {name for name, value in named
-              if not (isinstance(value, ast.Subscript) and "send" in _called(value))}  # fmt: skip
-    return {name for name, _ in named} - others
-
-
-def _without_kind(path, function, frames, layouts):
-    """Frames of a function that nobody gives a kind."""
-    if 0 in layouts:
-        return []
-    fields = {id(part.value) for part in ast.walk(function) if isinstance(part, ast.Attribute)}
-    on = {part.id for part in ast.walk(function) if isinstance(part, ast.Name)
-          and isinstance(part.ctx, ast.Load) and id(part) not in fields}  # fmt: skip
-    return [Finding(path, part.lineno, f"{part.targets[0].id} is sent without a kind; set one")
-            for part in ast.walk(function) if isinstance(part, ast.Assign)
-            and getattr(part.targets[0], "id", None) in frames - on]  # fmt: skip
-
-
-def _sent_names(functions):
-    """By function, what it calls frames that are sent: its own, and those that it is handed."""
-    sent = {
-        function.name: {part.targets[0].id for part in ast.walk(function)
-                        if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
-                        and "send" in _called(part.value)}
-        for function in functions
-    }  # fmt: skip
-    arguments = {function.name: [one.arg for one in function.args.args] for function in functions}
-    calls = [(function.name, call) for function in functions for call in ast.walk(function)
-             if getattr(getattr(call, "func", None), "id", "") in arguments]  # fmt: skip
-    for _ in functions:  # as far as a frame can be handed on
-        for name, call in calls:
-            for argument, given in zip(arguments[call.func.id], call.args, strict=False):
-                if getattr(given, "id", "") in sent[name] or "send" in _called(given):
-                    sent[call.func.id].add(argument)
-    return sent
-
-
 def of_uses(path, declared, timers, arrays=frozenset()):
     """Fields that are not declared or set as what they are not, and timers that a node lacks.
 
@@ -387,13 +300,14 @@ def of_uses(path, declared, timers, arrays=frozenset()):
                 what = f"{part.attr} has a length; set its places one by one, {part.attr}[i]"
                 found.append(Finding(path, part.lineno, what))
         is_set = isinstance(part, ast.Call) and getattr(part.func, "id", "") == "set_timer"
-        timer = _number(part.args[1], constants) if is_set and len(part.args) > 1 else None
+        timer = number(part.args[1], constants) if is_set and len(part.args) > 1 else None
         if timer is not None and not 0 <= timer < timers:
             what = f"sets timer {timer}, and TIMERS = {timers}; write TIMERS = {timer + 1}"
             found.append(Finding(path, part.lineno, what))
     return list({str(one): one for one in found}.values())
 
 
-def _called(node):
+def called(node):
+    """Names of the functions that are called in a piece of source."""
     return {part.func.id for part in ast.walk(node)
             if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)}  # fmt: skip
