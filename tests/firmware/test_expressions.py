@@ -19,6 +19,7 @@ STATE = (
     ("n", 0, 1, 40, "number", ""), ("m", 0, 1, 40, "number", ""),
     ("p", 0, 0, 1, "flag", ""), ("q", 0, 0, 1, "flag", ""), ("byte", 0, 0, 255, "number", ""),
     ("half", 0, -32768, 32767, "number", ""), ("list", 4, 0, 9, "number", ""),
+    ("five", 0, 5, 5, "number", ""), ("less", 0, -2, -2, "number", ""),
     ("r", DRAWN + WRITTEN, *NUMBER),
 )  # fmt: skip
 FRAME = (("x", 0, *NUMBER), ("list", 4, 0, 9, "number", ""))
@@ -172,6 +173,7 @@ HAND = (
     "state.r[state.n & 1]", "(state.p and state.q or state.a > 2)", "(state.a > 2) == state.p",
     "state.n // 6", "state.a * (state.n // 4)", "state.n // 4 * state.a", "state.n % 4 * 3",
     "state.a * (state.n % 8)", "state.n * 3 // 4", "state.a * (state.b * 3)",
+    "state.five * state.a - state.less", "state.n // state.five", "-state.less % state.five",
     "state.n // (FOUR // 2)", "state.n - state.n // 4", "(state.n - 1) // 2",
 )  # fmt: skip
 
@@ -208,6 +210,23 @@ def result_of(expressions):
     for i, name in enumerate(NAMES, 1):
         lines += [f"    if timer == {i}:", f"        state.r[0] = {name}(state, now)"]
     return BEGIN + "\n".join(lines) + "\n\n" + FUNCTIONS
+
+
+def test_what_has_but_one_value_is_a_number_in_c(tmp_path, monkeypatch):
+    """Nothing else is asked of `params` then: compilers are told that it is meant."""
+    lines = ("state.five = 5", "for _ in range(state.five):", "    state.a = state.less",
+             "state.b = params.seven", "state.n = frame.x")  # fmt: skip
+    text = BEGIN.replace("timer", "frame") + "".join(f"    {line}\n" for line in lines)
+    text = text.replace("now, frame", "now, port, frame")
+    role = role_of(tmp_path, monkeypatch, "own_only", text)
+    role = role._replace(params=(("seven", 0, 7, 7, "number", ""),))
+    source = Library(role, {}).source("own.h")
+    body = [line.strip() for line in source[source.rindex("{\n    (void)") :].splitlines()]
+    assert body == [
+        "{", "(void)params;", "(void)now;", "(void)port;", "(void)out;", "state->five = 5;",
+        "for (int32_t turn_ = 0; turn_ < 5; turn_++) {", "state->a = -2;", "}",
+        "state->b = (int8_t)7;", "state->n = (uint8_t)frame->x;", "}",
+    ]  # fmt: skip
 
 
 class State:

@@ -63,7 +63,17 @@ class Expressions:
         return str(int(node.value)), ATOM  # type: ignore[arg-type]
 
     def _Attribute(self, node: ast.Attribute) -> tuple[str, int]:
+        if isinstance(node.ctx, ast.Load) and (known := self._only(node)) is not None:
+            return known
         return f"{self.text(node.value, ATOM)}->{name_of(node.attr)}", ATOM
+
+    def _only(self, node: ast.Attribute) -> tuple[str, int] | None:
+        """The number that a field always is, where its range has but one."""
+        owner = self.facts.owner(self.made, node.value)
+        field = self.program.records.get(owner, {}).get(node.attr)
+        if field is None or field.length or field.low != field.high:
+            return None
+        return str(field.low), ATOM if field.low >= 0 else UNARY
 
     def _Subscript(self, node: ast.Subscript) -> tuple[str, int]:
         owner = node.value

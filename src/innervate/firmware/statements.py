@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ast
 import io
+import re
 import tokenize
 from functools import cache
 from pathlib import Path
 
 from innervate.firmware.expressions import BINARY, PLUS, Expressions, local
-from innervate.firmware.locals import declared_at, is_changed, names_in
+from innervate.firmware.locals import declared_at, is_changed
 from innervate.firmware.program import Type
 
 COLUMNS = 100
@@ -40,16 +41,19 @@ class Statements:
     def body(self) -> list[str]:
         """The lines between the braces."""
         node = self.made.function.node
-        used = names_in(node)
-        for name in self.made.arguments:
-            if name not in used:
-                self._put(1, f"(void){local(name)};")
         rest = node.body[1:]
         names = [name for name in self.made.types if name not in self.made.arguments]
         self._block(rest, 1, names, node.body[0].end_lineno or 0)
         if self.made.returns.what == "int" and not ends(rest):
             self._put(1, "return 0;")
-        return self.lines
+        return [*self._unused(), *self.lines]
+
+    def _unused(self) -> list[str]:
+        """Arguments that nothing is asked of: compilers want to know that it is meant."""
+        text = re.sub(r"/\*.*?\*/", "", "\n".join(self.lines), flags=re.DOTALL)
+        used = set(re.findall(r"(?<![\w.>])\w+", text))  # no fields
+        names = [local(name) for name in self.made.arguments]
+        return [f"{STEP}(void){name};" for name in names if name not in used]
 
     def _put(self, depth: int, text: str, note: str = "") -> None:
         self.lines += wrapped(STEP * depth + text + (f" /* {note} */" if note else ""))
@@ -192,7 +196,7 @@ class Statements:
             or (self.made.types[name.id].what == "int" and not is_changed(node.body, name.id))
             for name in reads
         )
-        if steady and not any(isinstance(n, ast.Call) for n in ast.walk(end)):
+        if text.isdigit() or (steady and not any(isinstance(n, ast.Call) for n in ast.walk(end))):
             return text
         assert isinstance(node.target, ast.Name)
         name = f"{local(node.target.id)}_end_{node.lineno}".replace("__", "_")

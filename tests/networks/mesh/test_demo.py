@@ -134,6 +134,21 @@ def test_a_boards_parameters_are_a_nodes_with_room_for_its_class():
         board.csma_parameters({"busy": 3})
 
 
+def always(declared):
+    """Numbers that have but one value: C has it in place of the field."""
+    return {name: low for name, length, low, high, *_ in declared if not length and low == high}
+
+
+def test_what_a_class_of_boards_says_of_itself_is_the_same_in_all_nodes_of_it():
+    for size in (32, 254):
+        role = board.node(size)
+        params = board.node_parameters(size, {})
+        for name, value in always(role.params).items():
+            assert params[name] == value
+        assert always(role.params).keys() == {"width", "row", "places", "queue", "kept"}
+        assert always(role.state).keys() == {"places", "kept", "q_room", "wait_room"}
+
+
 def test_a_live_node_has_the_rooms_that_its_parameters_say():
     params = Of(width=64, mtu=100, places=7, queue=5, kept=3)
     role = board.live_node(params)
@@ -141,6 +156,11 @@ def test_a_live_node_has_the_rooms_that_its_parameters_say():
     room = fields.room(100)
     assert [form.most["body"] for form in role.coded.forms] == [(room, "length")] * 2
     assert role.coded.forms[1].most["path"] == (const.PATH_MAX, "path")
-    assert role.state == fields.node(64, 5, 3, 100, 7)
+    declared = fields.node(64, 5, 3, 100, 7)
+    assert [one[:2] for one in role.state] == [one[:2] for one in declared]
+    rooms = {"q_room": fields.room(100), "wait_room": fields.wait_room(100)}
+    assert always(role.state) == {"places": 5, "kept": 3, **rooms}
+    sizes = {"width": 64, "row": fields.words(64), "places": 7}
+    assert always(role.params) == {**sizes, "queue": 5, "kept": 3}
     assert (role.gate, role.frame, role.item) == (
         fields.gate(64, 7), fields.frame(100), fields.item(100))  # fmt: skip

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Any
 
-from innervate.live.board import Coded, Form, Role, Watched, on_wire
+from innervate.live.board import Coded, Declaration, Form, Role, Watched, on_wire
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.mesh import frames, payloads
@@ -94,6 +94,27 @@ CSMA = Role(
 )  # fmt: skip
 
 
+def _only(declared: Declaration, numbers: dict[str, int]) -> Declaration:
+    """A declaration where some numbers are always the same: C has those in place of the fields."""
+    return tuple(
+        (name, length, numbers.get(name, low), numbers.get(name, high), unit, meaning)
+        for name, length, low, high, unit, meaning in declared
+    )
+
+
+def _state(size: int, queue: int, kept: int, mtu: int, most: int) -> Declaration:
+    """A node of this capacity class with so much room."""
+    rooms = {"q_room": fields.room(mtu), "wait_room": fields.wait_room(mtu)}
+    declared = fields.node(size, queue, kept, mtu, most)
+    return _only(declared, {"places": queue, "kept": kept, **rooms})
+
+
+def _params(size: int, queue: int, kept: int, most: int) -> Declaration:
+    """Parameters of such nodes."""
+    sizes = {"width": size, "row": fields.words(size), "places": most or fields.places(size)}
+    return _only(fields.PARAMS, {**sizes, "queue": queue, "kept": kept})
+
+
 def node(nodes: int) -> Role:
     """A node of a network of up to so many: of the smallest capacity class that holds them.
 
@@ -105,7 +126,8 @@ def node(nodes: int) -> Role:
         raise LiveError(f"{nodes} nodes: a node's arrays hold 1 to {CLASSES[-1]}")
     return Role(
         "mesh", "innervate.networks.mesh.protocol.node",
-        fields.node(size), fields.PARAMS, fields.FRAME, fields.ITEM,
+        _state(size, fields.QUEUE, fields.WAITING, MTU, 0),
+        _params(size, fields.QUEUE, fields.WAITING, 0), fields.FRAME, fields.ITEM,
         {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
         room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
@@ -121,7 +143,8 @@ def live_node(params: Any) -> Role:
     body = {"body": (room, "length")}
     forms = (ack._replace(most=body), packet._replace(most={**packet.most, **body}))
     return node(size)._replace(
-        state=fields.node(size, params.queue, params.kept, mtu, most),
+        state=_state(size, params.queue, params.kept, mtu, most),
+        params=_params(size, params.queue, params.kept, most),
         gate=fields.gate(size, most), frame=fields.frame(mtu), item=fields.item(mtu),
         coded=CODED._replace(forms=forms, size_max=mtu),
     )  # fmt: skip
