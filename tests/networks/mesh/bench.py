@@ -22,8 +22,8 @@ DEFAULTS = dict(
     hop_acks=1, ack_adapt=0, hop_frames=0, gather=0, queue=8, kept=8,
     suspect_us=10_000_000, min_rssi=-93, faint=-92, jitter_us=100_000, copies=2, flood_us=12_500,
     listen_us=300_000, spread_us=400_000, collect_us=1_500_000, tick_us=1_000_000, period=10,
-    period_max=60, dead=25, dead_step=5, guard_us=0, standby=0, jobs=4, job_us=500_000, job_tries=3,
-    e2e_us=250_000, e2e_adapt=0, e2e_tries=5, forget=30,
+    period_max=60, dead=25, dead_step=5, guard_us=0, standby=0, asks=0, jobs=4, job_us=500_000,
+    job_tries=3, e2e_us=250_000, e2e_adapt=0, e2e_tries=5, forget=30,
     monitor=254, watch=0, lost=3, flood=1, instances=3, clear_margin=20,
     predict_ms=500, unit_cm=1, points=0, fence=0,
 )  # fmt: skip

@@ -211,14 +211,19 @@ def test_whole_graph_by_hand():
 # The sizes of the packets' table [mesh 2].
 @pytest.mark.parametrize(
     ("kind", "size"),
-    [(const.REQUEST, 7), (const.TABLE_ACK, 5), (const.ACTIVATE, 3),
-     (const.ALARM, 16), (const.POSITION, 8)],
+    [(const.TABLE_ACK, 5), (const.ACTIVATE, 3), (const.ALARM, 16), (const.POSITION, 8)],
 )  # fmt: skip
 def test_sizes_of_the_contract(kind, size):
     assert payloads.SIZES[kind] == size
     for length in (size - 1, size, size + 1):
         data = sealed(bytes([0x40 | kind, *[0] * 10, *[0] * length]))
         expected = wire.OK if length == size else wire.BAD_PAYLOAD
+        assert wire.decode(data, Frame()) == expected
+
+
+def test_a_request_names_any_number_of_nodes():
+    for length, expected in ((6, wire.BAD_PAYLOAD), (7, wire.OK), (8, wire.OK), (27, wire.OK)):
+        data = sealed(bytes([0x40 | const.REQUEST, *[0] * 10, *[0] * length]))
         assert wire.decode(data, Frame()) == expected
 
 
@@ -287,7 +292,8 @@ def test_every_truncation_and_extension_is_refused(frame):
         assert by_chance or reason in (wire.BAD_LENGTH, wire.BAD_CRC)
     # The CRC of a frame and a zero is right again: what has a length of its own sees it.
     reason = wire.decode(data + b"\0", Frame())
-    endless = frame.kind in (const.DATA, const.GRAPH) or frame.flags & const.DETOURED
+    endless = frame.kind in (const.REQUEST, const.DATA, const.GRAPH)
+    endless = endless or frame.flags & const.DETOURED
     assert endless or reason != wire.OK
     assert wire.decode(data + b"\1", Frame()) in (wire.BAD_CRC, wire.BAD_LENGTH)
 

@@ -7,6 +7,7 @@ MEANINGS = {
     "round": "of discovery",
     "active": "version of the tables in force",
     "jitter": "pass the request on within so much, 10 ms",
+    "asked": "who alone is to respond; none: all",
     "mode": "reading of discovery: 1 tree, 2 each, 3 list",
     "count": "how many follow",
     "neighbours": "whom the origin heard",

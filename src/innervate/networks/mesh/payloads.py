@@ -43,6 +43,7 @@ LAYOUTS = (
             ("round", 0, 16, 0),
             ("active", 0, 16, 0),
             ("jitter", 0, 8, 0),
+            ("asked", REST, 8, 0),
         ),
     ),
     (

@@ -33,13 +33,14 @@ def test_rounds_of_many_nodes_take_their_time() -> None:
 
 
 @pytest.mark.parametrize(("nodes", "failover", "often"), [
-    (32, "search", (2, 3)), (33, "search", (3, 5)), (33, "alternate", (3, 5)),
-    (33, "graph", (2, 3)), (33, "auto", (2, 3)), (33, "random", (2, 3)), (33, "rssi", (2, 3)),
+    (32, "search", (2, 3, 0)), (33, "search", (3, 5, 1)), (33, "alternate", (3, 5, 1)),
+    (33, "graph", (2, 3, 0)), (33, "auto", (2, 3, 0)), (33, "random", (2, 3, 0)),
+    (33, "rssi", (2, 3, 0)),
 ])  # fmt: skip
 def test_where_many_are_requests_and_hops_are_tried_more_often(nodes, failover, often):
     """But not where everybody floods the graph, nor by the document's own rules."""
     params = made(f"nodes = {nodes}", f"protocol.failover='{failover}'").params
-    assert (params["copies"], params["transmissions"]) == often
+    assert (params["copies"], params["transmissions"], params["asks"]) == often
 
 
 @pytest.mark.slow

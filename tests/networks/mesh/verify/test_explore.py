@@ -114,6 +114,18 @@ def test_two_gateways_agree_when_the_first_returns():
     assert 0 < found.longest <= found.nets.calm_beats() * 1_000_000
 
 
+def test_who_dies_before_it_responds_and_is_asked_by_name_holds_nothing_up():
+    """Any order of events; with `asks` there are more of them, and all end well."""
+    states = []
+    for asks in (False, True):
+        settings = (*mesh_cases.QUICK, ("transmissions", 1), ("asks", asks))
+        found = mesh_search.explore(model("line", settings=settings, budget=DEATH, beats=4))
+        assert (found.broken, found.tally.ended) == (0, "complete")
+        assert found.tally.states == found.fair
+        states.append(found.fair)
+    assert states[1] > states[0]
+
+
 def test_gateways_that_never_agree_are_found(monkeypatch):
     monkeypatch.setattr(mesh_net.Nets, "calm_beats", lambda self: 1)
     made = MeshModel(

@@ -20,7 +20,7 @@ IP: dict[str, int] = {
     "listen_us": 50_000, "spread_us": 50_000, "collect_us": 200_000, "tick_us": 250_000,
     "period": 8, "period_max": 8, "dead": 20, "dead_step": 4, "guard_us": 0, "standby": 0,
     "jobs": 4, "job_us": 100_000, "job_tries": 3, "e2e_us": 30_000, "e2e_adapt": 1, "e2e_tries": 8,
-    "forget": 240, "monitor": MONITOR, "watch": 0, "lost": 3, "flood": 1, "instances": 3,
+    "asks": 0, "forget": 240, "monitor": MONITOR, "watch": 0, "lost": 3, "flood": 1, "instances": 3,
     "clear_margin": 20, "predict_ms": 500, "unit_cm": 1, "points": 0, "fence": 0,
 }  # fmt: skip
 EXTENT_MAX = 23_000  # units: squares of distances stay below 2^29

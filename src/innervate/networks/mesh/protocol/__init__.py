@@ -12,7 +12,8 @@ who hears whom, computes routes and hands them out; whoever does not answer is g
 *Discovery* [mesh 4]. Once a period the gateway floods a request. A node passes it on after a random
 wait, notes whom it heard, and responds once (A1), up the neighbours that advertised less depth
 (A2). A link counts if both directions were reported within three rounds, or a response has crossed
-it that no faint link brought (`WEAK`; decision 0052).
+it that no faint link brought (`WEAK`; decision 0052). With `asks` the gateway asks those once more
+by name that others heard and that did not respond; nobody else responds (decision 0059).
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
 recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in parts that are
@@ -70,7 +71,7 @@ States
 |                                       | up the standbys', -1 all others'                         |
 | round at a node, `due`                | `NOTHING = 0`; `LOOK_AGAIN = 1` heard weak requests      |
 |                                       | only; `RESPOND = 2`                                      |
-| round at the gateway, `step`          | `IDLE = 0`; `COLLECTING = 1`                             |
+| round at the gateway, `step`          | `IDLE = 0`; `COLLECTING = 1`; `ASKED = 2` once more      |
 | a node's table, at the gateway, `job` | `CURRENT = 0`; `TO_SEND = 1`; `UNDER_WAY = 2`;           |
 |                                       | `GIVEN_UP = 3`                                           |
 | the table that comes in               | none (`new_version` = 0); in `parts`; `ready`, waits for |
@@ -149,11 +150,15 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            |                                 | gateway's; `join`: no response   |                |
 | ...        | ... no table of the epoch       | `keep_table`: we have none       | RESPOND        |
 |            | before                          |                                  |                |
+| new round  | `REQUEST` that names others     | `is_spared`, `join`: no response | NOTHING        |
 | IDLE       | `TICK`, the period is over      | `start_round`                    | COLLECTING     |
 | COLLECTING | `RESPONSE`                      | `on_response`: `note_list`,      |                |
 |            |                                 | unless `WEAK` `note_path`        |                |
-| COLLECTING | `ROUND`                         | `collect`: `build_graph`,        | IDLE           |
+| COLLECTING | `ROUND`, with `asks`, some did  | `collect`, `ask_again`: by name  | ASKED          |
+|            | not respond                     |                                  |                |
+| COLLECTING | `ROUND`, else                   | `collect`: `build_graph`,        | IDLE           |
 |            |                                 | `give_jobs`, `pump`              |                |
+| ASKED      | `RESPONSE`, `ROUND`             | as while COLLECTING              | IDLE           |
 | CURRENT    | a changed table                 | `give_job`                       | TO_SEND        |
 | TO_SEND    | fewer than `jobs` under way     | `pump`, `start_job`,             | UNDER_WAY      |
 |            |                                 | `queue_parts`                    |                |
@@ -225,7 +230,8 @@ Frames
 | frame           | way                          | payload                                         |
 |-----------------|------------------------------|-------------------------------------------------|
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
-|                 |                              | flag `PRIORITY`: tables stay; more copies       |
+|                 |                              | who is asked by name; flag `PRIORITY`: tables   |
+|                 |                              | stay; more copies                               |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud; flag `WEAK`: came over a faint link       |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
@@ -318,6 +324,8 @@ Constants and settings
 | `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
 |                                                | gateway: no patience                            |
 | `LISTED_MAX = 15`, `UPLINKS_TOLD = 3`          | neighbours in a response; without tables        |
+| `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |
+|                                                | MTU of 64                                       |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
 |                                                | through it                                      |
 | `FAILURES_MAX = 6`, `HOPS_MAX = 40`            | failed hops at a node, then a packet is         |
@@ -360,8 +368,8 @@ Constants and settings
 |                                                | SENT says so                                    |
 | `min_rssi`, `faint`                            | weaker links are not reported; A2: first or     |
 |                                                | best uplink                                     |
-| `reliable`, `standby`, `job_tries`             | messages are kept; there is a standby; tries of |
-|                                                | a table                                         |
+| `reliable`, `standby`, `job_tries`, `asks`     | messages are kept; there is a standby; tries of |
+|                                                | a table; who did not respond is asked once more |
 | `monitor`, `flood`, `instances`                | A14; when alarms are flooded, and how often     |
 | `predict_ms`, `unit_cm`, `points`, `px`, `py`, | the fence [mesh 6]                              |
 | `after`, `fence`                               |                                                 |

@@ -20,6 +20,7 @@ from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.protocol.paths import (
     begin_round,
     build_graph,
+    is_fresh,
     measure_all,
     note_heard,
     note_list,
@@ -28,14 +29,16 @@ from innervate.networks.mesh.protocol.paths import (
     trusts_lists,
 )
 from innervate.networks.mesh.protocol.queue import compose, kick
-from innervate.networks.mesh.protocol.round import begin, begin_anew
+from innervate.networks.mesh.protocol.round import REQUEST_BYTES, begin, begin_anew
 from innervate.networks.mesh.protocol.search import is_edge
 from innervate.networks.mesh.protocol.table import keep_table
 
 IDLE = 0
 COLLECTING = 1
+ASKED = 2
 JITTER_UNIT_US = 10_000
 FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
+ASKED_MAX = 20  # by name: as many fit into a request at an MTU of 64
 COPIES_MORE = 4  # of the request of who takes over: the channel is full of what looks for the dead
 
 
@@ -88,7 +91,16 @@ def inherit(node, gate, params, out):
 
 
 def start_round(node, gate, params, now, out):
-    """Broadcast a discovery request, and collect what comes back."""
+    """A discovery round: whoever is there responds."""
+    begin_round(gate, params)
+    gate.wait = gate.period
+    report(out, REPORT_ROUND, (node.round + 1) & MASK16, node.epoch)
+    request(node, gate, params, now, COLLECTING, out)
+    kick(node, params, now, out)
+
+
+def request(node, gate, params, now, step, out):
+    """Broadcast a discovery request, and collect what comes back; its place, -1 if none."""
     flags = 0
     copies = params.copies
     if gate.taken:
@@ -97,10 +109,7 @@ def start_round(node, gate, params, now, out):
     node.round = (node.round + 1) & MASK16
     node.depth = 1
     begin_anew(node, params)
-    begin_round(gate, params)
-    gate.wait = gate.period
-    gate.step = COLLECTING
-    report(out, REPORT_ROUND, node.round, node.epoch)
+    gate.step = step
     i = compose(node, now, ALARMS, REQUEST, ALL, flags, out)  # a place, whatever waits
     if i >= 0:
         add_hop(node, i)
@@ -111,7 +120,29 @@ def start_round(node, gate, params, now, out):
         add8(node, i, params.jitter_us // JITTER_UNIT_US)
         node.q_copies[i] = copies
     set_timer(out, ROUND, (now + params.collect_us) & MASK30)
-    kick(node, params, now, out)
+    return i
+
+
+def is_missing(gate, params, s):
+    """1 if somebody heard node s in this round, and it did not respond."""
+    if is_fresh(gate, params, s, s):
+        return 0
+    for a in range(params.nodes):
+        if is_fresh(gate, params, s, a):
+            return 1
+    return 0
+
+
+def ask_again(node, gate, params, now, out):
+    """Who did not respond is asked by name: 0 if there is nobody."""
+    i = -1
+    for s in range(params.nodes):
+        if s != node.number and is_missing(gate, params, s):
+            if gate.step == COLLECTING:
+                i = request(node, gate, params, now, ASKED, out)
+            if i >= 0 and node.q_length[i] < REQUEST_BYTES + ASKED_MAX:
+                add8(node, i, s)
+    return gate.step == ASKED
 
 
 def is_faint(params, frame):
@@ -131,6 +162,7 @@ def on_response(node, gate, params, frame, out):
     if frame.length > 5:
         note_list(gate, params, frame, 4, frame.body[3] & 15)
         loudest = signed8(frame.body[5])
+        note_heard(gate, params, frame.origin, frame.origin)
     # A faint way counts for who hears nobody well, and tells of one that it hears as faintly.
     if loudest < params.min_rssi or not is_faint(params, frame):
         note_path(gate, params, frame, node.number)
@@ -138,13 +170,17 @@ def on_response(node, gate, params, frame, out):
 
 def collect(node, gate, params, now, out):
     """The ROUND timer of a gateway: the graph, the paths, the tables."""
-    if gate.step != COLLECTING:
+    if gate.step == IDLE:
         return
-    gate.step = IDLE
     for k in range(params.places):
         if node.neighbour[k] != FREE and node.round_depth[k] != UNHEARD and trusts_lists(params):
             if node.round_rssi[k] >= params.min_rssi:
                 note_heard(gate, params, node.neighbour[k], node.number)
+    if params.asks and gate.step == COLLECTING and not gate.taken:
+        if ask_again(node, gate, params, now, out):
+            kick(node, params, now, out)
+            return
+    gate.step = IDLE
     mark = build_graph(gate, params)
     changed = mark != gate.sum_a
     report(out, REPORT_GRAPH, gate.links, changed)

@@ -26,6 +26,12 @@ def is_heard(gate, params, who, by):
     return gate.heard[at >> 2] >> 2 * (at & 3) & 3 != 0
 
 
+def is_fresh(gate, params, who, by):
+    """1 if `by` heard `who` in this round; of one node: it has responded."""
+    at = who * params.width + by
+    return gate.heard[at >> 2] >> 2 * (at & 3) & 3 == ROUNDS_VALID
+
+
 def pair_bytes(params):
     """Bytes of all pairs, of two bits each: for how many rounds it counts that one was heard."""
     return (params.width * params.width + 3) >> 2

@@ -33,6 +33,7 @@ NOTHING = 0
 LOOK_AGAIN = 1
 RESPOND = 2
 LISTED_MAX = 15
+REQUEST_BYTES = 7  # and behind them who is asked by name
 SLACK = 2  # ticks: nodes count them from different moments
 UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
 
@@ -121,10 +122,20 @@ def on_request(node, params, now, frame, k, out):
         else:
             node.parent = frame.link_src
             queue_request(node, params, now, frame, 0, out)
-            kept = frame.flags & PRIORITY and node.version
+            kept = is_spared(node, frame)
             join(node, params, now, frame.path_len + 1, kept, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
+
+
+def is_spared(node, frame):
+    """1 if we need not respond: we keep our table in a takeover, or others are asked by name."""
+    if frame.length == REQUEST_BYTES:
+        return frame.flags & PRIORITY and node.version
+    for k in range(REQUEST_BYTES, frame.length):
+        if frame.body[k] == node.number:
+            return 0
+    return 1
 
 
 def arm_guard(node, params, now, out):
@@ -176,7 +187,7 @@ def await_better(node, params, now, frame, out):
 
 
 def join(node, params, now, depth, kept, out):
-    """We know our depth in this round: respond later, unless we keep our table in a takeover."""
+    """We know our depth in this round: respond later, unless we are spared."""
     node.depth = depth
     if params.discovery != EACH and not kept:
         node.due = RESPOND

@@ -34,7 +34,7 @@ KEYS = {"faint": "min_rssi_dbm", "tick": "beacon_s", "jobs": "table_window", "jo
         "job_tries": "table_tries", "min_rssi": "min_rssi_dbm"}  # fmt: skip
 # Parameters, keys of [protocol] and parts of a profile that are called the same.
 OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "ack_adapt", "e2e_adapt",
-              "e2e_tries", "copies")  # fmt: skip
+              "e2e_tries", "copies", "asks")  # fmt: skip
 IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
 
 

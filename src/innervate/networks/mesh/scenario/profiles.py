@@ -33,6 +33,7 @@ class Profile(NamedTuple):
         job_tries: of a table, after the first.
         settled: messages start then if nothing is said: the first tables are there.
         hop_acks: hops acknowledge; False where the medium access says what was received.
+        asks: who is named and did not respond is asked once more in a round.
         ack_adapt: a hop's ack may take its neighbour's round trip longer.
     """
 
@@ -66,6 +67,7 @@ class Profile(NamedTuple):
     flood: float
     hop_acks: bool = True
     ack_adapt: bool = False
+    asks: bool = False
     job_tries: int = 3
 
 
@@ -132,6 +134,7 @@ def crowded(profile: Profile, nodes: int, standby: bool, again: bool) -> Profile
         jitter=2 * profile.jitter,
         copies=COPIES_IN_CROWD if again else profile.copies,
         transmissions=TRANSMISSIONS_IN_CROWD if again else profile.transmissions,
+        asks=again,
         listen=listen,
         spread=spread,
         collect=listen + spread + (5 + more) / 6 * rest,

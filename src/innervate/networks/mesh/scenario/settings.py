@@ -38,6 +38,7 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
     jitter_s: Short | None = None
     flood_s: Short | None = None
     copies: Annotated[int, keys.whole("copies", 1, 15)] | None = None
+    asks: bool | None = None
     listen_s: Wait | None = None
     spread_s: Wait | None = None
     collect_s: Wait | None = None
