@@ -103,14 +103,14 @@ def _only(declared: Declaration, numbers: dict[str, int]) -> Declaration:
 
 
 def _state(size: int, queue: int, kept: int, mtu: int, most: int) -> Declaration:
-    """A node of this capacity class with so much room."""
+    """What a node of this capacity class keeps, with room for so many frames and messages."""
     rooms = {"q_room": fields.room(mtu), "wait_room": fields.wait_room(mtu)}
     declared = fields.node(size, queue, kept, mtu, most)
     return _only(declared, {"places": queue, "kept": kept, **rooms})
 
 
 def _params(size: int, queue: int, kept: int, most: int) -> Declaration:
-    """Parameters of such nodes."""
+    """What all nodes of this class have in common: how much each has room for."""
     sizes = {"width": size, "row": fields.words(size), "places": most or fields.places(size)}
     return _only(fields.PARAMS, {**sizes, "queue": queue, "kept": kept})
 

@@ -1,7 +1,10 @@
 """Who is named by others and did not respond is asked once more, and nobody else responds."""
 
+import binascii
+
 import pytest
 
+from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh.protocol.constants import (
     REPORT_GRAPH,
     REPORT_ROUND,
@@ -10,7 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.gateway import ASKED_MAX
 from innervate.networks.mesh.protocol.round import REQUEST_BYTES
-from tests.networks.mesh.bench import Bench
+from tests.networks.mesh.bench import Bench, Frame
 
 COLLECTED, PERIOD, S = 1_500_000, 10_000_000, 1_000_000
 ROW = [(0, 1), (1, 2), (2, 3)]
@@ -105,3 +108,10 @@ def test_a_takeover_in_which_nobody_has_to_respond_asks_nobody():
     assert bench.nodes[1].leading
     assert requests(bench) == [[]] * len(requests(bench))
     assert all(bench.nodes[i].version for i in range(1, 6))
+
+
+@pytest.mark.parametrize("length", [6, 7, 8, 27])
+def test_a_request_on_the_wire_names_any_number_of_nodes(length):
+    body = bytes([0x40 | REQUEST, *[0] * (10 + length)])
+    data = body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")
+    assert wire.decode(data, Frame()) == (wire.OK if length >= REQUEST_BYTES else wire.BAD_PAYLOAD)

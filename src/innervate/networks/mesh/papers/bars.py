@@ -82,7 +82,7 @@ def wire_bytes(nodes: int) -> int:
     """
     width = next(size for size in CLASSES if nodes <= size)
     optional = mesh_fields.links(mesh_fields.places(width))
-    left_out = {name for name, *_ in mesh_fields.QUEUED + optional}
+    left_out = {name for name, *_ in mesh_fields.queued(mesh_fields.QUEUE) + optional}
     return sum(_bytes(*one[1:4]) for one in mesh_fields.node(width) if one[0] not in left_out)
 
 

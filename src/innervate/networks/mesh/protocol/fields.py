@@ -301,9 +301,6 @@ def queued(places, mtu=MTU):
     )
 
 
-QUEUED = queued(QUEUE)
-
-
 def gate(n, most=0):
     """What a gateway, and only a gateway or standby, has besides; of so many neighbours a node."""
     return (
