@@ -332,7 +332,7 @@ COUNTED = (("number", 0, 0, 9, "node", ""), ("count", 0, 0, 3, "number", ""))
 FIELDS = SimpleNamespace(STATE=COUNTED, FRAME=(("kind", 0, 0, 15, "type", ""),), PARAMS=())
 
 
-def started(*actions, count=0, timers=2, outbox=4, also=None):
+def started(*actions, count=0, timers=2, outbox=4, also=None, slots=None):
     """What is broken as a node starts that asks for these actions."""
 
     def on_start(node, params, now, cause, out):
@@ -350,6 +350,8 @@ def started(*actions, count=0, timers=2, outbox=4, also=None):
 
     protocol = SimpleNamespace(on_start=on_start, TIMERS=timers, OUTBOX=outbox)
     made = declared.Net(protocol, FIELDS, declared._graph(declared.GRAPHS["pair"]), {})
+    if slots is not None:  # of frames on a channel
+        made.is_slotted, made.out.frame = True, [SimpleNamespace(kind=0, slots=slots)] * outbox
     return made.begin(declared.Budget())
 
 
@@ -364,6 +366,8 @@ DECLARED = {
     "there is no such timer": ({"actions": [(TIMER, 2, 5, 0)]}, {"actions": [(TIMER, 1, 5, 0)]}),
     "a frame is sent on a port that no node has": (
         {"actions": [(SEND, 4, 0, 0)]}, {"actions": [(SEND, 3, 0, 0)]}),
+    "a frame of no slots is sent": (
+        {"actions": [(SEND, 0, 0, 0)], "slots": 0}, {"actions": [(SEND, 0, 0, 0)], "slots": 1}),
     "the outbox holds what is no action": (
         {"actions": [(NOTHING, 0, 0, 0)]}, {"actions": [(3, 0, 0, 0), (4, 0, 0, 0)]}),
     "a handler cannot go on: ": ({"also": fail}, {"also": None}),
@@ -380,6 +384,26 @@ def test_what_any_network_breaks_is_told(words):
 def test_a_handler_that_knows_no_such_name_cannot_go_on():
     broken = started(also=lambda: unheard_of).broken  # noqa: F821
     assert broken.startswith("a handler cannot go on: tests/verify/")
+
+
+@pytest.mark.parametrize(("field", "broken"), [("kind", True), ("rssi", False)])
+def test_a_receiver_leaves_the_frame_as_it_is_on_the_air(field, broken):
+    """Others are handed the same one; a run says so, too. How loud it was is each one's own."""
+
+    def on_frame(node, params, now, port, frame, out):
+        setattr(frame, field, 3)
+
+    def on_start(node, params, now, cause, out):
+        send(out, 0, 0, 0)
+
+    frame = (*FIELDS.FRAME, ("rssi", 0, 0, 15, "dBm", ""))
+    fields = SimpleNamespace(STATE=COUNTED, FRAME=frame, PARAMS=())
+    protocol = SimpleNamespace(on_start=on_start, on_frame=on_frame, TIMERS=1, OUTBOX=2)
+    made = declared.Net(protocol, fields, declared._graph(declared.GRAPHS["pair"]), {})
+    made.on_air = True
+    step = made.arrive(made.begin(declared.Budget()).state, 1)
+    said = "a receiver changed the frame that the others are handed, too"
+    assert step.broken == (said if broken else "")
 
 
 def test_a_timer_below_0_is_none_either():

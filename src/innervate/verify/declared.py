@@ -32,7 +32,7 @@ from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent
 from innervate.verify.errors import VerifyError
 from innervate.verify.states import Budget, Node, State, Step, is_still, most_frames, sent
 from innervate.verify.tally import Tally
-from innervate.verify.telling import ERRORS, story_of, where
+from innervate.verify.telling import ERRORS, first_broken, story_of, where
 from innervate.verify.values import ahead, put, values, with_one
 
 OUTBOX = 16
@@ -41,6 +41,7 @@ STATES = 20_000
 BATCH = 500
 COLD, MEMORY_LOST = 0, 1
 NEVER = 1 << 62  # us
+OF_RECEIVER = {"made_at", "rssi"}  # fields of a frame that each receiver may have its own of
 GRAPHS = {
     "pair": "n0.E-n1.W n1.E-n0.W",
     "line": "n0.E-n1.W n1.E-n2.W",
@@ -65,6 +66,7 @@ class Net:
         self.on_air = hasattr(protocol, "on_carrier")
         self.has_carrier = self.on_air
         self.is_told = hasattr(protocol, "on_sent")  # when its frames have left
+        self.is_slotted = False  # on a channel: frames last so many slots
         self.is_addressed = False  # a frame's field `to` says who is given it
         self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
         self.of_all: dict[str, Any] = {}  # and of all nodes together
@@ -139,7 +141,7 @@ class Net:
 
     def heard(self, state: State, number: int, end: int) -> Step:
         """A frame on the air: a carrier alone, the frame, silence."""
-        frame = values(self.frame, self.fields.FRAME)
+        frame = values(self.frame, self.fields.FRAME, OF_RECEIVER)
         what = f"{self.graph.label(number)} hears a frame of {self.graph.label(end // PORTS)}"
         after, broken = state, ""
         if self.has_carrier:
@@ -148,6 +150,8 @@ class Net:
         is_ours = not self.is_addressed or self.frame.to in (number, ALL)
         if not broken and is_ours:
             after, broken = self.call(after, number, 0, self.do.on_frame, 0, self.frame)
+            if values(self.frame, self.fields.FRAME, OF_RECEIVER) != frame:
+                broken = broken or "a receiver changed the frame that the others are handed, too"
         if not broken and self.has_carrier:
             after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
         return Step(what, after, broken)
@@ -229,8 +233,7 @@ class Net:
         except ERRORS as error:
             return state, f"a handler cannot go on: {where(error)}"
         broken = self.broken(now)
-        timers, ways = dict(node.timers), list(state.ways)
-        down, late = list(node.down), list(node.late)
+        timers, down, late = dict(node.timers), list(node.down), list(node.late)
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
             if act.kind == SET_TIMER:
                 timers[act.a] = ahead(act.b)
@@ -239,6 +242,8 @@ class Net:
                 if not 0 <= act.a < PORTS:
                     broken = broken or "a frame is sent on a port that no node has"
                     continue
+                if self.is_slotted and frame.slots < 1:
+                    broken = broken or "a frame of no slots is sent"
                 one = values(frame, self.fields.FRAME, {"made_at"})
                 if self.is_told and not act.c & URGENT:
                     down.append(one)
@@ -247,12 +252,11 @@ class Net:
                 if act.b > 0 and ends and not self.on_air:
                     late.append((now + act.b, act.a, one))
                     continue
-                for end in ends:
-                    ways[end] = (*ways[end], one)
+                state = sent(state, ends, one)
             elif act.kind not in (DELIVER, REPORT):
                 broken = broken or "the outbox holds what is no action"
         asked = Node((), tuple(timers.items()), tuple(down), tuple(late))
-        return self.kept(state, number, now, asked)._replace(ways=tuple(ways)), broken
+        return self.kept(state, number, now, asked), broken
 
     def kept(self, state: State, number: int, now: int, asked: Node) -> State:
         """The state with a node as it is now, its moments relative to its time."""
@@ -273,7 +277,7 @@ class Net:
         """What is broken of all nodes together."""
         for node, at in zip(self.all, state.nodes, strict=True):
             put(node, self.fields.STATE, at.values)
-        return _first_broken(self.of_all, self.all, len(self.all), self.params)
+        return first_broken(self.of_all, self.all, len(self.all), self.params)
 
     def broken(self, now: int) -> str:
         """What the last handler broke."""
@@ -283,18 +287,7 @@ class Net:
             value = getattr(self.node, name)
             if not all(low <= one <= high for one in (value if length else [value])):
                 return f"{name} is out of its declared range"
-        return _first_broken(self.own, self.node, self.params, now)
-
-
-def _first_broken(rules: dict[str, Any], *given: Any) -> str:
-    """What the first rule says that does not hold, or where it cannot be looked at."""
-    for title, holds in rules.items():
-        try:
-            if not holds(*given):
-                return title
-        except ERRORS as error:
-            return f"an invariant cannot be looked at: {where(error)}"
-    return ""
+        return first_broken(self.own, self.node, self.params, now)
 
 
 def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tuple[Tally, Story]:
@@ -375,6 +368,7 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
               **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
     net = Net(network.protocol, network.fields, graph, params)
     net.on_air = network.medium in MEDIA_ON_AIR
+    net.is_slotted = network.medium == "channel"
     net.is_addressed = network.medium == "field" and hasattr(net.frame, "to")
     net.own = invariants_of(network, "node_")
     net.of_all = invariants_of(network, "network_")

@@ -58,3 +58,14 @@ def where(error: BaseException) -> str:
     if isinstance(error, AttributeError) and error.name:
         what = f"{error.name} is no field that fields.py declares"
     return f"{folders.shown(Path(last.filename))}:{last.lineno}: {what}"
+
+
+def first_broken(rules: dict[str, Any], *given: Any) -> str:
+    """What the first rule says that does not hold, or where it cannot be looked at."""
+    for title, holds in rules.items():
+        try:
+            if not holds(*given):
+                return title
+        except ERRORS as error:
+            return f"an invariant cannot be looked at: {where(error)}"
+    return ""
