@@ -2,11 +2,15 @@
 
 import json
 import re
+import signal
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from innervate.cli import verifying
 from innervate.networks.skin.verify import assumptions
+from innervate.verify.cases import Case
 
 SMALL = ("--plain", "--graph", "pc-1 1-2", "--updates", "periodic", "--budget", "ticks=2,faults=1")
 
@@ -139,3 +143,26 @@ def test_mistakes_are_one_line(sh, words, line):
 def test_random_networks_end_after_as_many_as_asked_for(sh):
     assert sh("verify", "--random", "--seed", "3", "--count", "1") == 0
     assert sh.out == "Nothing broken in 1 networks, 3 to 3.\n"
+
+
+def test_who_interrupts_between_two_explorations_is_told_that_others_were_to_come(capsys):
+    """The first ends by itself, with all that it was to look at, as Ctrl-C comes."""
+
+    def first(tell):
+        signal.raise_signal(signal.SIGINT)
+        return Case(["the first"], {}, is_broken=False)
+
+    def network(*explores):
+        room = SimpleNamespace(explorations=lambda *_: explores, notice=lambda _: "")
+        return SimpleNamespace(verify=room)
+
+    said = "Nothing broken in one exploration, completely"
+    for more, end in (((first,), "; interrupted before the others."), ((), ".")):
+        code = verifying._explore(network(first, *more), None, as_json=False, out=None)
+        assert code == 130
+        assert capsys.readouterr().out == f"the first\n{said}{end}\n"
+
+
+def test_who_asks_for_mistakes_that_are_not_listed_is_told_so(sh):
+    assert sh("verify", "flooding", "--mutants") == 0
+    assert sh.out == "No mistakes are listed for flooding.\n"

@@ -40,11 +40,13 @@ WHOLE, PART, BROKEN = case(), case(is_complete=False), case(is_broken=True, is_c
         ([WHOLE, PART, PART], "Nothing broken in 3 explorations; 2 of them only in part."),
         ([PART, BROKEN, WHOLE, BROKEN], "2 of 4 broken."),
         ([WHOLE, case(sums_up=False)], ""),
-        ([], "Nothing broken in 0 explorations, all completely."),
+        ([], "Nothing was explored."),
     ],
 )
 def test_the_last_line_says_what_came_of_all(done, said):
     assert verdict(done) == said
+    if said.startswith("Nothing broken"):
+        assert verdict(done, True) == f"{said[:-1]}; interrupted before the others."
 
 
 @pytest.mark.parametrize(

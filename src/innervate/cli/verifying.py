@@ -50,7 +50,7 @@ def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path 
     from innervate.verify.cases import verdict
 
     done: list[Case] = []
-    wanted = network.verify.explorations(network, options)
+    wanted = iter(network.verify.explorations(network, options))
     with Display(as_json) as display, Stop() as stop:
         if notice := network.verify.notice(options):
             display.begin(notice, line=True)
@@ -68,9 +68,10 @@ def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path 
                 _write(network, done[-1], out / f"{done[-1].stem}-{len(done)}", as_json)
             if stop.asked:
                 break
+        is_cut = next(wanted, None) is not None
     if as_json:
         print(json.dumps([case.record for case in done], indent=2))
-    elif last := verdict(done):
+    elif last := verdict(done, is_cut):
         print(last)
     if stop.asked:
         return errors.INTERRUPTED
@@ -120,6 +121,8 @@ def _mutants(system: str, as_json: bool, count: int = 0) -> int:
     if as_json:
         rows = [{"mutant": c.mutant.name, "by": c.by, "where": c.where} for c in caught]
         print(json.dumps(rows, indent=2))
+    elif not caught:
+        print(f"No mistakes are listed for {system}.")
     return 0 if all(catch.by for catch in caught) else 1
 
 

@@ -68,18 +68,21 @@ class Case:
 Explore = Callable[[Tell], Case]
 
 
-def verdict(done: list[Case]) -> str:
-    """The last line; "" where there is none."""
+def verdict(done: list[Case], is_cut: bool = False) -> str:
+    """The last line; "" where there is none. `is_cut`: others were asked for and not begun."""
     if not all(case.sums_up for case in done):
         return ""
+    if not done:
+        return "Nothing was explored."
     broken = sum(case.is_broken for case in done)
     if broken:
         return f"{broken} of {len(done)} broken."
     part = sum(not case.is_complete for case in done)
+    end = "; interrupted before the others." if is_cut else "."
     if len(done) == 1:
-        return f"Nothing broken in one exploration, {'only in part' if part else 'completely'}."
+        return f"Nothing broken in one exploration, {'only in part' if part else 'completely'}{end}"
     sampled = f"; {part} of them only in part" if part else ", all completely"
-    return f"Nothing broken in {len(done)} explorations{sampled}."
+    return f"Nothing broken in {len(done)} explorations{sampled}{end}"
 
 
 def lines_of(head: str, story: Any, else_words: Callable[[], str]) -> list[str]:

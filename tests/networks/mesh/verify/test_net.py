@@ -88,7 +88,7 @@ def test_whoever_watches_is_asked_once_a_second_at_most(nets, first, monkeypatch
     times = iter([0.0, 1.0, 1.1, 2.0, 3.0, 3.5, 4.0, 9.0])
     monkeypatch.setattr(mesh_search, "wall_s", lambda: next(times))
     monkeypatch.setattr(mesh_search, "CHUNK", 2)
-    found, asked = mesh_search.Found(nets.model, nets, Tally()), []
+    found, asked = mesh_search.Found(nets.model, nets, Tally(ended="complete")), []
     search = Of(rows=[nets.pack(first)] * 9, tally=found.tally)
 
     def progress(tally):
@@ -98,5 +98,6 @@ def test_whoever_watches_is_asked_once_a_second_at_most(nets, first, monkeypatch
     mesh_search._look_ahead(found, search, progress)
     assert asked == [3, 7]
     assert (found.fair, found.broken) == (7, 0)
+    assert found.tally.ended == "interrupted"  # though all states were found
     mesh_search._look_ahead(found, search, None)
     assert found.fair == 9

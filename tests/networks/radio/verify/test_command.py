@@ -62,6 +62,20 @@ def test_what_there_is_not_is_refused_at_once(cells, rule, words):
         asked(cells, rule)
 
 
+@pytest.mark.parametrize("which", [0, 1], ids=["grid", "tree"])
+@pytest.mark.parametrize(("states", "stops"), [(1, False), (0, True), (0, False)])
+def test_what_was_looked_at_in_part_is_not_complete(which, states, stops, monkeypatch):
+    small = Grid(2, "practical", offers_us=(0,), delays_us=(52,), draws=1, parts=2)
+    monkeypatch.setattr(command, "_grids", lambda *_: [small])
+    monkeypatch.setattr(command, "_tree", lambda grid: Tree(grid, 5))
+    options = SimpleNamespace(cells=2, rule="", states=states)
+    explore = list(command.explorations(None, options))[which]
+    case = explore(lambda *_: stops)
+    few = stops and which == 0  # fewer points than those after which it is asked whether to stop
+    assert case.is_complete == (case.record["ended"] == "complete")
+    assert case.is_complete == (not states and (not stops or few))
+
+
 def test_the_lines_say_what_was_looked_at_and_what_broke():
     grid = Grid(2, "practical", 2000)
     found = Found(grid, 8, 1.26, {}, {}, "complete")

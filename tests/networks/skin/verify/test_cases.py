@@ -9,14 +9,15 @@ from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
 
 
-def case(ended="complete", fair=None, told=None, **keys):
+def case(ended="complete", fair=None, told=None, left_out=0, **keys):
     model = SkinModel(graphs.parse("pair"), **keys)
-    tally = Tally(states=5, expanded=4, generated=9, depth=3, wall_s=0.12345, ended=ended)
+    tally = Tally(states=5, expanded=4, generated=9, depth=3, wall_s=0.12345, ended=ended,
+                  left_out=left_out)  # fmt: skip
     return cases.SkinCase(model, "pc-1 1-2", tally, fair, told)
 
 
-def fair(ended, starts=3, of=3):
-    return Fair(40, starts, of, calm=2, rounds=7, played=21, ended=ended)
+def fair(ended, starts=3, of=3, left_out=0):
+    return Fair(40, starts, of, calm=2, rounds=7, played=21, left_out=left_out, ended=ended)
 
 
 @pytest.mark.parametrize(("ended", "played", "is_complete", "is_broken"), [
@@ -45,9 +46,23 @@ def test_who_has_a_story_is_broken_and_its_record_tells_it():
     del record["budget"]
     assert record == {
         "graph": "pc-1 1-2", "rule": "paper", "updates": made.model.updates, "states": 5,
-        "expanded": 4, "generated": 9, "depth": 3, "wall_s": 0.123, "ended": "broken",
+        "expanded": 4, "generated": 9, "left_out": 0, "depth": 3, "wall_s": 0.123,
+        "ended": "broken",
         "broken": "a ring", "story": ["One."], "fair": None,
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(("searched", "played"), [(0, 0), (3, 0), (0, 4), (3, 4)])
+def test_not_all_was_looked_at_where_something_was_left_out_for_want_of_room(searched, played):
+    made = case(fair=fair("complete", left_out=played), left_out=searched)
+    assert made.is_complete == (searched + played == 0)
+    assert made.as_dict()["left_out"] == searched + played
+
+
+def test_a_record_says_that_routes_are_not_shortest_in_time():
+    made = case(fair=fair("broken"))
+    assert made.as_dict()["broken"] == "routes are not shortest after 40 fair rounds"
+    assert made.as_dict()["story"] is None
 
 
 def test_a_record_has_what_the_fair_schedule_came_to():

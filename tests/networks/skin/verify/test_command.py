@@ -19,7 +19,7 @@ def tally(ended="complete", **more):
 
 def fair(ended="complete", starts=4, of=4, **more):
     return SimpleNamespace(**{"ended": ended, "starts": starts, "of": of, "rounds": 3, "bound": 5,
-                              "calm": 2, "played": 6, **more})  # fmt: skip
+                              "calm": 2, "played": 6, "left_out": 0, **more})  # fmt: skip
 
 
 def case(tallied=None, fairly=None, told=None, ticks=2):
@@ -40,6 +40,11 @@ BROKEN = SimpleNamespace(title="closed loop", sentences=["The PC ticks."],
             "all states but 1,200 successors with too many frames in flight",
         ),
         (case(fairly=fair()), "all states; settled in 3 of 5 rounds"),
+        (
+            case(tally(left_out=1200), fair(left_out=34)),
+            "all states but 1,234 successors with too many frames in flight; "
+            "settled in 3 of 5 rounds",
+        ),
         (case(fairly=fair(starts=1)), "all states; settled from 1 of them in 3 of 5 rounds"),
         (
             case(fairly=fair("limit", starts=1)),

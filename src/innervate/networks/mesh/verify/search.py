@@ -106,6 +106,7 @@ def _look_ahead(found: Found, search: _Search, progress: Progress | None) -> Non
         if progress is not None and index % CHUNK == 0 and wall_s() - told > 1:
             told = wall_s()
             if progress(search.tally):
+                search.tally.ended = "interrupted"
                 return
 
 

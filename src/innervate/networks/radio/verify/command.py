@@ -37,7 +37,7 @@ def _search(grid: Grid, limit: int, tell: Tell) -> Case:
         return tell(what, found.done, found.grid.points)
 
     found = grids.search(grid, progress, limit)
-    return Case(_lines(found), found.as_dict(), bool(found.broken), sums_up=False)
+    return _case(found, _lines(found))
 
 
 def _grow(grid: Grid, limit: int, tell: Tell) -> Case:
@@ -46,7 +46,12 @@ def _grow(grid: Grid, limit: int, tell: Tell) -> Case:
         return tell(what, 0, 0)
 
     grown = trees.search(_tree(grid), limit=limit, progress=progress)
-    return Case([_tree_line(grown)], grown.as_dict(), bool(grown.broken), sums_up=False)
+    return _case(grown, [_tree_line(grown)])
+
+
+def _case(found: Found | Grown, lines: list[str]) -> Case:
+    is_all = found.ended == "complete"
+    return Case(lines, found.as_dict(), bool(found.broken), is_complete=is_all, sums_up=False)
 
 
 def _grids(stations: int, mode: str) -> list[Grid]:

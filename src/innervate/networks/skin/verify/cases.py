@@ -41,15 +41,29 @@ class SkinCase:
     @property
     def is_broken(self) -> bool:
         """True if a property does not hold."""
-        return self.story is not None or (self.fair is not None and self.fair.ended == "broken")
+        return self.broken is not None
 
     @property
     def is_complete(self) -> bool:
-        """True if every state was looked at."""
-        return self.tally.ended == "complete" and (
+        """True if every state was looked at, and none left out for want of room."""
+        return self.tally.ended == "complete" and not self.left_out and (
             self.fair is None
             or (self.fair.ended == "complete" and self.fair.starts == self.fair.of)
-        )
+        )  # fmt: skip
+
+    @property
+    def left_out(self) -> int:
+        """Successors and rounds with more frames in flight than there is room for."""
+        return self.tally.left_out + (self.fair.left_out if self.fair is not None else 0)
+
+    @property
+    def broken(self) -> str | None:
+        """What does not hold, in one line."""
+        if self.story is not None:
+            return self.story.title
+        if self.fair is None or self.fair.ended != "broken":
+            return None
+        return f"routes are not shortest after {self.fair.bound} fair rounds"
 
     def as_dict(self) -> dict[str, Any]:
         """The case as `innervate verify --json` prints it."""
@@ -62,10 +76,11 @@ class SkinCase:
             "updates": self.model.updates,
             "budget": budget,
             **{name: getattr(self.tally, name) for name in ("states", "expanded", "generated")},
+            "left_out": self.left_out,
             "depth": self.tally.depth,
             "wall_s": round(self.tally.wall_s, 3),
             "ended": self.tally.ended,
-            "broken": self.story.title if self.story else None,
+            "broken": self.broken,
             "story": self.story.sentences if self.story else None,
             "fair": None,
         }

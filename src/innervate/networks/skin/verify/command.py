@@ -72,15 +72,15 @@ def _lines(case: cases.SkinCase) -> list[str]:
     unit = "walks " if tally.ended == "walked" else "states"
     much = f"{tally.states:>11,} {unit} {tally.generated:>12,} successors {tally.wall_s:7.1f} s"
     lines = common.lines_of(f"{name}{much}", case.story, partial(_extent, case))
-    if case.story is None and case.fair is not None and case.fair.ended == "broken":
-        lines.append(f"    BROKEN: routes are not shortest after {case.fair.bound} fair rounds")
+    if case.story is None and case.broken:
+        lines.append(f"    BROKEN: {case.broken}")
     return lines
 
 
 def _extent(case: cases.SkinCase) -> str:
     words = common.extent(case.tally)
-    if case.tally.left_out:
-        words += f" but {case.tally.left_out:,} successors with too many frames in flight"
+    if case.left_out:
+        words += f" but {case.left_out:,} successors with too many frames in flight"
     if case.fair is None:
         return words
     part = "" if case.fair.starts == case.fair.of else f" from {case.fair.starts:,} of them"
