@@ -9,8 +9,11 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.cli import verifying
-from innervate.networks.skin.verify import assumptions
-from innervate.verify.cases import Case
+from innervate.networks.skin.plot import counterexample
+from innervate.networks.skin.verify import assumptions, graphs, story
+from innervate.networks.skin.verify.system import SkinModel
+from innervate.verify.cases import Case, lines_of
+from innervate.verify.explore import Result, Tally
 
 SMALL = ("--plain", "--graph", "pc-1 1-2", "--updates", "periodic", "--budget", "ticks=2,faults=1")
 
@@ -161,6 +164,24 @@ def test_who_interrupts_between_two_explorations_is_told_that_others_were_to_com
         code = verifying._explore(network(first, *more), None, as_json=False, out=None)
         assert code == 130
         assert capsys.readouterr().out == f"the first\n{said}{end}\n"
+
+
+def test_a_story_in_short_is_written_without_a_picture_of_events(tmp_path, capsys):
+    """There was no room for the search that its events need."""
+    short = story.in_short(Result(SkinModel(graphs.parse("pair")), Tally(), 1, [b""] * 3))
+    case = Case(lines_of("pair", short, str), {}, is_broken=True, story=short)
+    network = SimpleNamespace(
+        verify=SimpleNamespace(explorations=lambda *_: [lambda tell: case], notice=lambda _: ""),
+        has=lambda part: True, counterexample=counterexample.save,
+    )  # fmt: skip
+    assert verifying._explore(network, None, as_json=False, out=tmp_path) == 1
+    so = "So: closed loop, after 3 events or a few more"
+    written = f"    Written: {tmp_path / 'counterexample-1'}.txt"
+    assert capsys.readouterr().out.splitlines() == ["pair  BROKEN", f"    {so}", written,
+                                                    "1 of 1 broken."]  # fmt: skip
+    assert [(one.name, one.read_text("utf-8")) for one in tmp_path.iterdir()] == [
+        ("counterexample-1.txt", f"{so}\n")
+    ]
 
 
 def test_who_asks_for_mistakes_that_are_not_listed_is_told_so(sh):

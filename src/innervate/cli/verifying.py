@@ -89,7 +89,7 @@ def _write(network: Network, case: Case, stem: Path, quiet: bool) -> None:
         made.append(".toml (innervate run plays it)")
     files.write_text(stem.with_suffix(".txt"), "\n".join([*story.lines(), ""]))
     made.append(".txt")
-    if network.has("counterexample"):
+    if story.sentences and network.has("counterexample"):
         network.counterexample(story, stem.with_suffix(".svg"))
         made.append(".svg")
     if not quiet:

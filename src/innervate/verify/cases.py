@@ -90,7 +90,8 @@ def lines_of(head: str, story: Any, else_words: Callable[[], str]) -> list[str]:
     if story is None:
         return [f"{head}  {else_words()}"]
     told = [f"    {line}" for line in story.lines()]
-    return [f"{head}  BROKEN after {len(story.sentences)} events", *told]
+    events = len(story.sentences)
+    return [f"{head}  BROKEN{f' after {events} events' if events else ''}", *told]
 
 
 def extent(tally: Tally) -> str:
