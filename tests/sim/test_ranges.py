@@ -33,6 +33,7 @@ from innervate.sim.field.medium import BROKEN_RANGE as BROKEN_MESH
 from innervate.sim.status import BROKEN, DONE
 from innervate.sim.tables import Tables, get, put
 from innervate.verify import declared
+from innervate.verify.graphs import graph_of
 from tests.networks.mesh.runs import mesh_plan
 from tests.networks.radio.runs import radio_plan
 from tests.networks.skin.runs import line, plan_of
@@ -178,7 +179,7 @@ def explored_routers(which):
 def explored_declared():
     protocol = SimpleNamespace(OUTBOX=4)
     fields = SimpleNamespace(STATE=skin_fields.CELL, FRAME=skin_fields.FRAME, PARAMS=())
-    net = declared.Net(protocol, fields, declared._graph(declared.GRAPHS["pair"]), {})
+    net = declared.Net(protocol, fields, graph_of("pair"), {})
 
     def speaks():
         said = net.broken(0)

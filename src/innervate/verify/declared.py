@@ -27,9 +27,9 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.folders import MEDIA_ON_AIR, invariants_of
 from innervate.kernel.clock import wall_s
 from innervate.network import Network
-from innervate.topology import PORTS, Graph, TopologyError, free_graph
+from innervate.topology import PORTS, Graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
-from innervate.verify.errors import VerifyError
+from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.states import Budget, Node, State, Step, is_still, most_frames, sent
 from innervate.verify.tally import Tally
 from innervate.verify.telling import ERRORS, first_broken, story_of, where
@@ -42,11 +42,6 @@ BATCH = 500
 COLD, MEMORY_LOST = 0, 1
 NEVER = 1 << 62  # us
 OF_RECEIVER = {"made_at", "rssi"}  # fields of a frame that each receiver may have its own of
-GRAPHS = {
-    "pair": "n0.E-n1.W n1.E-n0.W",
-    "line": "n0.E-n1.W n1.E-n2.W",
-    "ring": "n0.E-n1.W n1.E-n2.W n2.E-n0.W",
-}
 STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
 
 
@@ -113,6 +108,8 @@ class Net:
                     yield self.missed(gone, end)
         for number, node in enumerate(state.nodes):
             yield from self.due(state, number)
+            if node.airing:
+                yield self.fall_silent(state, number)
             if node.down:
                 yield self.leave(state, number, 1)
                 if loss:
@@ -155,6 +152,14 @@ class Net:
         if not broken and self.has_carrier:
             after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
         return Step(what, after, broken)
+
+    def fall_silent(self, state: State, number: int) -> Step:
+        """A frame of a node's own has ended, and it is told."""
+        node = state.nodes[number]
+        over = node._replace(airing=node.airing - 1)
+        ended = state._replace(nodes=with_one(state.nodes, number, over))
+        after, broken = self.call(ended, number, 0, self.do.on_carrier, 0, 0)
+        return Step(f"A frame of {self.graph.label(number)} has ended", after, broken)
 
     def missed(self, state: State, end: int) -> Step:
         """A frame is lost; on the air its receiver hears that there was something."""
@@ -216,6 +221,8 @@ class Net:
         node = state.nodes[number]._replace(down=tuple(rest))
         gone = state._replace(nodes=with_one(state.nodes, number, node))
         if ok:
+            node = node._replace(airing=node.airing + self.has_carrier)
+            gone = state._replace(nodes=with_one(state.nodes, number, node))
             gone = sent(gone, self.ends_of(number, 0), first)
         after, broken = self.call(gone, number, 0, self.do.on_sent, ok)
         what = "goes out" if ok else "finds the channel busy and is given up"
@@ -234,6 +241,7 @@ class Net:
             return state, f"a handler cannot go on: {where(error)}"
         broken = self.broken(now)
         timers, down, late = dict(node.timers), list(node.down), list(node.late)
+        airing = node.airing
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
             if act.kind == SET_TIMER:
                 timers[act.a] = ahead(act.b)
@@ -252,10 +260,10 @@ class Net:
                 if act.b > 0 and ends and not self.on_air:
                     late.append((now + act.b, act.a, one))
                     continue
-                state = sent(state, ends, one)
+                state, airing = sent(state, ends, one), airing + self.has_carrier
             elif act.kind not in (DELIVER, REPORT):
                 broken = broken or "the outbox holds what is no action"
-        asked = Node((), tuple(timers.items()), tuple(down), tuple(late))
+        asked = Node((), tuple(timers.items()), tuple(down), tuple(late), airing)
         return self.kept(state, number, now, asked), broken
 
     def kept(self, state: State, number: int, now: int, asked: Node) -> State:
@@ -270,7 +278,8 @@ class Net:
             setattr(self.node, name, own)
         waits = tuple(sorted((timer, at - now) for timer, at in asked.timers))
         late = sorted(((at - now, port, one) for at, port, one in asked.late), key=itemgetter(0))
-        node = Node(values(self.node, self.fields.STATE), waits, asked.down, tuple(late))
+        left = asked._replace(values=values(self.node, self.fields.STATE), timers=waits)
+        node = left._replace(late=tuple(late))
         return state._replace(nodes=with_one(state.nodes, number, node))
 
     def broken_of_all(self, state: State) -> str:
@@ -344,22 +353,8 @@ def explorations(network: Network, options: Any) -> Iterator[Explore]:
     """All that the options of the command line ask for."""
     budget = budget_of(options.budget, Budget())
     names = list(GRAPHS) if options.graph == "all" else [options.graph]
-    graphs = [_graph(GRAPHS.get(name, name)) for name in names]
+    graphs = [graph_of(name) for name in names]
     return (partial(_explore, network, options, graph, budget) for graph in graphs)
-
-
-def _graph(text: str) -> Graph:
-    """The graph of cables like "n0.E-n1.W n1-n2".
-
-    Raises:
-        VerifyError: no such cables, or no such name.
-    """
-    pairs = [pair.partition("-")[::2] for pair in text.split()]
-    try:
-        return free_graph(pairs)
-    except TopologyError as error:
-        names = ", ".join(GRAPHS)
-        raise VerifyError(f"--graph: {error}; or one of {names}") from None
 
 
 def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
@@ -368,6 +363,7 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
               **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
     net = Net(network.protocol, network.fields, graph, params)
     net.on_air = network.medium in MEDIA_ON_AIR
+    net.has_carrier &= net.on_air
     net.is_slotted = network.medium == "channel"
     net.is_addressed = network.medium == "field" and hasattr(net.frame, "to")
     net.own = invariants_of(network, "node_")

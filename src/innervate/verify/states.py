@@ -21,12 +21,14 @@ class Node(NamedTuple):
 
     Frames are handed down, and leave later, where the protocol is told when they do (`on_sent`).
     `late` are those that were sent with a delay: us from its time on, port, frame.
+    `airing` are its frames on the air whose end it has not been told of (`on_carrier`).
     """
 
     values: tuple[Any, ...]
     timers: tuple[tuple[int, int], ...]
     down: tuple[tuple[Any, ...], ...] = ()
     late: tuple[tuple[int, int, tuple[Any, ...]], ...] = ()
+    airing: int = 0
 
 
 class State(NamedTuple):
@@ -59,8 +61,8 @@ def is_still(state: State) -> bool:
 
 
 def most_frames(state: State) -> int:
-    """How many frames are where most are: on a cable one way, or held back for one in a node."""
+    """How many frames are where most are: on a cable one way, held back in a node, or its own."""
     down = (len(node.down) for node in state.nodes)
     late = (count for node in state.nodes
             for count in Counter(port for _, port, _ in node.late).values())  # fmt: skip
-    return max(*map(len, state.ways), *down, *late)
+    return max(*map(len, state.ways), *down, *late, *(node.airing for node in state.nodes))
