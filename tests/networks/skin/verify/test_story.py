@@ -8,8 +8,11 @@ import pytest
 from innervate import scenario
 from innervate.networks.skin.verify import graphs, story
 from innervate.networks.skin.verify import row as r
+from innervate.networks.skin.verify.mutants import copy_of
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
 from innervate.verify.explore import Result, Tally, explore
+from innervate.verify.mutants import Mutant
+from innervate.verify.twin import Event
 from tests.networks.skin.verify.tiny import PC, Tiny
 
 WHOLE = Path(__file__).with_name("stories.txt")
@@ -118,3 +121,53 @@ def in_full(name, keys):
 def test_stories_are_told_word_for_word():
     lines = [line for name, keys in SHORTEST for line in in_full(name, keys)]
     assert lines == WHOLE.read_text(encoding="utf-8").splitlines()
+
+
+SILENT = Mutant("who has no route is silent", "    if not silent:\n        announce(cell, now, out)",
+                "    if not silent and cell.parent != NONE:\n        announce(cell, now, out)")  # fmt: skip
+NEWER = Mutant("a newer number is said", "    cell.sent_sq = cell.sq_own\n    cell.sent_at",
+               "    cell.sent_sq = cell.sq_own + 1\n    cell.sent_at")  # fmt: skip
+SHORT = Mutant("it is as near as its parent", "return min(cell.dist[cell.parent] + 1, INFINITY)",
+               "return min(cell.dist[cell.parent], INFINITY)")  # fmt: skip
+PERIODIC = ("feasible", "periodic", "pc-1 1-2", Budget(restart=0, heal=0))
+ONCE = Budget(ticks=1, counts=1, loss=0, cut=0, heal=0, restart=0, faults=1)
+
+
+@pytest.mark.parametrize(("fault", "what", "at", "sentences"), [
+    (SHORT, PERIODIC, 1, [
+        'n1 hears from the PC "0 hops, number 1", ticks and says "0 hops, number 1"; it takes '
+        "the PC as its parent.",
+        'n2 hears from n1 "0 hops, number 1", ticks and says "0 hops, number 1"; it takes n1 as '
+        "its parent."]),
+    (NEWER, PERIODIC, 1, [
+        'n1 hears from the PC "0 hops, number 1", ticks and says "1 hop, number 2"; it takes the '
+        "PC as its parent.",
+        'n2 hears from n1 "1 hop, number 2", ticks and says "2 hops, number 3"; it takes n1 as '
+        "its parent."]),
+    (SILENT, ("paper", "triggered", "triangle", ONCE), 2, [
+        "n1 finds, wrongly, its cable to the PC broken, ticks; it leaves the PC and has no way "
+        "left."]),
+], ids=lambda one: getattr(one, "name", ""))  # fmt: skip
+def test_what_a_cell_says_is_what_it_has_sent(fault, what, at, sentences):
+    """Not what it should have, where the protocol is wrong; and nothing where it sent nothing."""
+    rule, updates, graph, budget = what
+    changed = copy_of(fault)
+    model = SkinModel(graphs.parse(graph), rule, updates, budget)
+    told = story.tell(explore(model, plain=True, system=changed, states=2_000), changed)
+    assert told.sentences[at : at + len(sentences)] == sentences
+
+
+@pytest.mark.parametrize(("is_cut", "sent"), [(False, True), (True, False)])
+def test_news_are_told_where_there_are_any(is_cut, sent):
+    tiny = Tiny(faults={"cut": 1})
+    tiny.cell(0, FLAGS=r.IS_SOON)
+    tiny.port(0, PC, 0, 7, r.IS_PARENT)
+    twin = tiny.twin
+    if is_cut:
+        for link in range(len(tiny.lay.links)):
+            tiny.row[tiny.lay.link_at + link] = 1
+    made = story.Story("", graph=tiny.model.graph)
+    story.Narrator(twin, made).play(twin, Event(story.w.SOON, 0, 0, 0, 1))
+    said = 'sends its news: "1 hop, number 0"' if sent else "comes to send news"
+    assert made.sentences == [f"n1 {said}; it stays with the PC."]
+    assert made.steps == [["soon n1"]]

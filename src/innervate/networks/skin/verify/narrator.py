@@ -52,10 +52,7 @@ class Narrator:
         elif kind in (w.DELIVER, w.LOSE):
             text, actor = self._frame(kind, arg, event)
         elif kind == w.SOON:
-            self._step(w.SOON, arg, 0, event.choice, event.asked)
-            self.steps.append(f"soon {self.graph.label(arg)}")
-            text, actor = f"{self.name(arg)} sends its news", arg
-            text += f": {self._says(arg)}"
+            text, actor = self._soon(arg, event), arg
         else:
             text, actor = self._outside(kind, arg)
         if actor != NONE and actor < self.graph.cells and kind != w.LOSE:
@@ -72,14 +69,15 @@ class Narrator:
         is_cell = node < self.graph.cells
         heard, breaks = self._taken_in(found, node, event.variant)
         listens = self.real.world.work[self.real.lay.pc_at + w.PC_LISTEN]
+        queued = self._queued(node)
         if is_cell:
             self._step(w.TICK, node, breaks, event.choice, event.asked)
         else:
             self._step(w.PC_TICK, 0, 0, 0, 1)
         self.steps.append(f"tick {self.graph.label(node)}")
         if is_cell:
-            words = ", ".join([*heard, "ticks"])
-            return f"{self.name(node)} {words} and says {self._says(node)}"
+            words, said = ", ".join([*heard, "ticks"]), self._said(node, queued)
+            return f"{self.name(node)} {words}{f' and says {said}' if said else ''}"
         if listens:
             return f"the PC {', '.join([*heard, 'has listened for a period'])}"
         own = self.real.world.work[self.real.lay.pc_at + w.PC_SQ]
@@ -147,6 +145,15 @@ class Narrator:
         self.steps.append(f"deliver {self._way(way)}")
         return f"{self.name(node)} hears from {words}", node
 
+    def _soon(self, node: int, event: Event) -> str:
+        """The timer for news fires."""
+        queued = self._queued(node)
+        self._step(w.SOON, node, 0, event.choice, event.asked)
+        self.steps.append(f"soon {self.graph.label(node)}")
+        said = self._said(node, queued)
+        name = self.name(node)
+        return f"{name} sends its news: {said}" if said else f"{name} comes to send news"
+
     def _outside(self, kind: int, arg: int) -> tuple[str, int]:
         """A cable is cut or mended, or the PC restarts."""
         self._step(kind, arg, 0, 0, 1)
@@ -175,11 +182,20 @@ class Narrator:
         child = ", you are my parent" if frame[w.SAYS] & skin_row.IS_CHILD else ""
         return f'{sender} "{_route(frame[w.DIST], frame[w.SQ])}{child}"'
 
-    def _says(self, cell: int) -> str:
-        skin_row.load_cell(self.real.world, cell, 0)
-        state = self.real.world.cells[0]
-        dist = INFINITY if state.parent == NONE else state.dist[state.parent] + 1
-        return f'"{_route(dist, state.sq_own)}"'
+    def _queued(self, node: int) -> dict[int, int]:
+        """How many frames of a node are under way, by direction."""
+        ends = [end for end in self.graph.ends_of(node) if self.graph.peer[end] >= 0]
+        ways = [self.real.lay.out_way[end] for end in ends]
+        return {way: self.real.world.work[self.real.lay.queue_at[way]] for way in ways}
+
+    def _said(self, node: int, before: dict[int, int]) -> str:
+        """The beacon that a node has sent over a cable since then; "" none."""
+        for way, count in self._queued(node).items():
+            if count > before[way]:
+                at = self.real.lay.queue_at[way] + 1 + w.FRAME_BYTES * (count - 1)
+                frame = self.real.world.work
+                return f'"{_route(frame[at + w.DIST], frame[at + w.SQ])}"'
+        return ""
 
     def _turned(self, cell: int, old: int) -> str:
         new = self._parents()[cell]
