@@ -6,6 +6,7 @@ import pytest
 
 from innervate.networks.skin.verify import cases, command, graphs, story
 from innervate.networks.skin.verify.cases import SkinCase, Wanted
+from innervate.networks.skin.verify.fair import Fair
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
 from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
@@ -18,8 +19,7 @@ def tally(ended="complete", **more):
 
 
 def fair(ended="complete", starts=4, of=4, **more):
-    return SimpleNamespace(**{"ended": ended, "starts": starts, "of": of, "rounds": 3, "bound": 5,
-                              "calm": 2, "played": 6, "left_out": 0, **more})  # fmt: skip
+    return Fair(5, starts, of, **{"ended": ended, "rounds": 3, "calm": 2, "played": 6, **more})
 
 
 def case(tallied=None, fairly=None, told=None, ticks=2):

@@ -77,7 +77,17 @@ def test_a_network_that_never_settles_is_found(monkeypatch):
     monkeypatch.setattr(mutants, "models", lambda lean: [model("pc-1")])
     lost = next(m for m in mutants.MUTANTS if m.name == "the PC says that it is a hop away")
     catch = mutants.hunt(lost)
-    assert "no shortest routes after" in catch.by
+    assert catch.by == "routes are not shortest after 9 fair rounds"
+
+
+def test_frames_that_set_off_more_without_end_are_told_as_such(monkeypatch):
+    """Not as routes that are not shortest in time: there is no round in which they could be."""
+    monkeypatch.setattr(mutants, "models", lambda lean: [model("pc-1", updates="triggered")])
+    again = mutants.Mutant("the timer for news is never over",
+                           "        cell.soon = 0\n        if is_news",
+                           "        cell.soon = 1\n        if is_news")  # fmt: skip
+    catch = mutants.hunt(again)
+    assert catch.by == "what is under way sets off more without end, after 0 fair rounds"
 
 
 def test_too_small_a_bound_is_broken(monkeypatch):

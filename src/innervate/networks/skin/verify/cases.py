@@ -61,9 +61,7 @@ class SkinCase:
         """What does not hold, in one line."""
         if self.story is not None:
             return self.story.title
-        if self.fair is None or self.fair.ended != "broken":
-            return None
-        return f"routes are not shortest after {self.fair.bound} fair rounds"
+        return (self.fair.broken or None) if self.fair is not None else None
 
     def as_dict(self) -> dict[str, Any]:
         """The case as `innervate verify --json` prints it."""

@@ -46,6 +46,7 @@ class Fair:
         left_out: of these, with more in flight than there is room for; they prove nothing.
         path: rows from the state in question to the one that is not settled at the bound.
         ended: "complete", "broken", "memory" or "interrupted".
+        is_endless: what was under way set off more without end; `path` may be empty then.
     """
 
     bound: int
@@ -59,6 +60,16 @@ class Fair:
     wall_s: float = 0.0
     path: list[bytes] = field(default_factory=list)
     ended: str = "interrupted"
+    is_endless: bool = False
+
+    @property
+    def broken(self) -> str:
+        """What does not hold, in one line; "" nothing."""
+        if self.ended != "broken":
+            return ""
+        if self.is_endless:
+            return f"what is under way sets off more without end, after {self.rounds} fair rounds"
+        return f"routes are not shortest after {self.bound} fair rounds"
 
 
 def build(system: Any) -> tuple[Callable[..., Any], ...]:
@@ -212,6 +223,7 @@ def _settle(player: _Player, source: _Rows) -> None:
         else:
             fair.calm = here.count
         if int(here.search.run[s.BROKEN]):
+            fair.is_endless = True
             break
         if here.count == 0:
             fair.ended = "complete"
@@ -220,7 +232,7 @@ def _settle(player: _Player, source: _Rows) -> None:
             here = player.round(here, EXPIRY)
     if here is not None:
         fair.ended = "broken"
-        fair.path = _way_to(here, player.chain)
+        fair.path = _way_to(here, player.chain) if here.count else []
 
 
 def _way_to(last: _Rows, chain: list[_Rows]) -> list[bytes]:

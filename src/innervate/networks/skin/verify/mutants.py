@@ -108,8 +108,7 @@ def hunt(mutant: Mutant, starts: int = 12, lean: bool = False) -> Catch:
             if model.keep:
                 settled = fair.check(found, plain=True, system=changed, starts=starts)
                 if settled.ended == "broken":
-                    by = f"no shortest routes after {settled.bound} fair rounds"
-                    return Catch(mutant, by, where, states)
+                    return Catch(mutant, settled.broken, where, states)
         except (ArithmeticError, IndexError, ValueError) as error:
             return Catch(mutant, f"{type(error).__name__}: a value out of range", where, states)
     return Catch(mutant, "", "", states)
