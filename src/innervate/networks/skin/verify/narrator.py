@@ -50,7 +50,7 @@ class Narrator:
             text = self._tick(found, node, event)
             actor = node
         elif kind in (w.DELIVER, w.LOSE):
-            text, actor = self._frame(kind, arg, event)
+            text, actor = self._frame(found, kind, arg, event)
         elif kind == w.SOON:
             text, actor = self._soon(arg, event), arg
         else:
@@ -86,27 +86,21 @@ class Narrator:
     def _taken_in(self, found: Twin, node: int, variant: int) -> tuple[list[str], int]:
         """What a node takes in before its tick, in words; which of its ends break then, coded."""
         heard: list[str] = []
-        breaks, factor = 0, 1
+        breaks, factor, wrongly = 0, 1, 0
         is_cell = node < self.graph.cells
         for end in self.graph.ends_of(node):
             if self.graph.peer[end] < 0:
                 continue
             way = self.real.lay.in_way[end]
-            if is_cell:
-                count = skin_moves.options(found.world, node, self.graph.port_of(end))
-                can = skin_moves.may_break(found.world, node, self.graph.port_of(end))
-            else:
-                queued = found.world.work[found.lay.queue_at[way]] if found.model.merges else 0
-                count, can = queued + 1, 0
+            queued = found.world.work[found.lay.queue_at[way]] if found.model.merges else 0
+            can = int(is_cell and _may_break(found, end, wrongly))
+            real_can = int(is_cell and _may_break(self.real, end, wrongly))
+            count = 1 + queued + can
             chosen, variant = variant % count, variant // count
-            real_can = (
-                skin_moves.may_break(self.real.world, node, self.graph.port_of(end))
-                if is_cell
-                else 0
-            )
             if can and chosen == count - 1:
                 heard.append(self._broken(end, way))
                 breaks += factor
+                wrongly += not self._is_cut(way)
             elif found.model.merges and chosen:
                 heard.append(self._hear(found, way, chosen))
             factor *= 1 + real_can
@@ -114,16 +108,21 @@ class Narrator:
 
     def _hear(self, found: Twin, way: int, count: int) -> str:
         """Frames are taken in: as many as it takes to come to the one the search took."""
-        at = found.lay.queue_at[way] + 1 + w.FRAME_BYTES * (count - 1)
-        wanted = bytes(found.world.work[at : at + w.FRAME_BYTES])
+        wanted = _queued_frame(found, way, count)
+        while self._first(way) != wanted:
+            self._take(way)
+        self._take(way)
+        return f"hears from {self._frame_words(way, wanted)}"
+
+    def _first(self, way: int) -> bytes:
+        """The oldest frame that is under way."""
         queue = self.real.lay.queue_at[way]
-        while True:
-            assert self.real.world.work[queue] > 0, "a frame is missing from the story"
-            first = bytes(self.real.world.work[queue + 1 : queue + 1 + w.FRAME_BYTES])
-            self._step(w.DELIVER, way, 0, 0, 1)
-            self.steps.append(f"deliver {self._way(way)}")
-            if first == wanted:
-                return f"hears from {self._frame_words(way, first)}"
+        assert self.real.world.work[queue] > 0, "a frame is missing from the story"
+        return _queued_frame(self.real, way, 1)
+
+    def _take(self, way: int) -> None:
+        self._step(w.DELIVER, way, 0, 0, 1)
+        self.steps.append(f"deliver {self._way(way)}")
 
     def _broken(self, end: int, way: int) -> str:
         """A port is found broken by the coming tick."""
@@ -132,10 +131,11 @@ class Narrator:
         other = self.graph.node_of(self.graph.peer[end])
         return f"finds{wrongly} its cable to {self.name(other)} broken"
 
-    def _frame(self, kind: int, way: int, event: Event) -> tuple[str, int]:
-        """A frame arrives, or is lost."""
-        queue = self.real.lay.queue_at[way]
-        first = bytes(self.real.world.work[queue + 1 : queue + 1 + w.FRAME_BYTES])
+    def _frame(self, found: Twin, kind: int, way: int, event: Event) -> tuple[str, int]:
+        """A frame arrives, or is lost; the PC hears first what the search has left out for it."""
+        first = _queued_frame(found, way, 1)
+        while self._first(way) != first:
+            self._take(way)
         node = self.graph.node_of(self.real.lay.way_end[way])
         words = self._frame_words(way, first)
         self._step(kind, way, 0, event.choice, event.asked)
@@ -192,9 +192,8 @@ class Narrator:
         """The beacon that a node has sent over a cable since then; "" none."""
         for way, count in self._queued(node).items():
             if count > before[way]:
-                at = self.real.lay.queue_at[way] + 1 + w.FRAME_BYTES * (count - 1)
-                frame = self.real.world.work
-                return f'"{_route(frame[at + w.DIST], frame[at + w.SQ])}"'
+                frame = _queued_frame(self.real, way, count)
+                return f'"{_route(frame[w.DIST], frame[w.SQ])}"'
         return ""
 
     def _turned(self, cell: int, old: int) -> str:
@@ -235,6 +234,22 @@ class Narrator:
             for way in range(0, self.real.lay.ways, 2)
             if self._is_cut(way)
         ]
+
+
+def _may_break(twin: Twin, end: int, wrongly: int) -> bool:
+    """If a cell can find a port broken, after so many in the same tick that work."""
+    node, port = divmod(end, PORTS)
+    if not skin_moves.may_break(twin.world, node, port):
+        return False
+    work, at = twin.world.work, twin.lay.budget_at
+    is_cut = work[twin.lay.link_at + twin.lay.in_way[end] // 2]
+    return bool(is_cut) or min(work[at + w.FALSE], work[at + w.TOTAL]) > wrongly
+
+
+def _queued_frame(twin: Twin, way: int, count: int) -> bytes:
+    """The bytes of a frame that is under way, the oldest is 1."""
+    at = twin.lay.queue_at[way] + 1 + w.FRAME_BYTES * (count - 1)
+    return bytes(twin.world.work[at : at + w.FRAME_BYTES])
 
 
 def _route(dist: int, sq: int) -> str:
