@@ -72,7 +72,7 @@ def test_each_event_in_a_sentence(event, words):
 def test_what_tables_say_now_that_they_did_not():
     after = net(10, 13, DEAD)
     assert story._sentence(NETS, move(nets.FIRE, frame=const.TX), CALM, after) == (
-        "node 1 a wait is over; node 1 has node 0 in its table for node 0 now; "
+        "node 1 has waited; node 1 has node 0 in its table for node 0 now; "
         "node 1 has node 0 in its table for node 1 now; node 1 has nobody in its table "
         "for node 2 now"
     )

@@ -25,7 +25,7 @@ KINDS = {
     const.GRAPH: "the graph",
 }
 TIMERS = {
-    const.TX: "a wait is over",
+    const.TX: "has waited",
     const.ACK_WAIT: "hears no ack",
     const.ROUND: "goes on with the discovery round",
     const.TICK: "has its beat",
