@@ -142,13 +142,16 @@ def test_who_acts_on_what_is_named_in_each_sentence(how):
     assert kinds == every - never
 
 
+@pytest.mark.parametrize("is_cut", [False, True])
 @pytest.mark.parametrize("false", [0, 1, 2, 3])
-def test_a_tick_is_told_with_what_it_takes_in_and_finds_broken(false):
+def test_a_tick_is_told_with_what_it_takes_in_and_finds_broken(false, is_cut):
     """In every way that there is; what may be found broken gets less with each that wrongly is."""
-    walk = Walk(0, Budget(loss=0, cut=0, heal=0, false=false, restart=0, faults=3))
+    walk = Walk(0, Budget(loss=0, cut=is_cut, heal=0, false=false, restart=0, faults=4))
     cells = ((w.TICK, c, 1) for c in range(3))
     for kind, arg, variant in ((w.PC_TICK, 0, 0), *cells, (w.PC_TICK, 0, 0)):
         walk.take(Event(kind, arg, variant, 0, 1))  # n1 may hear of all three now
+    if is_cut:
+        walk.take(Event(w.CUT_LINK, 0, 0, 0, 1))
     rows, told = (walk.found.row(), walk.real.row()), set()
     for move, variant, choice, asked in list(walk.found.successors()):
         if walk.found.moves[move] == (w.TICK, 0):
@@ -157,10 +160,13 @@ def test_a_tick_is_told_with_what_it_takes_in_and_finds_broken(false):
             walk.take(Event(w.TICK, 0, variant, choice, asked))
             assert heads(walk.real) == heads(walk.found), walk.story.sentences[-1]
             told.add(walk.story.sentences[-1].partition(" ticks")[0])
-    ways = [["", 'hears from the PC "0 hops, number 2",'],
-            *(["", f'hears from {name} "2 hops, number 1, you are my parent",']
-              for name in ("n2", "n3"))]  # fmt: skip
-    finds = [f"finds, wrongly, its cable to {name} broken," for name in ("the PC", "n2", "n3")]
-    wanted = product(*([*way, find] for way, find in zip(ways, finds, strict=True)))
-    some = [[one for one in way if one] for way in wanted if len({*way} & {*finds}) <= false]
-    assert told == {" ".join(["n1", *way]) for way in some}
+    says = {"the PC": '"0 hops, number 2"', "n2": '"2 hops, number 1, you are my parent"',
+            "n3": '"2 hops, number 1, you are my parent"'}  # fmt: skip
+    ways = [["", f"hears from {name} {says[name]},", f"finds, wrongly, its cable to {name} broken,"]
+            for name in says]  # fmt: skip
+    if is_cut:
+        ways[0] = ["", "finds its cable to the PC broken,"]
+    wanted = ([one for one in way if one] for way in product(*ways))
+    assert told == {
+        " ".join(["n1", *way]) for way in wanted if " ".join(way).count("wrongly") <= false
+    }

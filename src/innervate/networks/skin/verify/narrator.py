@@ -55,7 +55,7 @@ class Narrator:
             text, actor = self._soon(arg, event), arg
         else:
             text, actor = self._outside(kind, arg)
-        if actor != NONE and actor < self.graph.cells and kind != w.LOSE:
+        if actor != NONE and actor < self.graph.cells:
             text += self._turned(actor, before[actor])
         self.story.sentences.append(("The" + text[3:] if text.startswith("the ") else text) + ".")
         self.story.steps.append(self.steps)
@@ -101,7 +101,7 @@ class Narrator:
                 heard.append(self._broken(end, way))
                 breaks += factor
                 wrongly += not self._is_cut(way)
-            elif found.model.merges and chosen:
+            elif chosen:
                 heard.append(self._hear(found, way, chosen))
             factor *= 1 + real_can
         return heard, breaks
