@@ -38,8 +38,8 @@ def heads(twin):
 class Walk:
     """A random walk of a search, told as it goes."""
 
-    def __init__(self, seed, budget=BUDGET, **keys):
-        model = SkinModel(graphs.parse("triangle"), "paper", budget=budget, keep=True,
+    def __init__(self, seed, budget=BUDGET, graph="triangle", **keys):
+        model = SkinModel(graphs.parse(graph), "paper", budget=budget, keep=True,
                           symmetric=False, capacity=8, **keys)  # fmt: skip
         self.chance = random.Random(seed)
         self.found = Twin(model, system_of())
@@ -170,3 +170,19 @@ def test_a_tick_is_told_with_what_it_takes_in_and_finds_broken(false, is_cut):
     assert told == {
         " ".join(["n1", *way]) for way in wanted if " ".join(way).count("wrongly") <= false
     }
+
+
+@pytest.mark.parametrize("choice", [0, 1])
+def test_a_draw_falls_in_the_story_as_in_the_search(choice):
+    """Of two neighbours as near as each other, for n3; the script says which it is, too."""
+    walk = Walk(0, graph="pc-1 pc-2 1-3 2-3", updates="periodic")
+    port = next(p for p in range(4) if walk.found.lay.in_way[8 + p] >= 0)
+    assert port == 0  # its two cables are its first ports: one frame of each is taken in
+    for kind, arg, variant in ((w.PC_TICK, 0, 0), (w.TICK, 0, 1), (w.TICK, 1, 1)):
+        walk.take(Event(kind, arg, variant, 0, 1))
+    both = 1 + 3 * 1  # of 3 ways that each port has: nothing, a beacon, broken
+    walk.take(Event(w.TICK, 2, both, choice, 2))
+    assert heads(walk.real) == heads(walk.found)
+    name = ("n1", "n2")[choice]
+    assert walk.story.sentences[-1].endswith(f"; it takes {name} as its parent.")
+    assert walk.story.steps[-1][-2:] == [f"draw {choice}", "tick n3"]
