@@ -32,6 +32,7 @@ from innervate.verify import declared
 from innervate.verify.graphs import graph_of
 from innervate.verify.twin import Twin
 from tests.networks.radio.runs import radio_plan
+from tests.verify.test_air import FIELDS
 
 # The skin: cells 1 and 2 of "pair" have each other and the PC for neighbours.
 
@@ -329,25 +330,20 @@ def test_every_property_of_a_mesh_has_a_case():
 
 # Any network that only declares its protocol.
 
-COUNTED = (("number", 0, 0, 9, "node", ""), ("count", 0, 0, 3, "number", ""))
-FIELDS = SimpleNamespace(STATE=COUNTED, FRAME=(("kind", 0, 0, 15, "type", ""),), PARAMS=())
 
-
-def started(*actions, count=0, timers=2, outbox=4, also=None, slots=None):
+def started(*actions, count=0, timers=2, outbox=4, also=int, slots=None):
     """What is broken as a node starts that asks for these actions."""
 
     def on_start(node, params, now, cause, out):
         node.count = count
         for kind, a, b, c in actions:
-            at = out.count[0]
-            if at >= out.limit[0]:
+            if out.count[0] >= out.limit[0]:
                 out.overflow[0] = 1
                 return
-            act = out.action[at]
+            act = out.action[out.count[0]]
             act.kind, act.a, act.b, act.c = kind, a, b, c
-            out.count[0] = at + 1
-        if also:
-            also()
+            out.count[0] += 1
+        also()
 
     protocol = SimpleNamespace(on_start=on_start, TIMERS=timers, OUTBOX=outbox)
     made = declared.Net(protocol, FIELDS, graph_of("pair"), {})
@@ -371,7 +367,7 @@ DECLARED = {
         {"actions": [(SEND, 0, 0, 0)], "slots": 0}, {"actions": [(SEND, 0, 0, 0)], "slots": 1}),
     "the outbox holds what is no action": (
         {"actions": [(NOTHING, 0, 0, 0)]}, {"actions": [(3, 0, 0, 0), (4, 0, 0, 0)]}),
-    "a handler cannot go on: ": ({"also": fail}, {"also": None}),
+    "a handler cannot go on: ": ({"also": fail}, {"also": int}),
 }  # fmt: skip
 
 
@@ -385,69 +381,6 @@ def test_what_any_network_breaks_is_told(words):
 def test_a_handler_that_knows_no_such_name_cannot_go_on():
     broken = started(also=lambda: unheard_of).broken  # noqa: F821
     assert broken.startswith("a handler cannot go on: tests/verify/")
-
-
-@pytest.mark.parametrize(("field", "broken"), [("kind", True), ("rssi", False)])
-def test_a_receiver_leaves_the_frame_as_it_is_on_the_air(field, broken):
-    """Others are handed the same one; a run says so, too. How loud it was is each one's own."""
-
-    def on_frame(node, params, now, port, frame, out):
-        setattr(frame, field, 3)
-
-    def on_start(node, params, now, cause, out):
-        send(out, 0, 0, 0)
-
-    frame = (*FIELDS.FRAME, ("rssi", 0, 0, 15, "dBm", ""))
-    fields = SimpleNamespace(STATE=COUNTED, FRAME=frame, PARAMS=())
-    protocol = SimpleNamespace(on_start=on_start, on_frame=on_frame, TIMERS=1, OUTBOX=2)
-    made = declared.Net(protocol, fields, graph_of("pair"), {})
-    made.on_air = True
-    step = made.arrive(made.begin(declared.Budget()).state, 1)
-    said = "a receiver changed the frame that the others are handed, too"
-    assert step.broken == (said if broken else "")
-
-
-def talks(has_carrier=True, is_told=False):
-    """Node 0 of a pair says something, and once more when it has ended; it counts both."""
-
-    def say(node, out):
-        node.count += 1
-        send(out, 0, 0, 0)
-
-    def on_start(node, params, now, cause, out):
-        if node.number == 0:
-            say(node, out)
-
-    def on_carrier(node, params, now, cd, voc, out):
-        if node.number == 0 and cd == 0 and node.count < 2:
-            say(node, out)
-
-    parts = {"on_start": on_start, "on_frame": lambda *_: None, "TIMERS": 1, "OUTBOX": 2}
-    parts |= {"on_carrier": on_carrier} if has_carrier else {}
-    parts |= {"on_sent": lambda *_: None} if is_told else {}
-    made = declared.Net(SimpleNamespace(**parts), FIELDS, graph_of("pair"), {})
-    made.on_air = True
-    made.own = {"it says nothing twice": lambda node, params, now: node.count < 2}
-    made.ends_of = lambda number, port: [0]  # two cables of a pair are one way on the air
-    return declared.explore(made, declared.Budget(0, 0, 0), 50, lambda *_: False, "a pair")
-
-
-ENDED = "A frame of n0 has ended: count 1 to 2."
-
-
-@pytest.mark.parametrize(("keys", "sentences"), [
-    ({}, [ENDED]), ({"is_told": True}, ["A frame of n0 goes out.", ENDED]),
-])  # fmt: skip
-def test_who_has_sent_on_the_air_is_told_when_its_own_frame_has_ended(keys, sentences):
-    tally, story = talks(**keys)
-    assert (tally.ended, story.title) == ("broken", "it says nothing twice")
-    assert story.sentences == sentences
-
-
-def test_who_does_not_listen_is_not_told():
-    tally, story = talks(has_carrier=False)
-    assert (tally.states, story.title) == (2, declared.STUCK)
-    assert story.sentences == ["n1 hears a frame of n0."]
 
 
 def test_a_timer_below_0_is_none_either():
