@@ -60,6 +60,25 @@ def test_cells_lie_on_the_surface_and_apart(robot):
     assert 0.55 * area / 15**2 < len(places) < 1.16 * area / 15**2
 
 
+def test_cells_lie_apart_on_links_of_several_shapes(tmp_path):
+    """Shapes that touch, and one inside of another: the pitch holds for the link."""
+    parts = "".join(
+        f'<visual><origin xyz="{x} 0 0"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+        for x in (0, 0.1, 0.05)
+    )
+    path = tmp_path / "parts.urdf"
+    path.write_text(f'<robot name="r"><link name="arm">{parts}</link></robot>')
+    names, places = cells_from_urdf(str(path), "arm", None, 20.0)
+    assert min(math.dist(a, b) for a, b in combinations(places, 2)) >= 20
+    assert names == [f"arm_{i}" for i in range(len(names))]
+    for (x, y, z), normal in zip(
+        places, normals_from_urdf(str(path), "arm", None, 20.0), strict=True
+    ):
+        walls = [abs(x - wall) < 0.01 for wall in (-50, 0, 50, 100, 150)]
+        sides = [any(walls), abs(abs(y) - 50) < 0.01, abs(abs(z) - 50) < 0.01]
+        assert sides[[abs(part) > 0.9 for part in normal].index(True)]
+
+
 def test_the_same_every_time_and_other_shapes(robot):
     first = cells_from_urdf(robot, "*", None, 10.0)
     assert cells_from_urdf(robot, "*", None, 10.0) == first

@@ -97,6 +97,7 @@ def _all_cells(path: Path, pattern: str, pitch_mm: float) -> list[Cell]:
 
 
 def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[tuple[Vector, Vector]]:
+    facing: dict[Vector, Vector] = {}  # of all shapes together: they may touch, or lie in another
     for mesh in _meshes(path, link):
         from trimesh.sample import sample_surface
 
@@ -108,11 +109,11 @@ def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[tuple[Vector, Ve
             message = f"a pitch of {pitch_mm:g} mm is too fine for link {link.name}; take a wider"
             raise TopologyError(message, "pitch_mm")
         drawn, faces = sample_surface(mesh, wanted + 1, seed=SEED)
-        points = [(x, y, z) for x, y, z in drawn.round(3).tolist()]
-        face = dict(zip(points, faces.tolist(), strict=True))
-        for point in thinned(points, pitch_mm):
-            x, y, z = mesh.face_normals[face[point]].tolist()
-            yield point, (x, y, z)
+        normals = mesh.face_normals[faces].tolist()
+        for (x, y, z), (nx, ny, nz) in zip(drawn.round(3).tolist(), normals, strict=True):
+            facing.setdefault((x, y, z), (nx, ny, nz))
+    for point in thinned(list(facing), pitch_mm):
+        yield point, facing[point]
 
 
 def thinned(points: list[Vector], pitch_mm: float) -> list[Vector]:
