@@ -338,7 +338,9 @@ def answers(graph: Any) -> Iterator[tuple[str, Drawn]]:
             mean = rate / 2e4 / ports
             rows.append({
                 "rate_hz": rate, "ports": ports, "isolated_max": {1: None, 2: 4, 3: 0}[ports],
-                "enough": ports == 3,
+                "enough": ports == 3, "unhealed": int(ports == 1 and rate > 100),
+                **dict.fromkeys(("loss_cell_runs", "recovery_ms_cell_runs"), ports),
+                "recovery_ms_pc_runs": 20,
                 **{f"{name}_{part}": None if ports == 1 and "pc" in name else scale * mean * share
                    for name, scale in (("loss_cell", 1.0), ("recovery_ms_cell", 500.0),
                                        ("recovery_ms_pc", 300.0))

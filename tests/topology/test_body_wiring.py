@@ -56,6 +56,19 @@ def test_the_reach_of_few_cells(places, reach):
     assert joining_reach(places) == reach
 
 
+def test_the_reach_counts_with_the_four_ports_of_a_cell():
+    """Six cells about one: two of them are joined by way of others, which is farther."""
+    about = [
+        tuple(10 * way * (axis == a) for a in range(3)) for axis in range(3) for way in (1, -1)
+    ]
+    places = [(0, 0, 0), *about]
+    reach = joining_reach(places)
+    assert reach == pytest.approx(math.sqrt(200))
+    assert nx.is_connected(cables(body(places, reach, 1)))
+    with pytest.raises(TopologyError, match=r"reach_mm = 14\.2 would join them"):
+        body(places, 10.0, 1)
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_reach_that_is_named_joins_all_and_is_no_longer_than_it_has_to_be(seed):
     places = spots(seed)

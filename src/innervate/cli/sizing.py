@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
+from innervate.cli.sweeping import failed_lines
 from innervate.network import networks
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def size(robot: str, options: SizeOptions) -> int:
             table.close()
             errors.say(f"interrupted; {table.kept(folder)}")
             return errors.INTERRUPTED
-    for line in answer.lines():
+    for line in [*answer.lines(), *failed_lines(answer.sweep)]:
         print(line)
     print(f"Drawn: {answer.draw(folder)}")
     return 0

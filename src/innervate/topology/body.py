@@ -115,7 +115,7 @@ def _body_graph(
     flat = array("d", (value for point in positions for value in point))
     peer = array("i", [NOTHING]) * (PORTS * cells)
     graph = Graph(cells, 0, peer, (), tuple(names), flat)
-    pairs = [pair for pair in _pairs(positions) if pair[0] <= reach_mm]
+    pairs = _pairs(positions, reach_mm)
     group = _hold_together(graph, pairs)
     _say_if_apart(graph, group, positions, reach_mm)
     _add_others(graph, pairs, wanted, wanted if isinstance(interfaces, int) else 0)
@@ -132,14 +132,19 @@ def _body_graph(
     return graph
 
 
-def _pairs(positions: Sequence[Vector]) -> list[Pair]:
-    """All pairs (distance, a, b), a < b, nearest first."""
+def _pairs(positions: Sequence[Vector], reach_mm: float) -> list[Pair]:
+    """All pairs (distance, a, b), a < b, within reach, nearest first."""
     count = len(positions)
     return sorted(
-        (round(math.dist(positions[a], positions[b]), 6), a, b)
+        (away, a, b)
         for a in range(count)
         for b in range(a + 1, count)
+        if (away := _apart(positions[a], positions[b])) <= reach_mm
     )
+
+
+def _apart(one: Vector, other: Vector) -> float:
+    return round(math.dist(one, other), 6)
 
 
 def _hold_together(graph: Graph, pairs: Sequence[Pair]) -> list[int]:
@@ -178,28 +183,12 @@ def _say_if_apart(
         return
     biggest = max(sorted(set(group)), key=group.count)
     out = [graph.names[c] for c in range(graph.cells) if group[c] != biggest]
-    trial = Graph(graph.cells, 0, graph.peer[:], (), graph.names)
-    needed = 0.0
-    for pair in _pairs(positions):
-        before = len(set(group))
-        group = _join_one(trial, group, pair)
-        if len(set(group)) < before:
-            needed = max(needed, pair[0])
     some = ", ".join(out[:4]) + (f" and {len(out) - 4} more" if len(out) > 4 else "")
     raise TopologyError(
         f"cables of {reach_mm:g} mm leave out {some}; "
-        f"reach_mm = {math.ceil(needed * 10) / 10:g} would join them",
+        f"reach_mm = {math.ceil(joining_reach(positions) * 10) / 10:g} would join them",
         "reach_mm",
     )
-
-
-def _join_one(graph: Graph, group: list[int], pair: Pair) -> list[int]:
-    _, a, b = pair
-    free_a, free_b = graph.free_ports(a), graph.free_ports(b)
-    if group[a] == group[b] or not free_a or not free_b:
-        return group
-    graph.connect(graph.end(a, free_a[0]), graph.end(b, free_b[0]))
-    return [group[a] if g == group[b] else g for g in group]
 
 
 def propose(graph: Graph, count: int) -> list[int]:
@@ -213,7 +202,8 @@ def propose(graph: Graph, count: int) -> list[int]:
     """
     free = [c for c in range(graph.cells) if graph.free_ports(c)]
     if len(free) < count:
-        message = f"only {len(free)} cells have a free port for {count} interfaces; ask for fewer"
+        have = "1 cell has" if len(free) == 1 else f"{len(free)} cells have"
+        message = f"only {have} a free port for {count} interfaces; ask for fewer"
         raise TopologyError(message, "interfaces")
     if count == 0:
         return []
@@ -245,15 +235,17 @@ def _hops(graph: Graph, start: int) -> list[int]:
 
 
 def joining_reach(positions: Sequence[Vector]) -> float:
-    """The longest cable that is needed to hold all cells together, mm [Prim's tree]."""
-    if not positions:
-        return 0.0
-    away = {i: math.inf for i in range(1, len(positions))}
-    here, longest = positions[0], 0.0
-    while away:
-        for i in away:
-            away[i] = min(away[i], math.dist(here, positions[i]))
-        nearest = min(away, key=lambda i: (away[i], i))
-        longest = max(longest, away.pop(nearest))
-        here = positions[nearest]
-    return longest
+    """The longest cable that is needed to hold all cells together, mm.
+
+    It may be longer than their distances ask for: a cell has no more than four ports.
+    """
+    cells = len(positions)
+    extent = max((math.dist(positions[0], place) for place in positions), default=0.0)
+    reach = max(1.0, extent / math.sqrt(max(1, cells)))
+    while True:  # most pairs are far apart, and are looked at only where there is no other way
+        graph = Graph(cells, 0, array("i", [NOTHING]) * (PORTS * cells), ())
+        if len(set(_hold_together(graph, _pairs(positions, reach)))) <= 1:
+            break
+        reach *= 2
+    ends = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
+    return max((_apart(positions[a], positions[b]) for a, b in ends), default=0.0)

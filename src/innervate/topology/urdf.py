@@ -18,6 +18,7 @@ from innervate.topology.errors import TopologyError
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 PACKAGE = "package:"
+NUMBER_MAX = 1e6  # m or rad: no robot is that large
 _HERE: tuple[Matrix, Vector] = (((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0))
 
 
@@ -118,6 +119,8 @@ def _matching(links: list[str], pattern: str) -> list[str]:
     try:
         expression = re.compile(pattern)
     except (re.error, RecursionError, OverflowError) as error:
+        if not links or pattern[:1] in ("*", "?"):  # a glob, then, and it matches nothing
+            return []
         message = f'"{pattern}" is neither a glob that matches nor a regular expression: {error}'
         raise TopologyError(message, "links") from None
     return list(dict.fromkeys(name for name in links if expression.fullmatch(name)))
@@ -161,9 +164,10 @@ def _numbers(origin: ElementTree.Element | None, key: str, link: str) -> Vector:
     try:
         x, y, z = (float(word) for word in text.split())
     except ValueError:
-        x = math.nan
-    if not math.isfinite(x) or not math.isfinite(y + z):
-        message = f'the joint of link {link} has {key} = "{text}"; it takes three numbers'
+        x = y = z = math.nan
+    if not all(abs(value) <= NUMBER_MAX for value in (x, y, z)):
+        message = f'the joint of link {link} has {key} = "{text}"; it takes three numbers, '
+        message += f"from -{NUMBER_MAX:g} to {NUMBER_MAX:g}"
         raise TopologyError(message, "urdf")
     return x, y, z
 

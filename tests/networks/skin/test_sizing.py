@@ -1,13 +1,15 @@
 """How many interface ports a robot's skin needs: the iCub, and one arm of another maker."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import polars
 import pytest
 
 from innervate import scenario
 from innervate.cli import main
 from innervate.networks.skin.plot.answer import answer_lines
-from innervate.networks.skin.sizing import Question, parse_ports, size
+from innervate.networks.skin.sizing import Question, judged, parse_ports, size
 from innervate.sweeping import SweepError
 
 pytest.importorskip("icub_models")
@@ -50,7 +52,8 @@ def test_if_no_number_of_ports_heals_the_answer_says_who_isolates_whom():
     answer = size(Question(ICUB, "r_forearm_skin_*", (100.0,), (2,)), repeat=6)
     assert answer.needed == {100.0: None}
     lines = answer_lines(answer)
-    assert "100 Hz: none of up to 2 ports is enough: 2 ports are enough for 1 % lost" in lines[-3]
+    begin = "100 Hz: none of the numbers of ports that were tried (2) is enough: 2 ports are enough"
+    assert lines[-3].startswith(f"{begin} for 1 % lost")
     assert "cell r_forearm_skin_24 (3 cells)" in lines[-2]
 
 
@@ -85,7 +88,59 @@ def test_what_cannot_be_sized():
     assert parse_ports("4,1..2") == (1, 2, 4)
 
 
+ROD = """<robot name="r"><link name="arm"><visual><geometry>{}</geometry></visual></link>
+  <link name="hand"/>
+  <joint name="j" type="fixed"><parent link="arm"/><child link="hand"/><origin xyz="{} 0 0"/>
+  </joint></robot>"""
+
+
+def rod(folder, shape='<box size="2.0 0.005 0.005"/>', hand_m=1):
+    path = folder / "rod.urdf"
+    path.write_text(ROD.format(shape, hand_m))
+    return str(path)
+
+
+def test_runs_that_fail_and_cells_that_stay_without_a_way_are_named(tmp_path, capsys):
+    """A rod of 74 cells in a row: one port is too far away, and of two each without the other."""
+    tokens = ("--links", "arm", "--pitch", "20", "--ports", "1,2", "--repeat", "1",
+              "--workers", "1", "--out", str(tmp_path / "out"))  # fmt: skip
+    assert main(["size", rod(tmp_path), *tokens]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "250 Hz: none of up to 2 ports is enough for 1 % lost, ways back in 50 ms." in lines
+    (wayless,) = (line for line in lines if line.startswith("250 Hz, 2 ports: in 1 run cells"))
+    assert "protocol.max_depth" in wayless
+    assert lines[lines.index("2 of 4 runs failed:") + 1].startswith("  2 x scenario.toml: arm_")
+
+
+def test_what_fails_in_some_runs_is_not_enough(tmp_path):
+    """A rod that is fine but for runs that failed, as when their workers died."""
+    asked = Question(rod(tmp_path, '<box size="0.1 0.1 0.1"/>'), "arm", (100.0,), (2,), 50.0)
+    answer = size(replace(asked, loss_max=1.0, recovery_ms_max=1e6), repeat=3)
+    assert answer.carries == {100.0: 2}
+    done = answer.sweep
+    first = polars.Series("status", ["failed", *["done"] * (done.results.height - 1)])
+    judged_ = judged(answer.question, replace(done, results=done.results.with_columns(first)),
+                     answer.weak)  # fmt: skip
+    assert judged_.select("failed", "within", "enough").rows() == [(1, False, False)]
+
+
+@pytest.mark.parametrize(("question", "said"), [
+    ({"reach_mm": 10.0}, r"--reach: cables of 10 mm leave out .*; --reach 1000 would join them"),
+    ({"ports": (9, 7)}, "--ports: only 2 cells have a free port for 7 interfaces; ask for fewer"),
+    ({"hand_m": 200}, r"rod\.urdf: cables of 200,200 mm would be needed to join the cells"),
+    ({"hand_m": "1e308"}, 'the joint of link hand has xyz = "1e308 0 0"; it takes three numbers, '
+                          r"from -1e\+06 to 1e\+06"),
+    ({"links": "*nd.?"}, r'no link of rod\.urdf matches "\*nd\.\?"; it has 2: arm, hand'),
+])  # fmt: skip
+def test_mistakes_are_told_by_the_options(tmp_path, question, said):
+    frames = ROD.replace("<visual><geometry>{}</geometry></visual>", "")
+    path = tmp_path / "rod.urdf"
+    path.write_text(frames.format(question.pop("hand_m", 1)))
+    with pytest.raises(SweepError, match=said):
+        size(Question(str(path), **{"links": "*", **question}), repeat=1)
+
+
 def test_nothing_is_enough():
     asked = Question(ICUB, "r_forearm_skin_*", (1000.0,), (1,))
     lines = answer_lines(size(asked, repeat=2))
-    assert "1000 Hz: none of up to 1 ports is enough for 1 % lost, ways back in 50 ms." in lines
+    assert "1000 Hz: none of up to 1 port is enough for 1 % lost, ways back in 50 ms." in lines

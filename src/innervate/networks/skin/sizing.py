@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,9 +19,9 @@ from innervate.sweeping.result import Sweep
 from innervate.sweeping.sweep import Progress, make_plan, sweep
 from innervate.sweeping.vary import Named
 from innervate.topology import Graph, TopologyError, cells_from_urdf
-from innervate.topology.body import joining_reach
+from innervate.topology.body import body_graph, joining_reach
 from innervate.topology.cover import has_surface
-from innervate.topology.urdf import find_urdf, read_links
+from innervate.topology.urdf import Vector, find_urdf, read_links
 from innervate.topology.weak import Weak, weak_points
 
 PORTS_MAX = 8
@@ -28,6 +29,7 @@ PITCH_MM = 25.0
 REACH_PITCHES = 1.6  # cables to the nearest neighbours, some 1 to 1.5 pitches away
 LOSS_MAX = 0.01
 RECOVERY_MS_MAX = 50.0
+REACH_MM_MAX = 100_000.0
 SETTLED_S = 1.0
 DURATION_S = 2.0
 LOST = "lost_on_the_way"
@@ -77,8 +79,10 @@ class Answer:
         frames: they are the robot's own skin frames, rather than points on its surface.
         sweep: the runs.
         table: a row for every rate and number of ports: means with 95 % intervals; `isolated_max`,
-            how many cells a single failure can cut off for good; `within`, loss and recovery are
-            small enough; `enough`, they are and no single failure cuts off cells.
+            how many cells a single failure can cut off for good; `failed`, runs that failed;
+            `unhealed`, runs in which cells that cables still reached got no way again; `within`,
+            loss and recovery are small enough, without any of these; `enough`, they are and no
+            single failure cuts off cells.
         needed: for every rate the fewest ports that are enough; None if none of those tried is.
         carries: for every rate the fewest ports that are `within`; None if none is.
         graphs: the skin for every number of ports that there is room for.
@@ -162,9 +166,27 @@ def _placed(question: Question) -> tuple[Question, bool, list[str]]:
     if reach is None:
         least = joining_reach(places) * 1.001
         reach = round(max(least, REACH_PITCHES * pitch if pitch else 0.0) + 0.05, 1)
+    _say_if_unjoined(path, names, places, reach, min(question.ports))
     made = Question(question.urdf, question.links, question.rates_hz, question.ports, pitch, reach,
                     question.loss_max, question.recovery_ms_max)  # fmt: skip
     return made, frames, names
+
+
+def _say_if_unjoined(
+    path: Path, names: Sequence[str], places: Sequence[Vector], reach: float, ports: int
+) -> None:
+    """Raise if no cables join the cells, or not even the fewest ports find room; by the options."""
+    if reach > REACH_MM_MAX:
+        raise SweepError(
+            f"{path.name}: cables of {reach:,.0f} mm would be needed to join the cells, more than "
+            f"{REACH_MM_MAX:,.0f}; choose other --links, or look at its joints"
+        )
+    try:
+        body_graph(names, places, reach, ports)
+    except TopologyError as error:
+        told = str(error).replace("reach_mm = ", "--reach ")
+        option = {"reach_mm": "--reach: ", "interfaces": "--ports: "}.get(error.subject, "")
+        raise SweepError(f"{option}{told}") from None
 
 
 def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPlan:
@@ -191,8 +213,8 @@ def plan_of(question: Question, frames: bool, repeat: int, seed: int) -> SweepPl
 def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) -> polars.DataFrame:
     """A row for every rate and number of ports.
 
-    `within` if loss and recovery are small enough and every cell that cables still reached got a
-    way again; `enough` if besides no single failure cuts off cells for good.
+    `within` if loss and recovery are small enough, no run failed, and every cell that cables still
+    reached got a way again; `enough` if besides no single failure cuts off cells for good.
 
     `loss` counts samples lost on the way: full queues, the cut cable, loops. Those that a cell
     took while it had no route count as recovery time, and before its first route not at all.
@@ -208,18 +230,19 @@ def judged(question: Question, done: Sweep, weak: Mapping[int, Sequence[Weak]]) 
         (r["data.rate_hz"], r["body.interfaces"], r["event"], r["measure"]): r
         for r in points.iter_rows(named=True)
     }
-    unhealed = {
-        (r["data.rate_hz"], r["body.interfaces"], r["event"])
-        for r in frame.filter(frame[UNHEALED] > 0).iter_rows(named=True)
-    }
+    failed, unhealed = (
+        Counter(part.select("data.rate_hz", "body.interfaces").iter_rows())
+        for part in (done.failed, frame.filter(frame[UNHEALED] > 0))
+    )
     rows = []
     for rate in question.rates_hz:
         for ports in question.ports:
             row = _row(question, rate, ports, found)
-            within = row["within"] and not any((rate, ports, cut.name) in unhealed for cut in CUTS)
+            wrong = {"failed": failed[rate, ports], "unhealed": unhealed[rate, ports]}
+            within = row["within"] and not any(wrong.values())
             alone = weak.get(ports)  # None if there is no room for so many
             worst = None if alone is None else max((one.isolated for one in alone), default=0)
-            rows.append(row | {"isolated_max": worst, "within": within,
+            rows.append(row | wrong | {"isolated_max": worst, "within": within,
                                "enough": within and worst == 0})  # fmt: skip
     return polars.DataFrame(rows, infer_schema_length=None)
 
@@ -234,6 +257,7 @@ def _row(question: Question, rate: float, ports: int, found: dict[Any, Any]) -> 
             ("recovery_ms", RECOVERY, question.recovery_ms_max),
         ):
             one = found[rate, ports, cut, measure]
+            row[f"{name}_{short}_runs"] = 0 if alone else one["runs"]
             for part in ("mean", "low", "high", "max"):
                 value = None if alone else one[part]
                 row[f"{name}_{short}_{part}"] = None if value is None else float(value)

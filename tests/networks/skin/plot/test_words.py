@@ -91,7 +91,7 @@ def test_a_broken_cable_is_told_once_since_whoever_noticed_first():
     ]  # fmt: skip
 
 
-ROW = {"rate_hz": 250.0, "ports": 1, "isolated_max": 2, "enough": False}
+ROW = {"rate_hz": 250.0, "ports": 1, "isolated_max": 2, "enough": False, "unhealed": 0}
 SPANS = {"loss_cell": (0.01, 0.006, 0.014), "recovery_ms_cell": (20.0, 18.0, 22.0),
          "recovery_ms_pc": (None, None, None)}  # fmt: skip
 
@@ -100,7 +100,7 @@ def answer_of(needed, carries, weak=(), rows=1):
     columns = dict(ROW)
     for name, values in SPANS.items():
         parts = zip(("mean", "low", "high"), values, strict=True)
-        columns |= {f"{name}_{part}": value for part, value in parts}
+        columns |= {f"{name}_{part}": value for part, value in parts} | {f"{name}_runs": 20}
     made = [columns | more for more in (
         {}, {"ports": 2, "isolated_max": 0, "enough": True}, {"ports": 3, "isolated_max": 1},
         {"isolated_max": None},
@@ -122,6 +122,24 @@ def test_a_table_of_what_every_number_of_ports_gives():
         assert words_[-5:] == ["1.00 +- 0.40 %", "20.0 +- 2.0", "-", gone, enough]
         assert words_[0].startswith("250 Hz")
         assert str(ports) in " ".join(words_[:2])
+
+
+def test_one_run_alone_has_no_interval():
+    row = {"loss_cell_mean": 0.01, "loss_cell_low": 0.01, "loss_cell_high": 0.01,
+           "loss_cell_runs": 1}  # fmt: skip
+    assert answer._share(row, "loss_cell") == "1.00 %"
+    assert answer._share(row | {"loss_cell_runs": 2}, "loss_cell") == "1.00 +- 0.00 %"
+
+
+@pytest.mark.parametrize(("ports", "said"), [
+    ((1,), "up to 1 port"),
+    ((1, 2, 3), "up to 3 ports"),
+    ((2,), "the numbers of ports that were tried (2)"),
+    ((1, 100), "the numbers of ports that were tried (1, 100)"),
+    (tuple(range(2, 12)), "the numbers of ports that were tried (2, 3, 4, 5, ..., 11)"),
+])  # fmt: skip
+def test_only_what_was_tried_is_said_not_to_be_enough(ports, said):
+    assert answer._tried(ports) == said
 
 
 def test_how_many_ports_every_rate_needs():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from innervate.networks.skin.plot.words import end_words
@@ -17,14 +18,17 @@ NAMED_MAX = 4
 
 def answer_lines(answer: Answer) -> list[str]:
     """The answer for people: a table, then how many ports, where, and what does not heal."""
-    return [*_table(answer), "", *_verdicts(answer), *_unhealed(answer)]
+    return [*_table(answer), "", *_verdicts(answer), *_wayless(answer), *_unhealed(answer)]
 
 
 def _table(answer: Answer) -> list[str]:
     asked = answer.question
-    kind = "skin frames of the robot" if answer.frames else f"cells {asked.pitch_mm:g} mm apart"
+    if answer.frames:
+        cells = number_of(answer.cells, "skin frame") + " of the robot"
+    else:
+        cells = f"{number_of(answer.cells, 'cell')} {asked.pitch_mm:g} mm apart"
     lines = [
-        f"{answer.cells} {kind}, cables of at most {asked.reach_mm:g} mm",
+        f"{cells}, cables of at most {asked.reach_mm:g} mm",
         "",
         f"{'rate':>8} {'ports':>5}  {'lost on the way':>16}  {'recovery, ms':>15}  "
         f"{'after a port, ms':>16}  {'one failure cuts off':>20}  enough",
@@ -46,21 +50,43 @@ def _verdicts(answer: Answer) -> list[str]:
     asked, lines = answer.question, []
     limits = f"{100 * asked.loss_max:g} % lost, ways back in {asked.recovery_ms_max:g} ms"
     for rate, ports in answer.needed.items():
-        begin, most, least = f"{rate:g} Hz:", max(asked.ports), answer.carries[rate]
+        begin, least = f"{rate:g} Hz:", answer.carries[rate]
+        none = f"{begin} none of {_tried(asked.ports)} is enough"
         if ports is not None:
             places = ", ".join(answer.where[ports])
             lines.append(f"{begin} {_are(ports)} enough for {limits}, and every single failure of "
                          f"a cable or cell heals, on {places}.")  # fmt: skip
         elif least is not None:
-            lines.append(f"{begin} none of up to {most} ports is enough: {_are(least)} enough for "
+            lines.append(f"{none}: {_are(least)} enough for "
                          f"{limits}, but not every single failure heals.")  # fmt: skip
         else:
-            lines.append(f"{begin} none of up to {most} ports is enough for {limits}.")
+            lines.append(f"{none} for {limits}.")
     return lines
 
 
 def _are(ports: int) -> str:
     return f"{ports} ports are" if ports > 1 else "1 port is"
+
+
+def _tried(ports: Sequence[int]) -> str:
+    """What was tried: "up to 8 ports", where that is all up to then."""
+    if tuple(ports) == tuple(range(1, len(ports) + 1)):
+        return f"up to {number_of(len(ports), 'port')}"
+    named = [str(one) for one in ports]
+    if len(named) > 2 * NAMED_MAX:
+        named[NAMED_MAX:-1] = ["..."]
+    return f"the numbers of ports that were tried ({', '.join(named)})"
+
+
+def _wayless(answer: Answer) -> list[str]:
+    """Where cables still reached cells that got no way again: they are too far round."""
+    return [
+        f"{row['rate_hz']:g} Hz, {number_of(row['ports'], 'port')}: in "
+        f"{number_of(row['unhealed'], 'run')} cells that cables still reached had no way in the "
+        "end; the way round may have more hops than protocol.max_depth allows."
+        for row in answer.table.iter_rows(named=True)
+        if row["unhealed"]
+    ]
 
 
 def _unhealed(answer: Answer) -> list[str]:
@@ -88,16 +114,17 @@ def _named(graph: Graph, weak: Weak) -> str:
 
 
 def _share(row: dict[str, Any], name: str) -> str:
-    mean = row[f"{name}_mean"]
-    if mean is None:
-        return "-"
-    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
-    return f"{100 * mean:.2f} +- {100 * half:.2f} %"
+    return _interval(row, name, 100, 2, " %")
 
 
 def _span(row: dict[str, Any], name: str) -> str:
-    mean = row[f"{name}_mean"]
-    if mean is None:
+    return _interval(row, name, 1, 1, "")
+
+
+def _interval(row: dict[str, Any], name: str, scale: float, digits: int, unit: str) -> str:
+    """Mean and half the interval's width; one run alone has none."""
+    if row[f"{name}_mean"] is None:
         return "-"
-    half = (row[f"{name}_high"] - row[f"{name}_low"]) / 2
-    return f"{mean:.1f} +- {half:.1f}"
+    half = scale * (row[f"{name}_high"] - row[f"{name}_low"]) / 2
+    width = f" +- {half:.{digits}f}" if row[f"{name}_runs"] > 1 else ""
+    return f"{scale * row[f'{name}_mean']:.{digits}f}{width}{unit}"
