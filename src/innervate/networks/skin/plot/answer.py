@@ -24,11 +24,11 @@ def answer_lines(answer: Answer) -> list[str]:
 def _table(answer: Answer) -> list[str]:
     asked = answer.question
     if answer.frames:
-        cells = number_of(answer.cells, "skin frame") + " of the robot"
+        what = number_of(answer.cells, "skin frame") + " of the robot"
     else:
-        cells = f"{number_of(answer.cells, 'cell')} {asked.pitch_mm:g} mm apart"
+        what = f"{number_of(answer.cells, 'cell')} {asked.pitch_mm:g} mm apart"
     lines = [
-        f"{cells}, cables of at most {asked.reach_mm:g} mm",
+        f"{what}, cables of at most {asked.reach_mm:g} mm",
         "",
         f"{'rate':>8} {'ports':>5}  {'lost on the way':>16}  {'recovery, ms':>15}  "
         f"{'after a port, ms':>16}  {'one failure cuts off':>20}  enough",
