@@ -49,7 +49,10 @@ def template(kind: str = "") -> str:
     if network is not None:
         return str(network.template) or _all_keys(network.name)
     hint = nearest(kind, list(networks())).replace("it knows", "there is")
-    raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}')
+    own = (
+        "" if hint.startswith("; did") else "; to make one of your own: innervate new network NAME"
+    )
+    raise ScenarioError(f'there is no kind "{kind[:40]}"{hint}{own}')
 
 
 def _all_keys(kind: str) -> str:
