@@ -146,6 +146,24 @@ def test_the_command_says_what_it_did(tmp_path, capsys):
     assert scenario.load(out).name == "skin"
 
 
+def test_the_command_tells_programs_the_same(tmp_path, capsys):
+    captured(SKIN | {"duration_s": 0.3}, tmp_path / "skin.pcapng")
+    tokens = ["fit", str(tmp_path / "skin.pcapng")]
+    assert app.main([*tokens]) == 0
+    printed = capsys.readouterr()
+    assert app.main([*tokens, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["kind"], told["links"], told["same_links"], told["file"]) == (
+        "skin", 14, True, None,
+    )  # fmt: skip
+    assert told["scenario"] == printed.out
+    assert all(f"{line}\n" in printed.err for line in told["match"])
+    out = tmp_path / "fitted.toml"
+    assert app.main([*tokens, "--json", "--out", str(out)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["file"], told["scenario"]) == (str(out), out.read_text())
+
+
 def told_by(number, *near):
     neighbours = [{"node": node, "quality": quality} for node, quality in near]
     return {"kind": "mesh", "number": number, "gateway": 0, "neighbours": neighbours}

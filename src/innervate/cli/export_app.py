@@ -29,7 +29,13 @@ def export(
     return command.export(source, options)
 
 
-def fit(capture: Path, /, *, out: Path | None = None) -> int:
+def fit(
+    capture: Path,
+    /,
+    *,
+    out: Path | None = None,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
     """Make a scenario out of a capture of a mesh or a skin; 1 if its simulation has other links.
 
     Parameters
@@ -38,7 +44,9 @@ def fit(capture: Path, /, *, out: Path | None = None) -> int:
         A capture by innervate, of a run or of live nodes; or what `live status --json` said.
     out
         The scenario file to write; it is printed if left out.
+    json
+        Print the scenario and how well it matches as JSON and nothing else.
     """
     from innervate.cli import fitting as command
 
-    return command.fit(capture, out)
+    return command.fit(capture, out, json)

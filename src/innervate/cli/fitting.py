@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from innervate.cli.errors import say
 from innervate.export import files, fitting, measure
 
 
-def fit(capture: Path, out: Path | None) -> int:
+def fit(capture: Path, out: Path | None, as_json: bool) -> int:
     """Write the scenario, or print it; say how well its simulation matches. 1 if links differ."""
     found = measure.measure(capture)
     text = fitting.scenario_of(found, capture.stem)
-    if out is None:
-        print(text, end="")
-    else:
+    if out is not None:
         files.write_text(out, text)
-        print(f"Written: {out}. Run it with `innervate run {out}`.")
-    pairs = {frozenset(key) for key in found.ways}
+    links = len({frozenset(key) for key in found.ways})
+    if as_json:
+        lines, same = fitting.check(text, found)
+        print(json.dumps({
+            "kind": found.kind, "links": links, "packets": found.packets,
+            "seconds": found.seconds, "cut": sorted(found.cut), "notes": found.notes,
+            "same_links": same, "match": [line.strip() for line in lines],
+            "file": None if out is None else str(out), "scenario": text,
+        }, indent=2, ensure_ascii=False))  # fmt: skip
+        return 0 if same else 1
+    print(text if out is None else f"Written: {out}. Run it with `innervate run {out}`.\n", end="")
     tell = say if out is None else print
     seen = f"{found.packets} packets in {found.seconds:.3f} s: " if found.packets else ""
-    tell(f"{seen}a {found.kind} of {len(pairs)} links")
+    tell(f"{seen}a {found.kind} of {links} links")
     if found.cut:
         tell(f"cut for some time, and whole in the scenario: {', '.join(sorted(found.cut))}")
     for note in found.notes:
