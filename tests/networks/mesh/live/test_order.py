@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from innervate.dialect.arith import MASK16, later
 from innervate.live.receipts import DELIVERED, EXPIRED
-from innervate.networks.mesh.live.order import ANEW, QUIET_US, Message, Order, Orderly
+from innervate.networks.mesh.live.order import Message, Order, Orderly
 from innervate.networks.mesh.protocol import queue as mesh_queue
 from innervate.networks.mesh.protocol.constants import DATA
 from tests.live import time_by_hand
@@ -138,40 +138,6 @@ def test_what_comes_after_one_that_its_sender_gave_up_is_not_held_up():
     assert order.ended == [13, 15]
     assert handed_up(order, (17, 9)) == [[17]]  # the one before it was passed long ago
     assert order.again(17, 17, now=0) == []
-
-
-@pytest.mark.parametrize("start", [0, 65_500])
-def test_one_of_an_earlier_life_that_comes_behind_those_of_the_next_is_late(start):
-    old, last = ((start + number) & MASK16 for number in (1000, 7000))
-    order = Order(last, WAIT)
-    assert handed_up(order, (old, old)) == [[]]
-    assert (order.late, order.is_up(old)) == (1, False)
-
-
-@pytest.mark.parametrize(("behind", "is_late"), [(0, True), (ANEW - 1, True), (ANEW, False)])
-def test_a_sender_that_drew_its_numbers_may_be_far_behind_itself(behind, is_late):
-    seq = (200 - behind) & MASK16
-    order = Order(200, WAIT)
-    assert order.take(seq, seq, b"new", 0, is_new=True) == [b"new"] * (not is_late)
-    assert order.late == is_late
-
-
-@pytest.mark.parametrize(("quiet_us", "is_late"), [(QUIET_US - 1, True), (QUIET_US, False)])
-def test_so_long_after_the_last_one_none_can_be_of_an_earlier_life(quiet_us, is_late):
-    order = Order(None, WAIT)
-    assert order.take(7000, 7000, b"last", now=50) == [b"last"]
-    assert order.take(6999, 6998, b"late", now=60) == []
-    assert order.take(1000, 1000, b"new", now=50 + quiet_us) == [b"new"] * (not is_late)
-    order = Order(7000, WAIT, now=90)  # it came when nobody wanted order
-    assert order.take(1000, 1000, b"new", now=90 + quiet_us) == [b"new"] * (not is_late)
-
-
-def test_one_that_waited_too_long_is_the_last_from_then_on():
-    order = Order(100, WAIT, now=0)
-    assert order.take(300, 200, b"waits", now=QUIET_US - WAIT) == []
-    assert order.release(QUIET_US) == [b"waits"]
-    assert order.take(60_005, 60_005, b"old", now=2 * QUIET_US - 1) == []
-    assert order.take(60_006, 60_006, b"new", now=2 * QUIET_US) == [b"new"]
 
 
 def test_of_several_that_follow_one_the_first_sent_goes_first_whichever_came_first():
@@ -382,29 +348,6 @@ def test_a_sender_that_starts_again_goes_on_with_its_numbers():
     heard, numbers = time_by_hand.run(main())
     assert heard == [b"%d" % k for k in range(12)]
     assert all(later(b, a) for a, b in pairwise(numbers))
-
-
-def test_a_sender_that_lost_its_numbers_is_heard_all_the_same():
-    async def main():
-        async with Mesh(2, [(0, 1)], **PROFILE) as mesh:
-            heard, states = [], []
-            mesh.nodes[0].receive_messages(lambda _, data: heard.append(data[:1]), in_order=True)
-            sender = mesh.nodes[1]
-            for first in (b"a", b"f"):  # another message is long, and goes in pieces
-                for text in (first, bytes([first[0] + 1]) * 300, bytes([first[0] + 2])):
-                    receipt = sender.send_message(0, text, in_order=True)
-                    states.append(await receipt.wait())
-                    newest = receipt.seq
-                await sender.stop()
-                sender.state.numbers, sender.stack.first = -1, (newest - 5000) & MASK16
-                await sender.start()
-                await until_simulated(lambda: sender.stack.node.version != 0)
-            late = sender.send_message(0, bytes(300), in_order=True)
-            return heard, [*states, await late.wait()]
-
-    heard, states = time_by_hand.run(main())
-    assert states == [DELIVERED] * 7
-    assert heard == [b"a", b"b", b"c", b"f", b"g", b"h", b"\0"]
 
 
 async def until_simulated(what):
