@@ -4,6 +4,7 @@ import builtins
 import re
 from types import SimpleNamespace as Of
 
+import polars
 import pytest
 
 from innervate import scenario
@@ -128,7 +129,11 @@ def test_a_figure_of_a_sweep_says_over_what_it_takes_means():
 @pytest.mark.parametrize(("given", "seed"), [(None, 1), (0, 0), (7, 7)])
 def test_a_size_is_of_the_seed_that_was_given_or_of_the_first(tmp_path, monkeypatch, given, seed):
     asked, room = [], next(one.sizing for one in networks().values() if one.has("sizing"))
-    answer = Of(lines=lambda: ["two are enough"], draw=lambda folder: folder / "a.svg")
+    answer = Of(
+        sweep=Of(failed=polars.DataFrame({"reason": []})),
+        lines=lambda: ["two are enough"],
+        draw=lambda folder: folder / "a.svg",
+    )
     monkeypatch.setattr(room, "size", lambda question, **how: asked.append(how) or answer)
     options = SizeOptions(links="*", ports="1..2", seed=given, repeat=5, out=tmp_path / "o")
     assert sizing.size("arm.urdf", options) == 0

@@ -75,7 +75,7 @@ FAULTS = (
           "        elif not self._had(before):\n", "        elif False:\n",
           {**LOSSES, "in_order": True}),
     Fault("what comes after its turn is handed up", MESH + "order",
-          "        if self._is_late(seq, before):\n", "        if False:\n",
+          "if self._is_late(seq, before, is_new or now - self.last_at >= QUIET_US):", "if False:",
           {"hurts": ("lossy", "sluggish"), "in_order": True, "storm_s": 60}),
     Fault("no message names the one before it", MESH + "chains",
           "return self._open[dest][-1] if self._open.get(dest) else seq", "return seq",

@@ -63,7 +63,7 @@ def test_defaults_that_are_named(name):
 
 def test_the_size_of_a_nodes_state():
     """Declared widths in whole bits, without the queue: at 50 nodes less than 4 KiB."""
-    state = mesh_fields.node(50)[: -len(mesh_fields.QUEUED)]
+    state = mesh_fields.node(50)[: -len(mesh_fields.queued(mesh_fields.QUEUE))]
     bits = sum(max(length, 1) * (high - low).bit_length() for _, length, low, high, _, _ in state)
     page = (PAGE.parent / "mesh.md").read_text(encoding="utf-8")
     assert f"is {bits // 8:,} bytes at 50 nodes" in page
