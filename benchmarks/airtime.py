@@ -11,8 +11,9 @@ import numpy as np
 from innervate.networks.mesh.analysis.messages import NEVER as LOST
 from innervate.networks.mesh.analysis.messages import messages
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.comparison import HERE, played
+from innervate.networks.mesh.papers.comparison import HERE, planned
 from innervate.networks.mesh.protocol import constants as w
+from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers.in_field import NEVER, figures
 
 KINDS = {
@@ -57,7 +58,8 @@ def shares(sent, since_us, until_us):
 def show(nodes, dead, seed, protocol):
     """One run, as two columns: until messages begin, and from then on."""
     given = {"world": HERE, "rounds": 2, "nodes": nodes, "dead": dead}
-    made, result = played(protocol, (), given, seed)
+    made, plan = planned(protocol, (), given, seed)
+    result = simulate(plan, checks=False)
     came = [NEVER if at == LOST else at for at in messages(result).delivered_us.tolist()]
     found, rounds = figures(made, came, 0), summarize(result)["discovery"]
     print(
