@@ -87,6 +87,36 @@ def test_a_disk_that_is_full_leaves_the_old_file_and_no_other(disk, path, step):
     assert json.loads(path.read_text())["epoch"] == 7
 
 
+def test_what_is_set_aside_gives_the_next_life_all_but_the_numbers(disk, path):
+    state = State(path)
+    state.epoch, state.revoked, state.numbers = 9, b"\x07", 500
+    assert state.write()
+    disk.fails["sync"] = errno.ENOSPC
+    state.set_aside()
+    state.set_aside()
+    assert [one.name for one in path.parent.iterdir()] == ["n0.state.old"]
+    again = State(path)
+    assert (again.fresh, again.epoch, again.revoked, again.numbers) == (False, 9, b"\x07", -1)
+    assert not again.write()
+    again.set_aside()
+    assert State(path).epoch == 9
+    disk.fails.clear()
+    again.numbers = 700
+    assert again.write()
+    assert [one.name for one in path.parent.iterdir()] == ["n0.state"]
+    assert State(path).numbers == 700
+
+
+def test_a_file_that_cannot_be_set_aside_stays(disk, path):
+    State(path).set_aside()  # there is none
+    state = State(path)
+    assert state.write()
+    disk.fails["replace"] = errno.EROFS
+    state.set_aside()
+    assert [one.name for one in path.parent.iterdir()] == ["n0.state"]
+    State(None).set_aside()
+
+
 def test_what_its_status_says(disk, path):
     state = State(path)
     assert state.status() == {"file": str(path), "written_s": None, "trouble": ""}

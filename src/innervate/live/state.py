@@ -42,11 +42,22 @@ class State:
         self.failed = 0
         self._errno = 0
         self._written_at: int | None = None
+        self._is_aside = False  # a file is there whose numbers are not to be gone by
+        if path is None:
+            return
+        aside = _aside(path)
         try:
-            if path is None or not machine().exists(path):
-                return
+            self._is_aside = machine().exists(aside)
+            is_there = machine().exists(path)
         except OSError as error:
             raise LiveError(f"{path}: cannot be looked at: {error.strerror}") from None
+        if is_there:
+            self._read(path)
+        elif self._is_aside:
+            self._read(aside)
+            self.numbers = -1
+
+    def _read(self, path: Path) -> None:
         try:
             kept = json.loads(machine().read_text(path))
             self.epoch = _whole(kept["epoch"], 255)
@@ -76,7 +87,22 @@ class State:
             self.failed += 1
             return False
         self.trouble, self._written_at = "", machine().monotonic_ns()
+        if self._is_aside:
+            self._is_aside = False
+            with suppress(OSError):
+                machine().remove(_aside(self.path))
         return True
+
+    def set_aside(self) -> None:
+        """Rename the file that could not be written: packets go on behind the numbers in it.
+
+        The next life takes all else from it, and draws its numbers. A name can be changed on most
+        disks that are full; numbers that come again would be taken for packets of this life.
+        """
+        if self.path is not None and not self._is_aside:
+            with suppress(OSError):
+                machine().replace(self.path, _aside(self.path))
+                self._is_aside = True
 
     def check_place(self) -> None:
         """Refuse a file that could not be written where it is; a full disk is no such reason.
@@ -95,6 +121,10 @@ class State:
         if self._written_at is not None:
             ago = round((machine().monotonic_ns() - self._written_at) / 1e9, 1)
         return {"file": str(self.path), "written_s": ago, "trouble": self.trouble}
+
+
+def _aside(path: Path) -> Path:
+    return path.with_name(path.name + ".old")
 
 
 def _whole(value: Any, most: int, least: int = 0) -> int:

@@ -116,3 +116,21 @@ def test_acks_of_others_do_not_use_up_the_tries_of_one_that_is_lost_on_its_way()
     assert heard(net, 2).count(b"late") == 1
     tries = [at for at, who, frame in net.sent if who == 0 and frame.seq == late]
     assert all(b - a > net.params.e2e_us // 2 for a, b in pairwise(tries))
+
+
+def test_an_ack_for_an_earlier_life_does_not_say_that_a_recipient_knows_this_one():
+    net = Net(2, line(2))
+    net.run(READY)
+    net.lost = lambda frame, to: frame.kind == E2E_ACK
+    net.send(0, 1, b"old")
+    net.run(READY + 100_000)
+    (old,) = [frame.seq for _, i, frame in net.delivered if i == 1 and frame.kind == DATA]
+    late = next(frame for _, _, frame in net.sent if frame.kind == E2E_ACK)
+    net.revive(0)
+    net.nodes[0].seq = (old - 5_000) & 65_535  # it lost its numbers, and drew others
+    net.push(net.now, ("frame", 0, late))
+    net.run(2 * READY)
+    net.lost = lambda frame, to: False
+    net.send(0, 1, b"new")
+    net.run(2 * READY + 1_000_000)
+    assert heard(net, 1) == [b"old", b"new"]

@@ -164,7 +164,7 @@ class MeshNode(LiveNode):
     async def _switch_on(self) -> None:
         """Packets' numbers go on behind where they were.
 
-        By how much is drawn: where a disk was full, nobody noted those that were used last.
+        By how much is drawn: where a disk failed, nobody may have noted those used last.
         """
         self.outgoing.chains = Chains(self.state.numbers < 0)
         if self.state.numbers >= 0:
@@ -270,7 +270,8 @@ class MeshNode(LiveNode):
         left = (state.numbers - seq) & MASK16
         if state.numbers < 0 or not NUMBERS // 2 <= left <= NUMBERS:
             state.numbers = (seq + NUMBERS) & MASK16
-            state.write()
+            if not state.write():
+                state.set_aside()
 
     def _acknowledge(self, sender: int, seq: int) -> None:
         """A message was handed up in its turn: its sender may know."""

@@ -93,7 +93,7 @@ class Order:
         self, seq: int, before: int, payload: bytes, now: int, is_new: bool = False
     ) -> list[bytes]:
         """A message came; what may be handed up now. `before == seq`: there is none to wait for."""
-        if self._is_late(seq, before, is_new or now - self.last_at >= QUIET_US):
+        if self._is_late(seq, before, is_new, now - self.last_at >= QUIET_US):
             self.late += 1
             self.dropped.append(seq)
             return []
@@ -137,14 +137,16 @@ class Order:
         """When somebody has waited long enough, us; only while messages are held."""
         return min(one.due for one in self.held)
 
-    def _is_late(self, seq: int, before: int, may_be_new: bool) -> bool:
-        """True if a message is too late; far behind, one without another before it may not be.
+    def _is_late(self, seq: int, before: int, is_new: bool, is_quiet: bool) -> bool:
+        """True if a message is too late; one without another before it may be of a new start.
 
-        Then its sender has begun anew with a number drawn at random, or after many starts unheard.
+        Its sender drew its numbers, and then an old one is not far behind; or nothing old is left,
+        and the numbers went on over so many starts unheard that they have come round.
         """
         if self.last is None or later(seq, self.last):
             return False
-        return before != seq or not may_be_new or (self.last - seq) & MASK16 < ANEW
+        is_far = (self.last - seq) & MASK16 >= ANEW
+        return before != seq or not (is_quiet or (is_new and is_far))
 
     def _had(self, before: int) -> bool:
         """True if there is nothing more to wait for before a message that comes after that one."""

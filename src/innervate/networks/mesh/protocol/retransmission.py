@@ -249,8 +249,6 @@ def on_end_ack(node, params, frame, now, out):
     at = inner(frame)
     if frame.length < at + 2:
         return
-    word = frame.origin // BITS
-    node.met[word] = node.met[word] | 1 << (frame.origin % BITS)
     count = 1
     if params.mode == TABLES:
         count = (frame.length - at) >> 1
@@ -260,10 +258,15 @@ def on_end_ack(node, params, frame, now, out):
 
 
 def note_arrived(node, params, now, who, seq, out):
-    """`who` has our packet of that number."""
+    """`who` has our packet of that number, and so knows us as we are since we switched on.
+
+    An ack that answers nothing of ours may be for who we were before: it says no such thing.
+    """
+    word = who // BITS
     for w in range(node.kept):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == seq:
             if node.wait_dest[w] == who or node.wait_kind[w] == ALARM:
+                node.met[word] = node.met[word] | 1 << (who % BITS)
                 learn_round_trip(node, params, w, now)
                 if is_own_crossing(node, w):
                     node.heard_out = 1
