@@ -24,6 +24,7 @@ OF_KIND = {
 }
 KILLS = {"hurts": ("crash", "restarts"), "storm_s": 60}
 LOSSES = {"hurts": ("lossy", "doubled", "cut")}
+LIVES = {"hurts": ("crash", "restarts", "lossy", "sluggish"), "storm_s": 60}
 LONG = {"long": 0.5, "mtu": 127}
 
 
@@ -75,7 +76,7 @@ FAULTS = (
           "        elif not self._had(before):\n", "        elif False:\n",
           {**LOSSES, "in_order": True}),
     Fault("what comes after its turn is handed up", MESH + "order",
-          "if self._is_late(seq, before, is_new or now - self.last_at >= QUIET_US):", "if False:",
+          "if self._is_late(seq, before, is_new, now - self.last_at >= QUIET_US):", "if False:",
           {"hurts": ("lossy", "sluggish"), "in_order": True, "storm_s": 60}),
     Fault("no message names the one before it", MESH + "chains",
           "return self._open[dest][-1] if self._open.get(dest) else seq", "return seq",
@@ -155,6 +156,17 @@ FAULTS = (
     Fault("packets' numbers begin anywhere after a restart", MESH + "node",
           "        if self.state.numbers >= 0:\n", "        if 0:\n",
           {**KILLS, "sealed": False, "in_order": False}),
+    Fault("any ack says that its sender knows the present life", PROTOCOL + "retransmission",
+          "    word = who // BITS\n",
+          "    word = who // BITS\n    node.met[word] = node.met[word] | 1 << (who % BITS)\n",
+          LIVES),
+    Fault("copies are known by the router alone", MESH + "inbox",
+          "is_again = self._is_copy(frame.origin, frame.seq, body) or is_again", "pass",
+          {**LIVES, "in_order": False}),
+    Fault("who drew its numbers is late", MESH + "order",
+          "(is_new and is_far)", "False", {**LIVES, "in_order": True}),
+    Fault("whoever is far behind has drawn its numbers", MESH + "order",
+          "(is_new and is_far)", "is_far", {**LIVES, "in_order": True}),
 )  # fmt: skip
 
 
