@@ -20,6 +20,7 @@ WRONG = {
     "no value to set": (("run", "four.toml", "--set", "protocol.k"), "write it as key=value"),
     "no such cell": (("check", "four.toml", "--set", "interface.0.row=9"), "there is no row 9"),
     "no such kind": (("new", "mash"), 'there is no kind "mash"; did you mean "mesh"?'),
+    "an empty kind": (("new", ""), 'there is no kind ""; there is skin'),
     "a kind of one's own": (("new", "ring"), "your own: innervate new network NAME"),
     "not a run": (("compare", ".", "."), "is not a run folder"),
     "out is a file": (("run", "four.toml", "--out", "four.toml"), "choose another folder"),

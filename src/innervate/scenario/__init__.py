@@ -38,14 +38,15 @@ def plan(scenario: Scenario) -> Any:
     return networks()[scenario.kind].plan(scenario)
 
 
-def template(kind: str = "") -> str:
+def template(kind: str | None = None) -> str:
     """A commented scenario of a kind, ready to run; of the first kind if none is named.
 
     Raises:
         ScenarioError: there is no such kind.
         NetworkError: a folder of that name, in the present one, cannot be loaded.
     """
-    network = find(kind or first(), Path())
+    kind = first() if kind is None else kind
+    network = find(kind, Path())
     if network is not None:
         return str(network.template) or _all_keys(network.name)
     hint = nearest(kind, list(networks())).replace("it knows", "there is")
