@@ -18,6 +18,7 @@ from innervate.networks.mesh.verify import replay as mesh_replay
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as story
 from innervate.networks.mesh.verify.cases import SHORT
+from innervate.networks.mesh.verify.first import begin
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.verify.errors import VerifyError
 
@@ -143,7 +144,7 @@ def hops_offered_late(result):
 
 def walk(nets, seed, length=60):
     """A random walk: what it delivers, and which choices it had."""
-    chance, net, seen = random.Random(seed), nets.first(), []
+    chance, net, seen = random.Random(seed), begin(nets).net, []
     for _ in range(length):
         some = nets.successors(net)
         if not some:
@@ -196,7 +197,7 @@ def test_bounds_and_names():
 
 def test_the_calm_future_is_played_once():
     nets = mesh_net.Nets(model("line", offers=((2, 0),), budget=NOTHING))
-    fair, net = mesh_fair.Fair(nets), nets.first()
+    fair, net = mesh_fair.Fair(nets), begin(nets).net
     assert fair.check(net) == 0
     offered = nets.offers(net)[0][1]
     assert fair.check(offered) == 0

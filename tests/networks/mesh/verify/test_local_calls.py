@@ -49,7 +49,7 @@ def put(out, *actions, frames=()):
 def test_a_node_that_is_switched_on_is_who_it_is_and_knows_nobody():
     nodes = made()
     for who, (rank, robot) in enumerate([(0, 0), (1, 0), (-1, 1)]):
-        number = nodes.start(who, 0)
+        number = nodes.start(who, 0).state
         assert [nodes.field(number, name) for name in ("number", "rank", "robot", "rng")] == [
             who, rank, robot, 1]  # fmt: skip
         assert list(nodes.field(number, "neighbour")) == [const.ALL] * 3
@@ -66,7 +66,7 @@ def test_what_is_drawn_out_of_many_counts_from_each_start_anew():
     seen = []
     nodes = made(lambda name, node, *_: seen.append(nodes.boots))
     for boots in (0, 1, 2):
-        number = nodes.start(0, boots)
+        number = nodes.start(0, boots).state
     nodes.call(number, (local.SENT,), 3)
     assert seen == [0, 1, 2, 0]
 
@@ -74,7 +74,7 @@ def test_what_is_drawn_out_of_many_counts_from_each_start_anew():
 def told_of(event, elapsed=0):
     """What a handler of a node that is on is told of an event."""
     nodes = made()
-    number = nodes.start(0, 0)
+    number = nodes.start(0, 0).state
     nodes.packet_of(frame())
     nodes.call(number, event, elapsed)
     return nodes, nodes.told[1:]
@@ -134,7 +134,7 @@ def acting(*actions, frames=(), **more):
                 setattr(node, name, value)
 
     nodes = made(act)
-    return nodes, nodes.start(0, 0)
+    return nodes, nodes.start(0, 0).state
 
 
 def test_timers_go_on_and_the_one_that_fires_is_over():
@@ -220,7 +220,7 @@ def test_an_outbox_without_room_and_a_field_out_of_range_are_broken():
 def test_a_gateways_record_is_brought_to_life_with_its_nodes():
     nodes = made(lambda name, node, gate, now, *rest: gate is not None and setattr(
         gate, "step", {"on_start": 1, "on_timer": 2}.get(name, gate.step)))  # fmt: skip
-    first, other = nodes.start(0, 0), nodes.start(1, 0)
+    first, other = nodes.start(0, 0).state, nodes.start(1, 0).state
     place = nodes.gate_shape.place["step"]
     (out,) = nodes.call(first, (local.TIMER, 4), 0)
     (kept,) = nodes.call(other, (local.SENT,), 0)
@@ -235,7 +235,7 @@ def test_every_draw_out_of_few_is_tried_with_every_other():
                 node.due = node.due * 3 + node.choice
 
     nodes = made(act)
-    found = nodes.call(nodes.start(0, 0), (local.TIMER, 4), 0)
+    found = nodes.call(nodes.start(0, 0).state, (local.TIMER, 4), 0)
     scripts = sorted((*one.script, *(0,) * (2 - len(one.script))) for one in found)
     assert scripts == [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1)]
 
@@ -250,4 +250,4 @@ def test_a_packet_that_takes_a_hop_twice_goes_round(path, broken):
 
 def test_what_is_broken_has_a_number_of_its_own_each():
     names = [name for name in vars(local) if name.startswith("BROKEN_")]
-    assert sorted(getattr(local, name) for name in names) == list(range(1, 12))
+    assert sorted(getattr(local, name) for name in names) == list(range(1, 13))

@@ -5,11 +5,12 @@ from types import SimpleNamespace as Of
 import pytest
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.verify import first, local, mutants, search, story
 from innervate.networks.mesh.verify import model as mesh_model
-from innervate.networks.mesh.verify import mutants, net
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel, parse, reach
 from innervate.networks.mesh.verify.net import Nets
 from innervate.verify.errors import VerifyError
+from innervate.verify.mutants import Mutant, copies
 
 LINE, SQUARE = ((0, 1), (1, 2)), ((0, 1), (0, 2), (1, 3), (2, 3))
 
@@ -72,10 +73,11 @@ def test_what_may_fail_if_nobody_says():
     assert (usual.robot, usual.beats, usual.reliable, usual.overhear) == (-1, 0, True, True)
 
 
-def test_a_first_round_without_end_is_not_waited_for(monkeypatch):
-    monkeypatch.setattr(net, "EVENTS_MAX", 3)
-    with pytest.raises(AssertionError, match="the first round has no end"):
-        Nets(MeshModel(LINE)).first()
+def test_a_first_round_without_end_is_not_waited_for_and_told(monkeypatch):
+    monkeypatch.setattr(first, "EVENTS_MAX", 15)
+    told = story.tell(search.explore(MeshModel(LINE)))
+    assert told.title == "the first round has no end"
+    assert len(told.sentences) == first.LAST
 
 
 SHORT, TWICE = (("e2e_tries", 1), ("transmissions", 1)), (("e2e_tries", 1), ("transmissions", 2))
@@ -116,3 +118,26 @@ def test_a_mutant_is_caught_where_it_first_breaks_something(broken_at, where, st
     monkeypatch.setattr(mutants, "Nets", lambda model, _: Of(model=model))
     found = mutants.hunt("some")
     assert found == mutants.Catch("some", "it loops" if where else "", where, states)
+
+
+START, HEAR = (
+    "    node.seq = draw(node, 65_536)\n",
+    "    k = hear(node, params, frame.link_src, frame.rssi)\n",
+)
+
+
+@pytest.mark.parametrize(("line", "more", "title", "last"), [
+    (START, "    node.seq = 1 << 20\n", "a value is out of its declared range",
+     "Node 1 is switched on."),
+    (START, "    node.seq = node.seq // 0\n", "a handler cannot go on",
+     "Node 1 is switched on."),
+    (HEAR, "    node.gone = 1 << 20\n", "a value is out of its declared range",
+     "Node 1 sends a discovery request to all."),
+], ids=("a value as it is switched on", "no way on", "a value as a frame comes"))  # fmt: skip
+def test_a_first_round_that_breaks_is_told_as_a_story(line, more, title, last):
+    (entry,) = copies(Mutant("", line, line + more), "innervate.networks.mesh.protocol.node")
+    made = MeshModel(LINE)
+    found = search.explore(made, nets=Nets(made, local.Locals(made, entry)))
+    assert found.tally.ended == "broken"
+    told = story.tell(found)
+    assert (told.title, told.sentences[-1]) == (title, last)

@@ -8,6 +8,7 @@ from innervate.networks.mesh.protocol.constants import ALL
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify.cases import SHORT
+from innervate.networks.mesh.verify.first import begin
 from innervate.networks.mesh.verify.local import GRAIN_US, NEVER, NONE
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import DEAD, DIE, REVIVE, Net, Nets
@@ -24,7 +25,7 @@ def nets():
 
 @pytest.fixture(scope="module")
 def first(nets):
-    return nets.first()
+    return begin(nets).net
 
 
 def test_it_starts_with_all_that_may_happen_and_nothing_handed_in(first):

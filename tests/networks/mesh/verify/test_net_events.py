@@ -45,7 +45,7 @@ class Nodes:
         return self.said.get((number, event), usual)
 
     def start(self, who, boots):
-        return 1000 + 10 * who + boots
+        return Outcome(1000 + 10 * who + boots, (), (), (), 0, ())
 
     def field(self, number, name):
         return self.records[number][name]

@@ -51,6 +51,7 @@ CALM = net(10, 11, 12)
     [
         (move(nets.DIE), "node 1 dies"),
         (move(nets.REVIVE, 2), "node 2 is switched on again, its memory lost"),
+        (move(nets.SWITCH_ON, 0), "node 0 is switched on"),
         (move(nets.OUTSIDE), "node 1 finds itself outside the fence"),
         (move(nets.OFFER, frame=1), "node 1 is given message 2 for node 0"),
         (move(nets.FIRE, frame=const.TICK), "node 1 has its beat"),

@@ -85,7 +85,8 @@ class Fair:
             if self._is_quiet(calm):
                 return self._note(rows, End(0, calm.got, -1))
             step = self.nets.steady(calm)
-            assert step is not None  # beats have no end here
+            if step is None:  # nobody does anything any more
+                return self._note(rows, End(BROKEN_ENDLESS, calm.got, -1))
             _, calm, broken = step
             if broken:
                 return self._note(rows, End(broken, calm.got, -1))

@@ -30,7 +30,7 @@ COLLECTING = 1
 # What a call breaks.
 BROKEN_TWICE, BROKEN_ROUND, BROKEN_RANGE, BROKEN_OUTBOX, BROKEN_HELD = range(1, 6)
 BROKEN_UNHEARD, BROKEN_ENDLESS, BROKEN_GATEWAYS, BROKEN_CRASH, BROKEN_ACKED = range(6, 11)
-BROKEN_DEPOSED = 11
+BROKEN_DEPOSED, BROKEN_FIRST = 11, 12
 
 # Events of a node: (what, ...).
 FRAME, SENT, TIMER, MESSAGE, SAMPLE, START, PASS = range(7)
@@ -152,8 +152,8 @@ class Locals:
 
     # Calls.
 
-    def start(self, who: int, boots: int) -> int:
-        """The state of a node that is switched on; `boots` = how often it was before."""
+    def start(self, who: int, boots: int) -> Outcome:
+        """What switching a node on leaves; `boots` = how often it was before."""
         for record, shape in (
             (self.blank_node(), self.shape),
             (self.blank_gate(), self.gate_shape),
@@ -168,7 +168,7 @@ class Locals:
         timers = (NEVER,) * const.TIMERS
         blank = State(node, gate if self.ranks[who] >= 0 else None, timers, NONE)
         number = self.number_of(blank)
-        return self.call(number, (START, int(boots > 0), boots), 0)[0].state
+        return self.call(number, (START, int(boots > 0), boots), 0)[0]
 
     @staticmethod
     def _value(record: Any, name: str) -> Any:

@@ -22,10 +22,9 @@ from innervate.networks.mesh.verify.local import NEVER, NONE
 from innervate.networks.mesh.verify.model import MeshModel
 
 # Kinds of moves.
-OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE = range(6)
+OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE, SWITCH_ON = range(7)
 
 DEAD = -1
-SETTLED_US = 3_000_000  # tables are there; messages are offered from then on
 EVENTS_MAX = 5_000  # of a first round, and of a message's calm future; some hundred are enough
 
 
@@ -33,7 +32,7 @@ class Move(NamedTuple):
     """An event: what, at which node, and how.
 
     Attributes:
-        kind: OFFER, OUTSIDE, AIR, FIRE, DIE or REVIVE.
+        kind: OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE or, before all, SWITCH_ON.
         node: who.
         frame: AIR: the frame's number; FIRE: the timer; OFFER: which of the model's.
         missed: AIR: nodes that did not receive it although they could.
@@ -116,31 +115,6 @@ class Nets:
 
     # The start.
 
-    def first(self) -> Net:
-        """Switched on; where something is offered, after the first round, its tables in force."""
-        budget, model = self.model.budget, self.model
-        order = [*range(1, self.n), 0]
-        nodes = [DEAD] * self.n
-        for who in order:
-            nodes[who] = self.locals.start(who, 0)
-        net = Net(tuple(nodes), (0,) * self.n, (0, 0, 0, 0), (1 << 20,) * self.n, 1 << 20, 0)
-        past = events = 0
-        while past < SETTLED_US and not model.beats:
-            events += 1
-            assert events < EVENTS_MAX, "the first round has no end"
-            wait = self.soonest(net)[0]
-            step = self.steady(net)
-            assert step is not None
-            assert not step[2], f"the first round breaks {step}"
-            net = step[1]
-            past += wait
-        if not model.beats:
-            self.locals.coarsen()
-            net = net._replace(nodes=self._present(net), lags=(0,) * self.n)
-        left = (budget.deaths, budget.revivals, budget.frames, budget.acks)
-        most = model.beats + self.calm_beats() if model.beats else budget.ticks
-        return net._replace(left=left, ticks=(most,) * self.n, offered=0, got=0)
-
     def calm_beats(self) -> int:
         """Timed: so many beats after the last fault there is one gateway, which all follow.
 
@@ -150,7 +124,7 @@ class Nets:
         params, standbys = self.locals.params, len(self.model.standby)
         return int(params.dead + standbys * params.dead_step + params.period + 2)
 
-    def _present(self, net: Net) -> tuple[int, ...]:
+    def present(self, net: Net) -> tuple[int, ...]:
         """Every node's state as of now."""
         passed = (local.PASS,)
         return tuple(
@@ -336,10 +310,10 @@ class Nets:
             if number == DEAD and revivals:
                 fresh = self.locals.start(node, 1 + self.model.budget.revivals - revivals)
                 after = net._replace(
-                    nodes=replaced(net.nodes, node, fresh),
+                    nodes=replaced(net.nodes, node, fresh.state),
                     left=(net.left[0], net.left[1] - 1, frames, acks),
                 )
-                found.append((Move(REVIVE, node), after, 0))
+                found.append((Move(REVIVE, node), after, fresh.broken))
         return found
 
     # Calls.

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from innervate.kernel.clock import wall_s
 from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import local as mesh_local
+from innervate.networks.mesh.verify.first import Begun, begin
 from innervate.networks.mesh.verify.model import MeshModel
 from innervate.networks.mesh.verify.net import Net, Nets, Successor
 from innervate.verify.explore import EVERY_S, MEMORY, Tally
@@ -71,7 +72,10 @@ def explore(
         progress: called every EVERY_S at most; the search ends if it returns True.
     """
     nets = nets or Nets(model)
-    search = _Search(nets)
+    begun = begin(nets)
+    if begun.broken:
+        return _broken_at_once(model, nets, begun)
+    search = _Search(nets, begun.net)
     found = Found(model, nets, search.tally, start=search.first)
     started = told = wall_s()
     while search.tally.ended == "interrupted":
@@ -89,6 +93,13 @@ def explore(
         _look_ahead(found, search, progress)
         search.tally.wall_s = wall_s() - started
     found.calls = nets.locals.calls
+    return found
+
+
+def _broken_at_once(model: MeshModel, nets: Nets, begun: Begun) -> Found:
+    """What is found where the first round breaks already."""
+    found = Found(model, nets, Tally(states=1, ended="broken"), broken=begun.broken)
+    found.start, found.path, found.calls = begun.start, begun.path, nets.locals.calls
     return found
 
 
@@ -113,9 +124,9 @@ def _look_ahead(found: Found, search: _Search, progress: Progress | None) -> Non
 class _Search:
     """The states found so far, in the order in which they were."""
 
-    def __init__(self, nets: Nets) -> None:
+    def __init__(self, nets: Nets, first: Net) -> None:
         self.nets = nets
-        self.first = nets.first()
+        self.first = first
         row = nets.pack(self.first)
         self.known = {row: 0}
         self.rows = [row]
@@ -199,7 +210,10 @@ def wander(
 ) -> Found:
     """So many random walks of at most `length` events, for budgets too large to exhaust."""
     nets = Nets(model)
-    chance, first, fair = random.Random(seed), nets.first(), mesh_fair.Fair(nets)
+    begun = begin(nets)
+    if begun.broken:
+        return _broken_at_once(model, nets, begun)
+    chance, first, fair = random.Random(seed), begun.net, mesh_fair.Fair(nets)
     found = Found(model, nets, Tally(depth=length), start=first)
     started = wall_s()
     for walk in range(walks):

@@ -44,6 +44,7 @@ TITLES = {
     local.BROKEN_CRASH: "a handler cannot go on",
     local.BROKEN_ACKED: "a node waits for an ack that it has heard",
     local.BROKEN_DEPOSED: "a standby leads though its gateway lives",
+    local.BROKEN_FIRST: "the first round has no end",
 }
 
 
@@ -141,6 +142,8 @@ def _sentence(nets: Nets, move: Move, before: Net, after: Net) -> str:
     who = f"node {move.node}"
     if move.kind == mesh_net.DIE:
         return f"{who} dies"
+    if move.kind == mesh_net.SWITCH_ON:
+        return f"{who} is switched on"
     if move.kind == mesh_net.REVIVE:
         return f"{who} is switched on again, its memory lost"
     if move.kind == mesh_net.OUTSIDE:

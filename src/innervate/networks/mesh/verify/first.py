@@ -1,0 +1,74 @@
+"""A mesh's first round: from nodes that are off to tables in force, if nothing fails."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from innervate.networks.mesh.verify import local
+from innervate.networks.mesh.verify.net import (
+    DEAD,
+    EVENTS_MAX,
+    SWITCH_ON,
+    Move,
+    Net,
+    Nets,
+    Successor,
+    replaced,
+)
+
+SETTLED_US = 3_000_000  # tables are there; messages are offered from then on
+LAST = 12  # events of a round without end that its story tells
+
+
+class Begun(NamedTuple):
+    """Where an exploration begins, or what broke before it could.
+
+    Attributes:
+        net: switched on; where something is offered, after the first round, its tables in force.
+        broken: what that broke, a number of local.py; 0 nothing.
+        start: the state before `path`.
+        path: the events that broke it.
+    """
+
+    net: Net
+    broken: int
+    start: Net
+    path: list[Successor]
+
+
+def begin(nets: Nets) -> Begun:
+    """Switch all nodes of a mesh on, and let their first round pass."""
+    model, many = nets.model, (1 << 20,) * nets.n
+    start = Net((DEAD,) * nets.n, (0,) * nets.n, (0, 0, 0, 0), many, 1 << 20, 0)
+    path: list[Successor] = []
+    net = start
+    for who in (*range(1, nets.n), 0):
+        out = nets.locals.start(who, 0)
+        net = net._replace(nodes=replaced(net.nodes, who, out.state))
+        path.append((Move(SWITCH_ON, who), net, out.broken))
+        if out.broken:
+            return Begun(net, out.broken, start, path)
+    past = 0
+    while past < SETTLED_US and not model.beats:
+        wait = nets.soonest(net)[0]
+        step = nets.steady(net)
+        if step is None:  # nobody does anything any more
+            break
+        path.append(step)
+        net, past = step[1], past + wait
+        if step[2]:
+            return Begun(net, step[2], start, path)
+        if len(path) > EVENTS_MAX:
+            return Begun(net, local.BROKEN_FIRST, path[-LAST - 1][1], path[-LAST:])
+    return Begun(_ready(nets, net), 0, start, [])
+
+
+def _ready(nets: Nets, net: Net) -> Net:
+    """The state with all that may still happen."""
+    model, budget = nets.model, nets.model.budget
+    if not model.beats:
+        nets.locals.coarsen()
+        net = net._replace(nodes=nets.present(net), lags=(0,) * nets.n)
+    left = (budget.deaths, budget.revivals, budget.frames, budget.acks)
+    most = model.beats + nets.calm_beats() if model.beats else budget.ticks
+    return net._replace(left=left, ticks=(most,) * nets.n, offered=0, got=0)
