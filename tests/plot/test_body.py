@@ -8,6 +8,7 @@ import pytest
 from matplotlib import colors
 from matplotlib.figure import Figure
 
+import innervate
 from innervate.plot import body, charts, figures, paint
 from innervate.plot.charts import Bar
 from innervate.plot.svg import Drawing
@@ -37,6 +38,17 @@ def test_a_graph_is_drawn_and_named_as_far_as_it_can_be_read(monkeypatch):
     assert four.count("<line") == 4
     assert "4 nodes, 4 links." in four
     assert body.graph(ring(6)) == ""
+
+
+def test_who_is_off_at_the_end_is_crossed_and_named_so_in_the_table():
+    kill = {"at_s": 0.02, "action": "kill", "node": 2}
+    made = {"kind": "babel", "nodes": 4, "duration_s": 0.05, "event": [kill]}
+    run = innervate.run(made, plain=True)
+    shown = body.body(run.result, run.summary)
+    assert (shown.count('class="off"'), shown.count('class="struck"')) == (1, 1)
+    assert "4 nodes, 4 links; crossed: off at the end." in shown
+    assert re.findall(r"<td>(n\d[^<]*)</td>", shown) == ["n0", "n1", "n2, off", "n3"]
+    assert "struck" not in body.graph(ring(4))
 
 
 def test_nodes_lie_where_their_coordinates_say():
@@ -181,7 +193,7 @@ def test_a_table_says_what_each_node_was_at_the_end(monkeypatch):
     network = Of(graph=lambda plan: Of(nodes=names), has=lambda part: True, fields=Of(STATE=state))
     monkeypatch.setattr(body, "networks", lambda: {"babel": network})
     for kept in ("cells", "stations"):
-        told = body._nodes(Of(plan=Of(kind="babel"), world=Of(**{kept: cells})))
+        told = body._nodes(Of(plan=Of(kind="babel"), world=Of(**{kept: cells}), counts=Of(off=())))
         rows = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in told.split("<tr")[1:]]
         assert rows == [["node", '<span title="how &lt;far&gt;">dist</span>, hops',
                          '<span title="on">up</span>, flag'],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from html import escape
 from typing import Any
 
@@ -29,7 +29,7 @@ Places = dict[str, tuple[float, float]]
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """All of it, as HTML."""
     parts = (
-        top(result, summary), graph(result.plan), _over_time(result), _nodes(result),
+        top(result, summary), graph(result.plan, result.counts.off), _over_time(result), _nodes(result),
         _events(result.plan),
     )  # fmt: skip
     return "\n".join(part for part in parts if part)
@@ -37,7 +37,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
 
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
     """What a notebook shows of a run, as HTML."""
-    return top(result, summary) + graph(result.plan)
+    return top(result, summary) + graph(result.plan, result.counts.off)
 
 
 def top(result: Any, summary: Mapping[str, Any]) -> str:
@@ -58,8 +58,11 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     return f"<header>\n{head}</header>"
 
 
-def graph(plan: Any) -> str:
-    """The network: nodes where they lie, or on a circle; nothing if it is too large to be read."""
+def graph(plan: Any, off: Collection[int] = ()) -> str:
+    """The network: nodes where they lie, or on a circle; nothing if it is too large to be read.
+
+    Those that are `off` at the end are crossed.
+    """
     made = networks()[plan.kind].graph(plan)
     if not 0 < len(made.nodes) <= DRAWN_MAX:
         return ""
@@ -71,14 +74,17 @@ def graph(plan: Any) -> str:
     drawing = svg.Drawing(*size, f"graph of {len(made.nodes)} nodes")
     for a, b, _about in made.edges:
         drawing.line(places[a], places[b], "cable")
-    for name, (x, y) in places.items():
-        drawing.circle((x, y), 5, "relay")
+    for node, (name, (x, y)) in enumerate(places.items()):
+        drawing.circle((x, y), 5, "off" if node in off else "relay")
+        if node in off:
+            drawing.path(svg.cross(x, y, 7), "struck")
         if len(places) <= NAMED_MAX:
             drawing.text((x, y - 9), name, "small", "middle")
     links = number_of(len(made.edges), "link")
     if networks()[plan.kind].medium == "channel":
         links = "on one channel"
-    text = f"{number_of(len(made.nodes), 'node')}, {links}."
+    crossed = "; crossed: off at the end" if off else ""
+    text = f"{number_of(len(made.nodes), 'node')}, {links}{crossed}."
     return section("The network", pictures([figure(drawing, "", text)], "two"))
 
 
@@ -148,9 +154,10 @@ def _nodes(result: Any) -> str:
     if cells is None or not declares or len(nodes) > NAMED_MAX:
         return ""
     shown = [field for field in network.fields.STATE if not field[1] and field[0] not in UNTOLD]
+    names = [name + ", off" * (node in result.counts.off) for node, (name, _) in enumerate(nodes)]
     rows = [
         (escape(name), *(str(int(get(cells, node, field[0]))) for field in shown))
-        for node, (name, _about) in enumerate(nodes)
+        for node, name in enumerate(names)
     ]
     head = ("node", *(f'<span title="{escape(f[5])}">{f[0]}</span>, {escape(f[4])}' for f in shown))
     return section("Nodes at the end", table(head, rows))
