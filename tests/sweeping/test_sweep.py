@@ -50,6 +50,16 @@ def test_other_kinds_go_through_the_same_door(four):
     assert headline_lines(done) == []
 
 
+def test_latencies_are_those_of_a_run_whatever_the_network():
+    """Babel's summary and measures are made of the rows of what was delivered."""
+    done = innervate.sweep("babel-patch", repeat=1, workers=1)
+    run = innervate.run("babel-patch", seed=done.results["seed"][0])
+    latency = run.summary["messages"]["latency_ms"]
+    assert latency["p50"] > 0
+    row = done.results.row(0, named=True)
+    assert {word: row[f"messages.latency_ms.{word}"] for word in latency} == latency
+
+
 def test_runs_that_are_not_well_are_said(four):
     vary = {"duration_s": [60, 0.101]}
     done = innervate.sweep("radio-disaster", vary=vary, repeat=2, workers=1)

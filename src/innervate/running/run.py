@@ -175,7 +175,7 @@ def run(
         out: folder to write; nothing is written without one (see Run.write).
         progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
         checks: invariant checkers on.
-        received: keep every sample the PC received; None = unless there are very many.
+        received: keep every sample that a skin's PC received; None = unless there are very many.
         plain: run uncompiled, slow; a protocol may call `print` and `breakpoint`.
 
     Raises:
