@@ -150,3 +150,20 @@ def test_each_trouble_of_a_table_is_one_line(code, words):
     error = sqlite3.OperationalError("words of its own")
     error.sqlite_errorname = code
     assert jobs._in_words("/a/b", error).startswith(words)
+
+
+@pytest.mark.parametrize(
+    "harm",
+    [
+        """UPDATE runs SET figures = '{"x": 1'""",
+        "UPDATE runs SET figures = '5'",
+        "UPDATE runs SET figures = x'ff'",
+        "UPDATE runs SET figures = CAST(x'7bff' AS TEXT)",
+        "UPDATE places SET facts = 'torn'",
+    ],
+)
+def test_a_table_with_a_torn_row_is_said_to_be_damaged(table, harm):
+    table.add([done("p", 0)], PLACE)
+    table._db.execute(harm)
+    with pytest.raises(SweepError, match="is no job table, or damaged; move it away"):
+        table.runs("p", 9), table.places()

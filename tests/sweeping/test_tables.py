@@ -61,11 +61,15 @@ def test_a_points_figures_are_those_of_its_runs():
 class Runs:
     """A job table."""
 
-    def runs(self, digest, count):
-        found = {0: ("", {"x": 1.5, "seed": 9}), 1: ("no port", None), 2: ("", {"x": 2.5})}
-        return {repeat: SimpleNamespace(seed=100 + repeat, figures=figures, reason=reason,
-                                        wall_s=0.5, began_s=7.0 + repeat, place="here")
-                for repeat, (reason, figures) in found.items() if repeat < count}  # fmt: skip
+    def __init__(self, *figures):
+        self._figures = figures or ({"x": 1.5, "seed": 9}, None, {"x": 2.5})
+
+    def each(self, digest, count):
+        for repeat, figures in enumerate(self._figures[:count]):
+            reason = "" if figures else "no port"
+            yield repeat, SimpleNamespace(seed=100 + repeat, figures=figures, reason=reason,
+                                          wall_s=0.5, began_s=7.0 + repeat,
+                                          place="here")  # fmt: skip
 
     def places(self):
         return {"here": {"host": "h", "cores": 2}}
@@ -90,6 +94,22 @@ def test_a_row_says_of_a_run_what_it_was_and_what_came_of_it():
     assert timed.columns == ["point", "repeat", "wall_s", "began_s", "host", "cores"]
     assert timed.rows() == [(0, 0, 0.5, 7.0, "h", 2), (1, 0, 0.5, 7.0, "h", 2),
                             (1, 1, 0.5, 8.0, "h", 2)]  # fmt: skip
+
+
+def test_what_a_summary_does_not_name_as_it_never_happened_counts_as_none():
+    """Means over those runs alone in which frames collided would be far too high."""
+    runs = Runs(
+        {"frames.lost": 4, "frames.lost_by.noise": 4, "reports.5": 2, "broken.count": 1},
+        {"frames.lost": 0, "broken": "[]", "latency_ms": None},
+        None,  # a run that failed says nothing
+        {"lost": 0, "latency_ms": 3.0},  # and one of another kind only what it says
+    )
+    made = tables.results(PLAN, runs, (4, 0))
+    for name, wanted in (
+        ("frames.lost_by.noise", [4, 0, None, None]), ("reports.5", [2, 0, None, None]),
+        ("broken.count", [1, 0, None, None]), ("latency_ms", [None, None, None, 3.0]),
+    ):  # fmt: skip
+        assert made[name].to_list() == wanted, name
 
 
 def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):

@@ -16,6 +16,9 @@ from innervate.folders import blamed
 from innervate.network import NetworkError, networks
 from innervate.sim.counts import Counts
 
+# Counted by reason or number: what is not named there has not happened.
+COUNTED = ("frames.lost_by", "messages.dropped_by", "reports")
+
 
 class Frames(TypedDict):
     """Frames on their links; one counts once for every link that it takes.

@@ -137,16 +137,32 @@ class Jobs:
 
     def runs(self, point: str, behind: int) -> dict[int, Stored]:
         """The runs of a point, by repeat, those before `behind`."""
+        return dict(self.each(point, behind))
+
+    def each(self, point: str, behind: int) -> Iterator[tuple[int, Stored]]:
+        """The same one by one, in order of repeat: a point may have a million.
+
+        Raises:
+            SweepError: what stands there is no run.
+        """
         query = (
             "SELECT repeat, seed, figures, reason, wall_s, began_s, place FROM runs "
             "WHERE point = ? AND repeat < ? ORDER BY repeat"
         )
         with self._errors():
-            rows = self._db.execute(query, (point, behind)).fetchall()
-        return {
-            repeat: Stored(seed, None if text is None else json.loads(text), *rest)
-            for repeat, seed, text, *rest in rows
-        }
+            for repeat, seed, text, *rest in self._db.execute(query, (point, behind)):
+                figures = None if text is None else self._tables(text)
+                yield repeat, Stored(seed, figures, *rest)
+
+    def _tables(self, text: Any) -> dict[str, Any]:
+        """A JSON object that was kept as text."""
+        try:
+            found = json.loads(text)
+        except (ValueError, TypeError):
+            found = None
+        if not isinstance(found, dict):
+            raise SweepError(_damaged(self._name))
+        return found
 
     def count(self) -> int:
         """How many runs there are, of this sweep and of others in the same folder."""
@@ -158,7 +174,7 @@ class Jobs:
         """What is known of the machines and processes, by number."""
         with self._errors():
             rows = self._db.execute("SELECT id, facts FROM places").fetchall()
-        return {number: json.loads(facts) for number, facts in rows}
+        return {number: self._tables(facts) for number, facts in rows}
 
 
 def _in_words(name: str, error: sqlite3.Error) -> str:
@@ -172,6 +188,10 @@ def _in_words(name: str, error: sqlite3.Error) -> str:
             f"{name}: no space left on the disk, or it fails; make room and give the same "
             "command again, what is done is kept"
         )
-    if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
-        return f"{name} is no job table, or damaged; move it away or choose another --out"
+    if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")) or "decode" in str(error):
+        return _damaged(name)
     return f"{name}: {error}"
+
+
+def _damaged(name: str) -> str:
+    return f"{name} is no job table, or damaged; move it away or choose another --out"

@@ -8,11 +8,14 @@ from __future__ import annotations
 import io
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate.analysis.intervals import mean_interval, quantile
+from innervate.analysis.summary import COUNTED
 from innervate.sweeping.jobs import Jobs
 from innervate.sweeping.plan import Point, SweepPlan
 
@@ -24,6 +27,7 @@ TIMINGS = "timings.parquet"
 POINTS = "points.parquet"
 FIRST = ("point", "repeat", "seed")
 AFTER = ("status", "reason", "command")
+Columns = dict[str, list[Any]]
 
 
 def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataFrame:
@@ -34,9 +38,14 @@ def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataF
         jobs: the runs.
         repeats: how many runs of every point belong to it; those that are missing are left out.
     """
-    rows: list[dict[str, Any]] = []
+    columns = _columns(_rows(plan, jobs, repeats), (*FIRST, *plan.keys, *AFTER))
+    _count_none(columns)
+    return _frame(columns)
+
+
+def _rows(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> Iterator[dict[str, Any]]:
     for point, count in zip(plan.points, repeats, strict=True):
-        for repeat, run in jobs.runs(point.digest, count).items():
+        for repeat, run in jobs.each(point.digest, count):
             head = {"point": point.index, "repeat": repeat, "seed": run.seed} | point.columns
             tail = {
                 "status": "failed" if run.figures is None else "done",
@@ -44,32 +53,65 @@ def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataF
                 "command": plan.base.command(point.settings, run.seed),
             }
             figures = {k: v for k, v in (run.figures or {}).items() if k not in head}
-            rows.append(head | tail | figures)
-    return frame(rows, (*FIRST, *plan.keys, *AFTER))
+            yield head | tail | figures
+
+
+def _count_none(columns: Columns) -> None:
+    """Put 0 where a run has no count since there was nothing to count, lest means leave it out.
+
+    So it is with an empty list of tables, and with what the summary of any network counts by
+    reason: it names only what happened.
+    """
+    of_any = columns.get("frames.lost", ())
+    for name, values in columns.items():
+        if name.startswith(tuple(f"{counts}." for counts in COUNTED)):
+            known = [lost is not None for lost in of_any]
+        elif name.endswith(".count"):
+            known = [text == "[]" for text in columns.get(name.removesuffix(".count"), ())]
+        else:
+            continue
+        for i in (i for i, there in enumerate(known) if there and values[i] is None):
+            values[i] = 0
 
 
 def timings(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataFrame:
     """How long every run took, when it began, and where it was."""
     places = jobs.places()
-    rows = [
+    rows = (
         {"point": point.index, "repeat": repeat, "wall_s": run.wall_s, "began_s": run.began_s}
-        | places[run.place]
+        | places.get(run.place, {})
         for point, count in zip(plan.points, repeats, strict=True)
-        for repeat, run in jobs.runs(point.digest, count).items()
-    ]
+        for repeat, run in jobs.each(point.digest, count)
+    )
     return frame(rows, ("point", "repeat", "wall_s", "began_s"))
 
 
-def frame(rows: Sequence[dict[str, Any]], first: Iterable[str] = ()) -> polars.DataFrame:
+def frame(rows: Iterable[dict[str, Any]], first: Iterable[str] = ()) -> polars.DataFrame:
     """A frame of rows that need not have the same keys: null where one is missing.
 
     Columns stand in the order of `first`, then in the order in which rows bring them. A column of
     whole numbers is Int64, of numbers Float64, of truths Boolean, else String.
     """
+    return _frame(_columns(rows, first))
+
+
+def _columns(rows: Iterable[dict[str, Any]], first: Iterable[str]) -> Columns:
+    """Rows by column: a sweep may have millions, whose keys take more room than their values."""
+    columns: Columns = {name: [] for name in first}
+    count = 0
+    for count, row in enumerate(rows, 1):
+        for name, value in row.items():
+            values = columns.setdefault(name, [])
+            values += [None] * (count - 1 - len(values))
+            values.append(value)
+    for values in columns.values():
+        values += [None] * (count - len(values))
+    return columns
+
+
+def _frame(columns: Columns) -> polars.DataFrame:
     import polars
 
-    names = list(dict.fromkeys([*first, *(key for row in rows for key in row)]))
-    columns = {name: [row.get(name) for row in rows] for name in names}
     return polars.DataFrame([_series(name, values) for name, values in columns.items()])
 
 
@@ -113,16 +155,24 @@ def points(
         wanted: which measures.
         level: of the confidence interval, as a share.
     """
-    rows = []
-    parts = table.partition_by("point", as_dict=True)
-    for point in plan_points:
-        mine = parts.get((point.index,), table.clear()).to_dict(as_series=False)
+    keys = plan_points[0].columns if plan_points else ()
+    rows = _of_points(table, plan_points, wanted, level)
+    return frame(rows, ("point", *keys, "measure", "runs", *_figures([], level)))
+
+
+def _of_points(
+    table: polars.DataFrame, plan_points: Sequence[Point], wanted: Sequence[str], level: float
+) -> Iterator[dict[str, Any]]:
+    ordered = table.sort("point", maintain_order=True)
+    counts = Counter(ordered["point"].to_list())
+    behind = dict(zip(counts, accumulate(counts.values()), strict=True))
+    for point in plan_points:  # slices: a frame for each point would take more room than the runs
+        count = counts[point.index]
+        mine = ordered.slice(behind.get(point.index, 0) - count, count).to_dict(as_series=False)
         for name in wanted:
             values = [value for value in mine[name] if value is not None]
             head = {"point": point.index, **point.columns, "measure": name, "runs": len(values)}
-            rows.append(head | _figures(values, level))
-    keys = plan_points[0].columns if plan_points else ()
-    return frame(rows, ("point", *keys, "measure", "runs", *_figures([], level)))
+            yield head | _figures(values, level)
 
 
 def _figures(values: list[float], level: float) -> dict[str, float | None]:
