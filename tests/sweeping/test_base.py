@@ -256,6 +256,25 @@ def test_pairs_are_runs_that_both_have_and_their_interval_is_of_the_level_asked_
     assert (none["pairs"], none["difference"]) == (0, None)
 
 
+@pytest.mark.parametrize(
+    "paired", ["all", ("protocol.k", "data.queue", "protocol.rule", "protocol.m")]
+)
+def test_pairs_differ_in_the_key_and_what_goes_with_it_and_in_nothing_else(paired):
+    """Points of other settings have the same seeds, and are not compared with each other."""
+    vary = {"protocol.k": [2, 3], ("protocol.rule", "protocol.m"): [("paper", 2), ("strict", 3)],
+            "data.queue": [4, 8]}  # fmt: skip
+    plan = make_plan(SKIN, vary=vary, paired=paired, derive={"touch.x": "protocol.m * 2"})
+    rows = [{"point": p.index, "repeat": 0, **p.columns, "x": 10.0**p.index} for p in plan.points]
+    made = Sweep(plan, polars.DataFrame(rows), polars.DataFrame())
+    keys, pairs = ["protocol.k", "data.queue"], {}
+    for key, one, other in (("protocol.rule", "paper", "strict"), ("touch.x", 4, 6)):
+        found = made.compare(key, one, other, "x")
+        pairs[key] = set(found.select(*keys, "mean_one", "mean_other").rows())
+    wanted = {(k, q, 10.0**i, 10.0 ** (i + 2))
+              for k, q, i in ((2, 4, 0), (2, 8, 1), (3, 4, 4), (3, 8, 5))}  # fmt: skip
+    assert pairs["protocol.rule"] == pairs["touch.x"] == wanted
+
+
 def test_of_measures_a_few_are_shown_those_asked_for_first():
     made = table((0, 0, 1.0))
     assert made.to_show() == list(SHOWN[:SHOWN_MAX])

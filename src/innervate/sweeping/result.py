@@ -6,13 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate.analysis.intervals import mean_interval, quantile
 from innervate.sweeping import tables
 from innervate.sweeping.errors import SweepError
-from innervate.sweeping.plan import SweepPlan
+from innervate.sweeping.plan import Point, SweepPlan
 from innervate.trace.provenance import SCHEMA
 from innervate.trace.sources import stamp
 from innervate.trace.tables import arrays, to_pandas
@@ -154,22 +155,36 @@ class Sweep:
         if key not in self.plan.keys:
             raise SweepError(f"{key} is not varied; {', '.join(self.plan.keys)} are")
         ones, others = (self._variant(key, value) for value in (one, other))
-        common = [stream for stream in ones if stream in others]
+        common = [place for place in ones if place in others]
         if not common:
             raise SweepError(f"{key} is not paired; sweep with paired={key!r} (--paired {key})")
         rows = []
-        for stream in common:
-            a, b = ones[stream], others[stream]
-            rest = {k: v for k, v in a.columns.items() if k != key}
-            rows.append(rest | self._pairs(a.index, b.index, measure, level))
+        for place in common:
+            for a, b in product(ones[place], others[place]):
+                rest = {k: v for k, v in a.columns.items() if k != key}
+                rows.append(rest | self._pairs(a.index, b.index, measure, level))
         return tables.frame(rows)
 
-    def _variant(self, key: str, value: Any) -> dict[Any, Any]:
-        """The points that have this value, by the stream of their seeds."""
-        found = {p.stream: p for p in self.plan.points if p.columns[key] == value}
+    def _variant(self, key: str, value: Any) -> dict[Any, list[Point]]:
+        """The points that have this value, by the stream of their seeds and the other settings."""
+        bound = self._bound_to(key)
+        free = [k for axis in self.plan.axes for k in axis.keys if k not in bound]
+        found: dict[Any, list[Point]] = {}
+        for point in self.plan.points:
+            if point.columns[key] == value:
+                rest = tuple(point.columns[k] for k in free)
+                found.setdefault((point.stream, rest), []).append(point)
         if not found:
             raise SweepError(f"no point has {key}={value}")
         return found
+
+    def _bound_to(self, key: str) -> set[str]:
+        """The keys that change together with one, and, if it is derived, those it follows from."""
+        found = {key}
+        for name, formula in reversed(self.plan.derived):
+            found |= set(formula.keys) if name in found else set()
+        together = [axis.keys for axis in self.plan.axes if found.intersection(axis.keys)]
+        return found.union(*together)
 
     def plot(self, x: str, y: str, by: str = "", kind: str = "band", title: str = "") -> Any:
         """A matplotlib figure: means of `y` over `x` with bands, a line for each value of `by`.
