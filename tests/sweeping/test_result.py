@@ -1,5 +1,7 @@
 """Frames, means, quantiles, pairs, figures; plan files and the command."""
 
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -12,6 +14,7 @@ from innervate.cli import main
 from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, load_sweep, make_plan
 from innervate.sweeping.result import Sweep
+from tests.sweeping.conftest import TIMEOUT_S, environment
 
 PLAN = """\
 scenario = "four.toml"
@@ -197,6 +200,28 @@ def test_folders_that_are_no_sweeps(four):
     innervate.sweep("four.toml", workers=1, out="out")
     Path("out/results.parquet").write_bytes(b"PAR1 not")
     with pytest.raises(SweepError, match="damaged"):
+        load_sweep("out")
+
+
+def test_tables_of_another_plan_are_not_taken_for_those_of_the_plan_beside_them(four):
+    """Killed with more values than before: the tables are still those of fewer points."""
+    innervate.sweep("four.toml", vary={"protocol.k": [2, 4]}, workers=1, out="out")
+    before = load_sweep("out").results
+    code = (
+        "import os, innervate\n"
+        "innervate.sweep('four.toml', vary={'protocol.k': [3, 2, 4]}, workers=1, out='out',\n"
+        "                progress=lambda scheduler: scheduler.ran and os._exit(9))"
+    )
+    killed = subprocess.run([sys.executable, "-c", code], env=environment(), check=False,
+                            timeout=TIMEOUT_S)  # fmt: skip
+    assert killed.returncode == 9
+    with pytest.raises(SweepError, match=r"tables in out are of another plan than its sweep\.toml"):
+        load_sweep("out")
+    innervate.sweep("four.toml", vary={"protocol.k": [2, 4]}, workers=1, out="out")
+    assert load_sweep("out").results.equals(before)
+    Path("out/four.toml").unlink()  # one of that name in the working folder is not it
+    Path("four.toml").write_text(Path("four.toml").read_text() + "# another")
+    with pytest.raises(SweepError, match=r"out/four\.toml is missing or was changed"):
         load_sweep("out")
 
 

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
@@ -278,7 +279,10 @@ def _result(plan: SweepPlan, jobs: Jobs, scheduler: Scheduler) -> Sweep:
 def _write(done: Sweep, folder: Path) -> None:
     """Write the tables, and what is known of where they come from."""
     commit, modified = checkout()
-    origin = done.provenance | {"commit": commit, "modified": modified}
+    written = planfile.dump(done.plan).encode()
+    origin = done.provenance | {
+        "plan": sha256(written).hexdigest(), "commit": commit, "modified": modified,
+    }  # fmt: skip
     with _writing(folder):
         tables.write(done.results, folder / tables.RESULTS)
         tables.write(done.timings, folder / tables.TIMINGS)
