@@ -10,6 +10,7 @@ import pytest
 import innervate
 from innervate.cli import main
 from innervate.network import NetworkError, networks, use
+from innervate.sweeping import make_plan
 from tests.own import alone, made, own
 
 __all__ = ["alone", "own"]
@@ -68,6 +69,20 @@ def test_an_edit_to_the_same_length_within_a_second_is_read(own, monkeypatch):
     assert outbox(second) == 8
     own.change("protocol.py", "OUTBOX = 8", "OUTBOX = 9")
     assert outbox(second + 1) == 9
+
+
+def test_an_edited_protocol_is_another_sweep(own):
+    """A sweep that goes on has no runs of a protocol as it was before an edit among the others."""
+
+    def known_by():
+        innervate.check(own.scenario)
+        return make_plan(own.scenario).identity()
+
+    before = known_by()
+    assert known_by() == before
+    own.change("protocol.py", "    node.value = item.value\n", "    node.value = item.value + 1\n")
+    assert dict(known_by().items() ^ before.items()).keys() == {"the network gossip"}
+    assert "the network radio" not in make_plan({"kind": "radio"}).identity()
 
 
 def test_an_edited_protocol_is_read_again(own):

@@ -88,6 +88,11 @@ def is_stale(folder: Path) -> bool:
     return _home(folder.name) == folder and _stamps.get(folder.name) != _stamp(folder)
 
 
+def edition(folder: Path) -> tuple[tuple[str, int, int], ...]:
+    """What tells a folder as it was loaded from the same one before and after edits."""
+    return _stamps.get(folder.name, ())
+
+
 def _stamp(folder: Path) -> tuple[tuple[str, int, int], ...]:
     files = sorted(folder.glob("*.py"))
     return tuple((str(f), (at := f.stat()).st_mtime_ns, at.st_size) for f in files)

@@ -317,7 +317,7 @@ def module():
 
 
 def sweep_checked(plan):
-    return module()._checked(plan)
+    return module()._checked(plan)[0]
 
 
 def test_paths_of_a_scenario_are_made_full_but_for_those_that_are_varied(tmp_path, monkeypatch):

@@ -31,12 +31,14 @@ class Base:
         file: what its copy in the results is called.
         folder: where relative paths in it start.
         settings: (dotted key, value) that hold for every run.
+        kind: of network.
     """
 
     text: str
     file: str
     folder: str
     settings: Settings = ()
+    kind: str = ""
 
     def scenario(self, settings: Iterable[tuple[str, Any]] = (), seed: int | None = None) -> Any:
         """The scenario with these settings besides.
@@ -93,7 +95,15 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
         settings = tuple(changes.items())
     if file == PLAN_FILE:  # that name is taken in the results; the scenario keeps its own
         file, settings = "scenario.toml", (("name", Path(PLAN_FILE).stem), *settings)
-    return Base(text, file, os.path.abspath(folder or "."), settings)
+    kind = dict(settings).get("kind") or _kind(text)
+    return Base(text, file, os.path.abspath(folder or "."), settings, str(kind))
+
+
+def _kind(text: str) -> Any:
+    try:
+        return tomllib.loads(text).get("kind")
+    except (ValueError, RecursionError):  # what is wrong with it is said when it is read
+        return ""
 
 
 def _setting(text: str) -> tuple[str, Any]:

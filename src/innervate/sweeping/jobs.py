@@ -84,8 +84,12 @@ class Jobs:
         except sqlite3.Error as error:
             raise SweepError(_in_words(self._name, error)) from error
 
-    def claim(self, identity: Mapping[str, str]) -> None:
+    def claim(self, identity: Mapping[str, str], files: Mapping[str, str] | None = None) -> None:
         """Begin a sweep of this identity here, or go on with it.
+
+        Args:
+            identity: what it is known by, in words: all of it has to be as it was.
+            files: what it reads besides; other ones may come later.
 
         Raises:
             SweepError: what is here is another one's; it says what differs.
@@ -95,14 +99,18 @@ class Jobs:
             found = dict(self._db.execute("SELECT name, value FROM meta"))
             if not found:
                 self._db.executemany("INSERT INTO meta VALUES (?, ?)", wanted.items())
-                return
-        differs = [name for name, value in wanted.items() if found.get(name) != value]
+        known = found or wanted
+        differs = [name for name, value in wanted.items() if known.get(name) != value]
+        fresh = dict(files or {})
+        differs += [name for name, value in fresh.items() if found.get(name, value) != value]
         if differs:
             folder = Path(self._name).parent
             raise SweepError(
                 f"{' and '.join(differs)} changed since the sweep in {folder} was begun; "
                 "undo the change, or begin a new one elsewhere with --out"
             )
+        with self._errors():
+            self._db.executemany("INSERT OR IGNORE INTO meta VALUES (?, ?)", fresh.items())
 
     def add(self, outcomes: Iterable[Outcome], place: str) -> None:
         """Keep these, all or none.

@@ -20,6 +20,7 @@ from innervate.scenario import ScenarioError
 from innervate.sweeping.base import Base, Settings
 from innervate.sweeping.derive import Formula
 from innervate.sweeping.errors import SweepError
+from innervate.sweeping.sources import folder_mark
 from innervate.sweeping.until import Until
 from innervate.sweeping.vary import Axis, canonical, column, plain, shown
 from innervate.trace.sources import stamp
@@ -147,7 +148,9 @@ class SweepPlan:
 
     def identity(self) -> dict[str, str]:
         """What may not change between two parts of a sweep: (in words, its mark)."""
-        return {
+        network = folder_mark(self.base.kind)
+        own = {f"the network {self.base.kind}": network} if network else {}
+        return own | {
             "the scenario": hashlib.sha256(self.base.text.encode()).hexdigest(),
             "what --set says": canonical([list(pair) for pair in self.base.settings]),
             "the root seed": str(self.root),

@@ -16,8 +16,8 @@ from innervate.sweeping.engines import Engine
 from innervate.sweeping.errors import SweepError
 from innervate.sweeping.jobs import Jobs
 from innervate.sweeping.plan import Point, SweepPlan, blocks
+from innervate.sweeping.sources import sources_of
 from innervate.sweeping.work import Done, Job, Outcome, run_batch
-from innervate.trace.sources import stamp
 
 BATCH_S = 0.25  # about how long a batch takes: what a kill may cost, and often enough for a display
 BATCH_MAX = 500
@@ -219,7 +219,7 @@ class Scheduler:
         return suspects
 
     def _keep(self, done: Done) -> None:
-        if done.sources != stamp("running"):
+        if done.sources != sources_of(self.plan.base.kind):
             host = json.loads(done.place)["host"]
             raise SweepError(
                 f"the worker on {host} has other sources of innervate; install the same version "
@@ -252,7 +252,8 @@ class Scheduler:
     def _give_up(self, job: Job) -> None:
         reason = f"its worker died {DEATHS_MAX} times, killed or out of memory"
         outcome = Outcome(job.point, job.repeat, job.seed, None, reason, 0.0, time.time())
-        self._keep(Done([outcome], json.dumps({"host": ""}), stamp("running")))
+        mine = sources_of(self.plan.base.kind)
+        self._keep(Done([outcome], json.dumps({"host": ""}), mine))
 
     @property
     def done(self) -> int:

@@ -25,8 +25,9 @@ from innervate.sweeping.jobs import FILE, Jobs
 from innervate.sweeping.plan import REPEAT_MAX, SweepPlan
 from innervate.sweeping.result import Sweep
 from innervate.sweeping.scheduler import Scheduler
+from innervate.sweeping.sources import files_named
 from innervate.sweeping.until import parse as parse_until
-from innervate.sweeping.vary import Axis, axis, parse
+from innervate.sweeping.vary import Axis, axis, parse, plain
 from innervate.trace.provenance import checkout
 
 REPEAT_UNTIL = 1000  # repeats at most, with `until`, if nobody says
@@ -103,20 +104,20 @@ def sweep(
     else:
         plan = make_plan(scenario, vary=vary, overrides=overrides, derive=derive, repeat=repeat,
                          seed=seed, until=until, batch=batch, paired=paired)  # fmt: skip
-    plan = _checked(plan)
+    plan, made = _checked(plan)
     folder = None if out is None else Path(out)
-    with engine(kind, workers, dask) as made:  # one that cannot be leaves no folder behind
+    with engine(kind, workers, dask) as crew:  # one that cannot be leaves no folder behind
         if folder is not None:
             _prepare(folder)
         with Jobs(folder) as jobs:
-            jobs.claim(plan.identity())
+            jobs.claim(plan.identity(), _files(plan, made))
             if folder is not None:
                 _describe(plan, folder)
             if retry:
                 jobs.forget_failed()
             with Bar("preparing the runs") as bar:
                 seen = tuple(show)
-                scheduler = Scheduler(plan, jobs, made, seen, tuple(follow), progress or bar.swept)
+                scheduler = Scheduler(plan, jobs, crew, seen, tuple(follow), progress or bar.swept)
                 return _run_plan(scheduler, jobs, folder)
 
 
@@ -218,8 +219,19 @@ def _texts(given: str | Iterable[str]) -> tuple[str, ...]:
     return (given,) if isinstance(given, str) else tuple(given)
 
 
-def _checked(plan: SweepPlan) -> SweepPlan:
-    """The plan, if one of its first points at least can be run; seed and paths filled in.
+def _files(plan: SweepPlan, made: Scenario) -> dict[str, str]:
+    """The files that its runs read: by a scenario of it, or by values of what is varied."""
+    varied = {
+        key: [plain(step[place]) for step in axis.steps]
+        for axis in plan.axes for place, key in enumerate(axis.keys)
+    }  # fmt: skip
+    return files_named(made, plan.base.folder, varied)
+
+
+def _checked(plan: SweepPlan) -> tuple[SweepPlan, Scenario]:
+    """The plan, if one of its first points at least can be run, and that point's scenario.
+
+    Seed and paths are filled in.
 
     Points that cannot be run are rows with their reason; if there are no others, something in the
     plan itself is wrong, a key's name for one.
@@ -233,7 +245,8 @@ def _checked(plan: SweepPlan) -> SweepPlan:
         except ScenarioError as error:
             wrong = wrong or error
         else:
-            return replace(plan, base=base, root=made.seed if plan.root < 0 else plan.root)
+            root = made.seed if plan.root < 0 else plan.root
+            return replace(plan, base=base, root=root), made
     assert wrong is not None
     raise wrong
 

@@ -26,8 +26,8 @@ from innervate.running import RunError
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping.base import Base, Settings
 from innervate.sweeping.flat import flat
+from innervate.sweeping.sources import sources_of
 from innervate.trace.provenance import PACKAGES
-from innervate.trace.sources import stamp
 
 SCENARIOS_KEPT = 256
 REASON_MAX = 500
@@ -83,7 +83,7 @@ def run_batch(base: Base, jobs: list[Job]) -> Done:
         KeyboardInterrupt: Ctrl-C; nothing of the run in progress counts.
     """
     mark = base.mark()
-    return Done([_run(base, mark, job) for job in jobs], place(), stamp("running"))
+    return Done([_run(base, mark, job) for job in jobs], place(), sources_of(base.kind))
 
 
 def _run(base: Base, mark: str, job: Job) -> Outcome:
