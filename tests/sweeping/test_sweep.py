@@ -8,6 +8,9 @@ import signal
 import sqlite3
 import subprocess
 import sys
+import threading
+from contextlib import suppress
+from multiprocessing import forkserver
 from pathlib import Path
 
 import pytest
@@ -292,6 +295,34 @@ def test_a_worker_that_dies_takes_nothing_with_it(four):
     assert done.results.equals(innervate.sweep(four, vary=VARY, repeat=60, workers=1).results)
 
 
+def test_a_server_of_workers_that_dies_takes_nothing_with_it(four):
+    """What workers are forked from is killed between two of them: the next one cannot be begun."""
+    killed = []
+
+    def kill_server(scheduler):
+        if not killed:
+            killed.append(forkserver._forkserver._forkserver_pid)
+            os.kill(killed[0], signal.SIGSTOP)  # it takes the next order, and dies over it
+            threading.Timer(0.2, os.kill, (killed[0], signal.SIGKILL)).start()
+
+    done = innervate.sweep(four, vary=VARY, repeat=20, workers=2, progress=kill_server)
+    assert killed
+    assert done.failed.height == 0
+    assert done.results.equals(innervate.sweep(four, vary=VARY, repeat=20, workers=1).results)
+
+
+def test_who_is_begun_by_a_sweep_does_not_hear_ctrl_c_not_even_while_it_loads(four):
+    process = start("sweep", "four.toml", "--repeat", 4, "--workers", 2, cwd=four.parent)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    while process.poll() is None:
+        with suppress(OSError):  # some end by themselves
+            for child in children.read_text().split():
+                os.kill(int(child), signal.SIGINT)
+    _, err = process.communicate(timeout=TIMEOUT_S)
+    assert process.returncode == 0, err
+    assert "Traceback" not in err
+
+
 def test_a_run_that_kills_every_worker_is_a_failed_row(four):
     """A pool in which one point's work ends the process that does it."""
     done = innervate.sweep(
@@ -330,6 +361,12 @@ def test_a_script_without_a_guard_and_from_a_pipe(four):
         done = subprocess.run(command, input=given, text=True, cwd=four.parent, env=environment(),
                               capture_output=True, timeout=TIMEOUT_S, check=False)  # fmt: skip
         assert done.stdout == "['done', 'done', 'done', 'done'] True\n", done.stderr
+
+
+def test_more_workers_than_a_machine_can_bear_are_refused(four):
+    with pytest.raises(SweepError, match="100,000 workers are more than a machine can bear"):
+        innervate.sweep(four, workers=100_000, out="out")
+    assert not Path("out").exists()
 
 
 def test_workers_that_cannot_start_are_one_line(four, monkeypatch):

@@ -15,8 +15,9 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from importlib import import_module
+from multiprocessing import resource_tracker
 from types import ModuleType
 from typing import Any
 
@@ -25,6 +26,10 @@ from innervate.sweeping.errors import SweepError
 KINDS = ("processes", "threads", "here")
 _CONNECT_S = 10
 _ASK_EVERY_S = 2.0
+WORKERS_MAX = 1024
+_STARTS = 2
+# A process cannot be begun: it, or the server that it would be forked from, died; no room for it.
+_NOT_BEGUN = (BrokenExecutor, EOFError, OSError)
 
 
 class Engine:
@@ -74,8 +79,11 @@ class Pool(Engine):
     died = (BrokenExecutor,)
     falls_together = True
 
-    def __init__(self, make: Callable[[], Executor], workers: int) -> None:
+    def __init__(
+        self, make: Callable[[], Executor], workers: int, starting: Any = nullcontext
+    ) -> None:
         self.workers = workers
+        self._starting = starting
         self.ahead = 2 * workers
         self._make = make
         self._pool = self._start()
@@ -86,23 +94,26 @@ class Pool(Engine):
         Raises:
             SweepError: its workers die before they have done anything.
         """
-        pool = self._make()
-        try:
-            with _main_hidden():
-                pool.submit(os.getpid).result()
-        except (BrokenExecutor, OSError) as error:
-            message = "no worker can be started here; use --workers 1"
-            raise SweepError(message) from error
-        return pool
+        for _ in range(_STARTS):
+            pool = self._make()
+            try:
+                with self._starting():
+                    pool.submit(os.getpid).result()
+            except _NOT_BEGUN as error:
+                why = error
+                pool.shutdown(wait=False, cancel_futures=True)
+            else:
+                return pool
+        raise SweepError("no worker can be started here; use --workers 1") from why
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
         """Run `work(*args)` on a worker."""
         try:
-            with _main_hidden():
+            with self._starting():
                 return self._pool.submit(work, *args)
-        except BrokenExecutor as error:
+        except _NOT_BEGUN as error:
             future: Future[Any] = Future()
-            future.set_exception(error)
+            future.set_exception(BrokenExecutor(f"no worker: {error}"))
             return future
 
     def renew(self) -> None:
@@ -188,13 +199,19 @@ def engine(kind: str = "processes", workers: int | None = None, dask: str = "") 
     count = cores() if workers is None else workers
     if count < 1:
         raise SweepError(f"{count} workers cannot run anything; give at least 1")
+    if count > WORKERS_MAX and not dask:
+        raise SweepError(
+            f"{count:,} workers are more than a machine can bear; give at most {WORKERS_MAX:,}, or "
+            "leave --workers out for one on every core"
+        )
     if dask:
         made: Engine = Cluster(dask)
     elif kind == "here" or (kind == "processes" and count == 1):
         made = Here()
     else:
-        make = _threads if kind == "threads" else _processes
-        made = Pool(lambda: make(count), count)
+        forked = kind == "processes"
+        make = _processes if forked else _threads
+        made = Pool(lambda: make(count), count, _starting if forked else nullcontext)
     try:
         yield made
     finally:
@@ -227,17 +244,23 @@ def _processes(count: int) -> Executor:
 
 
 @contextmanager
-def _main_hidden() -> Iterator[None]:
+def _starting() -> Iterator[None]:
     """While a worker may be started: it would import the caller's script, and needs it for nothing.
 
-    So a script that sweeps needs no `if __name__ == "__main__":`, and may come from a pipe.
+    So a script that sweeps needs no `if __name__ == "__main__":`, and may come from a pipe. What is
+    begun meanwhile does not hear Ctrl-C, which is the sweep's affair, not even while it loads.
     """
-    main = sys.modules["__main__"]
+    main, heard = sys.modules["__main__"], None
+    if hasattr(signal, "pthread_sigmask"):
+        resource_tracker.ensure_running()  # begun below, it would unblock what is blocked
+        heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     sys.modules["__main__"] = ModuleType("__main__")
     try:
         yield
     finally:
         sys.modules["__main__"] = main
+        if heard is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, heard)
 
 
 def _settle() -> None:
