@@ -1,4 +1,5 @@
 import json
+import os
 import tomllib
 from pathlib import Path
 
@@ -168,11 +169,36 @@ def test_new_takes_the_part_about_a_node(sh):
     (("mesh", "n.toml", "--network", "freifunk/ulm", "--around", "5"),
      'no link of "5" has a quality of 0.3 or better both ways; lower import.min_tq'),
     (("mesh", "n.toml", "--network", "topohub:nowhere"), "nowhere"),
+    (("mesh", "n.toml", "--network", ""), "--network needs a file"),
+    (("mesh", "n.toml", "--network", "n" * 300), "cannot be read: File name too long"),
+    (("mesh", "n" * 300), "cannot be written: File name too long"),
+    (("mesh", "n.toml", "--network", "pipe"), "pipe: is no plain file, and every run reads it"),
+    (("mesh", "n.toml", "--network", "faint"), "faint: no link has a quality of 0.3 or better both "
+     "ways: the best has 0.2; lower min_tq"),
+    (("mesh", "n.toml", "--network", "none"), "none: holds no links"),
+    (("mesh", "n.toml", "--network", "words"), 'words: a node is called "all", which means someth'),
+    (("mesh", "n.toml", "--over", "csma"), "--over is for a network of your own"),
+    (("network", "n", "--network", "faint"), "--network is for a measured network"),
+    (("network", "n", "--min-tq", "0"), "--min-tq is for a measured network"),
 ])  # fmt: skip
 def test_new_writes_nothing_of_a_network_that_is_none(sh, words, what):
+    os.mkfifo("pipe")
+    Path("faint").write_text("a b 0.2 0.9\nb c 0.1")
+    Path("none").write_text('{"nodes": [{"id": 1}], "links": []}')
+    Path("words").write_text("all b")
+    before = set(Path().iterdir())
     assert sh("new", *words) == 2
     assert what in sh.err
-    assert not Path("n.toml").exists()
+    assert set(Path().iterdir()) == before
+
+
+def test_new_finds_a_measured_network_from_a_folder_that_is_a_link(sh):
+    Path("far/away").mkdir(parents=True)
+    Path("near").symlink_to("far/away", target_is_directory=True)
+    Path("links.txt").write_text("a b\nb c")
+    assert sh("new", "mesh", "near/mine.toml", "--network", "links.txt") == 0
+    assert 'file = "../../links.txt"' in Path("far/away/mine.toml").read_text()
+    assert sh("check", "near/mine.toml") == 0
 
 
 def test_check_takes_changes(sh):

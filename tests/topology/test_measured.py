@@ -88,6 +88,14 @@ def test_an_id_that_is_there_twice_is_one_node() -> None:
     assert 1.0e6 < north_a - north_b < 1.2e6, "the place that is known, and the first of two"
 
 
+def test_a_number_and_the_same_number_as_text_are_one_id() -> None:
+    """Nodes by text and links by number are published; a scenario knows nodes by text."""
+    found = measured.from_json(
+        '{"nodes": [{"id": "1"}, {"id": 2}, {"id": 1}], "links": [{"source": 1, "target": "2"}]}'
+    )
+    assert (found.names, set(found.links)) == (["1", "2"], {(0, 1)})
+
+
 def chain(count: int, weak: int) -> measured.Measured:
     """A row of nodes, good links and from place `weak` on ever worse ones."""
     links = {(i, i + 1): (1.0, 0.9 if i < weak else 0.8 - 0.01 * (i - weak))
@@ -106,6 +114,13 @@ def test_the_least_quality_that_leaves_few_enough(most: int) -> None:
     assert len(network.kept(least).largest().names) <= most
     if least > 0:
         assert len(network.kept(least - 0.01).largest().names) > most
+
+
+@pytest.mark.parametrize("best", [0.28, 0.29, 0.56, 0.57, 0.58, 1.0])
+def test_the_best_quality_is_one_of_those_that_are_tried(best: float) -> None:
+    links = {(0, 1): (best, 1.0), (1, 2): (round(best - 0.01, 2), 1.0)}
+    network = measured.Measured(list("abc"), links, [])
+    assert network.least_for(2, in_one=True) == best
 
 
 def test_no_links_leave_nothing_to_choose() -> None:
@@ -144,6 +159,14 @@ WRONG = (
         "source_tq of link 0 must be 0 to 1, not 3",
     ),
     ('{"nodes": [{"id": 1}], "links": [{"source": 1, "target": 1}]}', "link 0 joins a node with"),
+    ('{"nodes": [{"id": 1}], "links": [{"target": 1}]}', 'link 0 has no "source"; name a node'),
+    ('{"nodes": [{"id": true}], "links": []}', 'node 0 has no "id"'),
+    ('{"nodes": [{"id": 1}], "links": [{"source": true, "target": 1}]}', "link 0 leads to True"),
+    ('{"nodes": [{"id": " "}], "links": []}', 'the "id" of node 0 is empty'),
+    ('{"nodes": [{"id": "a\\n"}], "links": []}', 'the "id" of node 0 holds characters that cannot'),
+    ('{"nodes": [{"id": "\\ud800"}], "links": []}', 'the "id" of node 0 holds characters that'),
+    ("\x1b[31mA B", "a name in line 1 holds characters that cannot be printed"),
+    (f"A B\n{'n' * 201} B", "a name in line 2 is longer than 200 characters"),
 )
 
 

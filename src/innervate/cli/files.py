@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+from dataclasses import fields
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -43,10 +44,21 @@ def _is_comment(line: str) -> bool:
     return line.startswith("#")
 
 
+def check_unused(options: Any, usual: Any, whose: str) -> None:
+    """Refuse options of something else than what is made.
+
+    Raises:
+        UserError: one of them was given.
+    """
+    for one in fields(options):
+        if getattr(options, one.name) != getattr(usual, one.name):
+            raise UserError(f"--{one.name.replace('_', '-')} is for {whose}")
+
+
 def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAULTS) -> int:
     """Write a commented scenario; never over a file that is there."""
     found = ""
-    if measured.network:
+    if measured.network is not None:
         text, found = _of_network(kind, file, measured)
     elif measured.wanted:
         raise UserError(
@@ -57,7 +69,7 @@ def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAU
     if file is None:
         print(text, end="")
         return 0
-    if file.exists() or file.is_symlink():
+    if os.path.lexists(file):
         raise UserError(f"{file} is there already; choose another name or move it away")
     files.write_text(file, text)
     if found:
@@ -74,12 +86,20 @@ def _of_network(kind: str, file: Path | None, measured: MeasuredOptions) -> tupl
         raise UserError(f"--network is for a {' or a '.join(able)}: "
                         f"innervate new {able[0]} FILE --network {measured.network}")  # fmt: skip
     folder = file.parent if file is not None else Path()
-    network = measured.network or ""
+    network = measured.network
+    if not network:
+        raise UserError("--network needs a file or a name; see: innervate new --help")
     name = file.stem if file is not None else Path(network).stem
-    if Path(network).is_file():
-        network = Path(os.path.relpath(network, folder)).as_posix()
+    if os.path.lexists(network):  # unlike exists(), no name is too long for it
+        network = _seen_from(folder, Path(network))
     text, taken = networks()[kind].measured_template(name, network, measured.wanted, str(folder))
     return text, f"{scenario.summary(scenario.loads(text, folder=str(folder)))}\n{taken}"
+
+
+def _seen_from(folder: Path, file: Path) -> str:
+    """A file's path as it is written beside a scenario; folders may be links to others."""
+    place = Path(os.path.realpath(file.parent), file.name)
+    return Path(os.path.relpath(place, os.path.realpath(folder))).as_posix()
 
 
 def check(file: str, sets: list[str], seed: int | None, as_json: bool) -> int:

@@ -86,12 +86,14 @@ def new(
     own
         What a network of your own is joined by.
     """
+    from innervate.cli import files as command
+
     if kind == "network":
         from innervate.cli import making
 
+        command.check_unused(measured, MEASURED_DEFAULTS, "a measured network, not for your own")
         return making.make(file, own.on, own.over)
-    from innervate.cli import files as command
-
+    command.check_unused(own, OWN_DEFAULTS, "a network of your own: innervate new network NAME")
     return command.new(kind, file, measured)
 
 

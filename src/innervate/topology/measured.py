@@ -22,6 +22,7 @@ from innervate.topology.placement import Point, components, neighbours
 
 SIZE_MAX = 64 * 1024 * 1024
 EARTH_CM = 637_100_000
+NAME_MAX = 200  # characters
 Quality = tuple[float, float]
 
 
@@ -47,8 +48,15 @@ class Measured:
             TopologyError: nothing is left.
         """
         links = {pair: both for pair, both in self.links.items() if min(both) >= least}
+        if not self.links:
+            raise TopologyError("holds no links", "file")
         if not links:
-            raise TopologyError(f"no link has a quality of {least:g} or better", "min_tq")
+            best = max(min(both) for both in self.links.values())
+            raise TopologyError(
+                f"no link has a quality of {least:g} or better both ways: the best has {best:g}; "
+                "lower min_tq",
+                "min_tq",
+            )
         return self._only({node for pair in links for node in pair}, links)
 
     def largest(self) -> Measured:
@@ -99,7 +107,8 @@ class Measured:
             return len((some.largest() if in_one else some).names)
 
         best = max((min(both) for both in self.links.values()), default=0.0)
-        steps = range(math.floor(100 * best) + 1) if self.links else range(0)
+        fewest = next(step for step in range(101, -1, -1) if step / 100 <= best)
+        steps = range(fewest + 1) if self.links else range(0)
         fitting = bisect_left(steps, -most, key=lambda step: -left(step / 100))
         return steps[fitting] / 100 if fitting < len(steps) else None
 
@@ -125,6 +134,9 @@ def read(path: Path, types: Iterable[str] = ()) -> Measured:
         TopologyError: not readable, or not of one of these forms; says where.
     """
     try:
+        if path.exists() and not path.is_file() and not path.is_dir():  # a pipe is read only once
+            message = f"{path}: is no plain file, and every run reads it again; save it as one"
+            raise TopologyError(message, "file")
         with path.open("rb") as file:
             content = file.read(SIZE_MAX + 1)
     except OSError as error:
@@ -158,17 +170,19 @@ def from_json(text: str, types: Iterable[str] = ()) -> Measured:
         raise TopologyError('lacks the lists "nodes" and "links"', "file")
     number, degrees = _numbered(nodes)
     found = _joined(links, number, list(types))
-    return Measured([str(name) for name in number], found, _metres(degrees, found))
+    return Measured(list(number), found, _metres(degrees, found))
 
 
-def _numbered(nodes: list[Any]) -> tuple[dict[Any, int], list[tuple[float, float] | None]]:
+def _numbered(nodes: list[Any]) -> tuple[dict[str, int], list[tuple[float, float] | None]]:
     """Each name's number, and where it lies; a name that is there twice is one node."""
-    number: dict[Any, int] = {}
+    number: dict[str, int] = {}
     degrees: list[tuple[float, float] | None] = []
     for i, node in enumerate(nodes):
-        name = node.get("id") if isinstance(node, dict) else None
-        if not isinstance(name, int | str):
+        name = _name(node.get("id") if isinstance(node, dict) else None)
+        if name is None:
             raise TopologyError(f'node {i} has no "id" that is a number or a string', "file")
+        if problem := _unnameable(name):
+            raise TopologyError(f'the "id" of node {i} {problem}', "file")
         place = _degrees(node, i)
         if name not in number:
             number[name] = len(degrees)
@@ -178,8 +192,22 @@ def _numbered(nodes: list[Any]) -> tuple[dict[Any, int], list[tuple[float, float
     return number, degrees
 
 
+def _name(given: Any) -> str | None:
+    """What a node is called by its id: 7 and "7" are the same; None if that is no name."""
+    return str(given) if isinstance(given, int | str) and not isinstance(given, bool) else None
+
+
+def _unnameable(name: str) -> str:
+    """Why nobody can be called so in a scenario, on a terminal and in a report; "" if one can."""
+    if not name.strip():
+        return "is empty; name it"
+    if not name.isprintable():
+        return "holds characters that cannot be printed; leave them out"
+    return f"is longer than {NAME_MAX} characters; shorten it" if len(name) > NAME_MAX else ""
+
+
 def _joined(
-    links: list[Any], number: dict[Any, int], wanted: list[str]
+    links: list[Any], number: dict[str, int], wanted: list[str]
 ) -> dict[tuple[int, int], Quality]:
     """The links of the wanted types (all if none are named), with their qualities."""
     found: dict[tuple[int, int], Quality] = {}
@@ -195,14 +223,17 @@ def _joined(
         _join(found, a, b, _share(link, i, "target_tq"), _share(link, i, "source_tq"), f"link {i}")
     if others and not found:
         there = ", ".join(list(others)[:4])
-        raise TopologyError(f"no link is of type {' or '.join(wanted)}; there is {there}", "types")
+        asked = " or ".join(one[:40] or '""' for one in wanted[:4])
+        raise TopologyError(f"no link is of type {asked}; there is {there}", "types")
     return found
 
 
-def _known(number: dict[Any, int], link: dict[str, Any], i: int, side: str) -> int:
-    end = link.get(side)
-    if not isinstance(end, int | str) or end not in number:
-        raise TopologyError(f"link {i} leads to {str(end)[:40]}, which is no node", "file")
+def _known(number: dict[str, int], link: dict[str, Any], i: int, side: str) -> int:
+    if link.get(side) is None:
+        raise TopologyError(f'link {i} has no "{side}"; name a node', "file")
+    end = _name(link[side])
+    if end is None or end not in number:
+        raise TopologyError(f"link {i} leads to {str(link[side])[:40]}, which is no node", "file")
     return number[end]
 
 
@@ -255,6 +286,8 @@ def from_lines(text: str) -> Measured:
             shares = [-1.0]
         if not 2 <= len(words) <= 4 or not all(0 <= share <= 1 for share in shares):
             raise TopologyError(f'{where} is no link; write "A B 0.9 0.7"', "file")
+        if problem := _unnameable(words[0]) or _unnameable(words[1]):
+            raise TopologyError(f"a name in {where} {problem}", "file")
         a, b = (number.setdefault(word, len(number)) for word in words[:2])
         _join(found, a, b, shares[0], shares[-1], where)
     if not found:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -140,7 +141,8 @@ def _imported(model: MeshScenario, source: Source) -> Nodes:
     try:
         found = whole.kept(table.min_tq)
     except TopologyError as error:
-        raise source.error(("import", error.subject or "min_tq"), str(error)) from None
+        message = f"{table.file or table.topohub}: {error}"
+        raise source.error(("import", error.subject or "min_tq"), message) from None
     if table.around is not None or table.nodes is not None:
         middle = _middle(table, whole, found, source)
         found = found.around(middle, table.nodes or most_of(model))
@@ -152,6 +154,10 @@ def _imported(model: MeshScenario, source: Source) -> Nodes:
         if least is not None:
             remedy = f"import.min_tq = {least:g} leaves few enough, or {remedy}"
         raise source.error(("import",), f"{too_many(len(found.names))}; {remedy}")
+    for name in RESERVED:
+        if name in found.names:
+            message = f"a node is called {shown(name)}, which means something else; rename it"
+            raise source.error(("import",), f"{table.file or table.topohub}: {message}")
     return Nodes(source, found.names, found.points, dict(found.links))
 
 
@@ -200,7 +206,11 @@ def import_path(name: str, source: Source) -> Path:
         bundled = FOLDER / f"{name.removesuffix('.json')}.json"
         if bundled.is_file():
             return bundled
-    return Path(source.folder) / name
+    path = Path(source.folder) / name
+    if "\0" in name:
+        return path
+    short = os.path.normpath(path)  # "a/../b" is not "b" where a is a link to a folder
+    return Path(short) if os.path.realpath(short) == os.path.realpath(path) else path
 
 
 def anchor(tables: dict[str, Any], source: Source) -> None:
