@@ -1,6 +1,7 @@
 """What is proved of any network, by protocols of a few lines: what handlers may be told."""
 
 import ast
+import typing
 from types import SimpleNamespace as Of
 
 import pytest
@@ -9,6 +10,7 @@ from innervate.dialect.arith import MASK30
 from innervate.prove import declared, execute
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
+from innervate.scenario.declared.shared import InputTable
 
 SOURCE = """
 def report(out, code, a, b):
@@ -25,6 +27,21 @@ def on_timer(state, params, now, timer, out):
 
 def on_input(state, params, now, kind, item, out):
     state.x = kind
+
+def on_carrier(state, params, now, cd, voc, out):
+    state.x = cd + voc
+
+def on_sent(state, params, now, ok, out):
+    state.x = ok
+
+def of_one_that_sends(state, params, now, cd, voc, out):
+    state.x = 2 * voc - cd + 1
+
+def of_params(state, params, now, cause, out):
+    params.z = params.z + 1
+
+def of_what_came(state, params, now, port, frame, out):
+    frame.y = frame.y - 1
 
 def at_any_time(state, params, now, cause, out):
     state.x = now
@@ -64,7 +81,8 @@ RANGE = "every field stays in its declared range: state.x"
     ("handler", "told", "most"),
     [
         ("on_start", ["cause"], 1), ("on_frame", ["port", "frame"], 3), ("on_timer", [1], 1),
-        ("on_input", ["kind", "frame"], 15), ("at_any_time", ["cause"], MASK30),
+        ("on_input", ["kind", "frame"], 1 << 20), ("on_carrier", ["cd", "voc"], 2),
+        ("on_sent", ["ok"], 1), ("at_any_time", ["cause"], MASK30),
         ("of_a_frame", ["port", "frame"], 7),
     ],
 )  # fmt: skip
@@ -75,7 +93,8 @@ def test_what_a_handler_is_told_may_be_anything_up_to_its_most(handler, told, mo
 
 @pytest.mark.parametrize(("handler", "told"), [
     ("on_start", ["cause"]), ("on_frame", ["port", "frame"]), ("on_timer", [0]),
-    ("on_input", ["kind", "frame"]), ("at_any_time", ["cause"]),
+    ("on_input", ["kind", "frame"]), ("at_any_time", ["cause"]), ("on_carrier", ["cd", "voc"]),
+    ("on_sent", ["ok"]),
 ])  # fmt: skip
 def test_what_a_handler_is_told_may_be_nothing(handler, told):
     assert refuted(network(MASK30, least=1), handler, *told) == [RANGE]
@@ -91,8 +110,29 @@ def test_everything_happens_that_the_protocol_knows():
     usual = [("on_start", ["cause"]), ("on_frame", ["port", "frame"]), ("on_timer", [0]),
              ("on_timer", [1])]  # fmt: skip
     assert [what[1:] for what in declared._events(network())] == usual
-    found = [what[1:] for what in declared._events(network(on_input=None))]
-    assert found == [*usual, ("on_input", ["kind", "frame"])]
+    for handler, told in (("on_input", ["kind", "frame"]), ("on_carrier", ["cd", "voc"]),
+                          ("on_sent", ["ok"])):  # fmt: skip
+        found = [what[1:] for what in declared._events(network(**{handler: None}))]
+        assert found == [*usual, (handler, told)]
+
+
+def test_where_one_sends_and_no_more_somebody_does():
+    assert refuted(network(2), "of_one_that_sends", "cd", "voc") == []
+    assert refuted(network(1), "of_one_that_sends", "cd", "voc") == [RANGE]
+
+
+@pytest.mark.parametrize(("handler", "told", "field"), [
+    ("of_params", ["cause"], "params.z"), ("of_what_came", ["port", "frame"], "frame.y"),
+])  # fmt: skip
+def test_what_a_handler_is_told_stays_in_its_range_too(handler, told, field):
+    assert refuted(network(many=3), handler, *told) == [
+        f"every field stays in its declared range: {field}"
+    ]
+
+
+def test_a_scenario_hands_in_kinds_up_to_the_most_that_is_proved():
+    (limit,) = typing.get_type_hints(InputTable, include_extras=True)["kind"].__metadata__
+    assert limit.le == declared.KIND_MAX
 
 
 @pytest.mark.parametrize("lacks", ["protocol", "fields"])

@@ -1,8 +1,8 @@
 """What is proved of any network that declares its protocol, without knowing what it is for.
 
-From any state whose fields are in their declared ranges: they stay there, no index leaves its
-array, every number fits 32 bits, the outbox has room, draws are out of 1 or more, loops end; and
-every branch is taken by some state.
+From any state, parameters and frame whose fields are in their declared ranges: they stay there, no
+index leaves its array, every number fits 32 bits, the outbox has room, draws are out of 1 or more,
+loops end, what is used has a value; and every branch is taken by some state.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from innervate.prove.theory import Fault, Theory, source
 
 OUTBOX = 16
 PORTS = 4
-RECORDS = ("state",)
+KIND_MAX = 1 << 20  # of what a scenario hands to nodes
+RECORDS = ("state", "params", "frame")
 MUTANTS: tuple[Fault, ...] = ()
 EXPLORERS = False
 
@@ -45,8 +46,13 @@ def _events(network: Network) -> Iterator[tuple[str, str, list[Any]]]:
     yield "a frame arrives", "on_frame", ["port", "frame"]
     for timer in range(network.protocol.TIMERS):
         yield f"timer {timer} fires", "on_timer", [timer]
-    if hasattr(network.protocol, "on_input"):
-        yield "its user hands something in", "on_input", ["kind", "frame"]
+    for name, handler, told in (
+        ("its user hands something in", "on_input", ["kind", "frame"]),
+        ("the carrier comes or goes", "on_carrier", ["cd", "voc"]),
+        ("a frame has left or is given up", "on_sent", ["ok"]),
+    ):
+        if hasattr(network.protocol, handler):
+            yield name, handler, told
 
 
 def _step(network: Network, known: dict[str, Any], what: tuple[str, str, list[Any]]) -> Step:
@@ -55,13 +61,14 @@ def _step(network: Network, known: dict[str, Any], what: tuple[str, str, list[An
     stage = Stage(known, fields.FRAME, getattr(protocol, "OUTBOX", OUTBOX))
     state = stage.record("state", fields.STATE)
     params = stage.record("params", fields.PARAMS)
-    given = {
-        "cause": stage.terms.unknown("cause", 0, 1),
+    given: dict[str, Any] = {
+        **{name: stage.terms.unknown(name, 0, 1) for name in ("cause", "cd", "voc", "ok")},
         "port": stage.terms.unknown("port", 0, PORTS - 1),
-        "kind": stage.terms.unknown("kind", 0, 15),
+        "kind": stage.terms.unknown("kind", 0, KIND_MAX),
         "frame": stage.record("frame", fields.FRAME),
     }
     args = [given.get(one, one) for one in told]
-    step = stage.play(name, handler, [state, params, stage.clock(), *args, stage.out], [])
+    alone = stage.terms.at_most(given["voc"], given["cd"])  # one that sends is somebody
+    step = stage.play(name, handler, [state, params, stage.clock(), *args, stage.out], [alone])
     step.goals = own_goals(step, RECORDS, protocol.TIMERS, PORTS)
     return step
