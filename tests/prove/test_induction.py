@@ -91,8 +91,28 @@ def far(s, n):
     near = as_it_is(s, n)
     return as_it_is(s, n + 20)
 
+def between(s, n, m):
+    return n - m
+
+def how_far(s, n):
+    return between(s, n, s.b)
+
 def report(out, code, a, b):
     pass
+
+def tells(s, n):
+    report(s, 1, n, n)
+    return 1
+
+def hears(s, n):
+    return tells(s, n)
+
+def silent(s, n):
+    if n > 3:
+        return 1
+
+def waits(s, n):
+    return silent(s, n)
 
 def draw(s, count):
     pass
@@ -235,6 +255,14 @@ def test_an_answers_range_is_that_of_its_question():
     assert (step.result.low, step.result.high) == (20, 29)
 
 
+def test_two_of_one_range_that_are_asked_about_need_not_be_the_same_number():
+    step = asked("how_far", ["between"])
+    t = step.terms
+    step.goals = [Goal("none", t.same(step.result, t.number(0))),
+                  Goal("at most 9", t.within(step.result, -9, 9))]  # fmt: skip
+    assert [bad.goal for bad in check(step).refuted] == ["none"]
+
+
 def test_an_answer_may_be_any_and_no_other():
     step = asked("asks", ["has"])
     t = step.terms
@@ -244,6 +272,7 @@ def test_an_answer_may_be_any_and_no_other():
 
 
 def test_who_does_more_than_to_look_something_up_is_an_error():
-    for name, of in (("hides", "writes"), ("hopes", "chances")):
+    for name, of in (("hides", "writes"), ("hopes", "chances"), ("hears", "tells"),
+                     ("waits", "silent")):  # fmt: skip
         with pytest.raises(ProveError, match=f"{of} does more"):
             asked(name, [of])

@@ -60,13 +60,14 @@ class Answers(Machine):
         It is seen to change nothing.
         """
         t = self.terms
-        any_ = [t.unknown(f"{one.low} to {one.high}", one.low, one.high)
-                if isinstance(one, Term) else one for one in args]  # fmt: skip
+        any_ = [t.unknown(f"{place}, {one.low} to {one.high}", one.low, one.high)
+                if isinstance(one, Term) else one for place, one in enumerate(args)]  # fmt: skip
         seen = (function.name, *any_, *read.values())
         if seen not in self.ranges:
             inner = Machine(self.functions, t, Outbox((), 0))
             after, found = inner.call(function, any_, store, t.true)
-            if any(after[key] is not value for key, value in store.items()) or inner.draws:
+            changes = any(after[key] is not value for key, value in store.items())
+            if changes or inner.draws or inner.out.actions or not isinstance(found, Term):
                 raise ProveError(f"{function.name} does more than to look something up")
             self.ranges[seen] = t.as_number(found)
         return self.ranges[seen]
