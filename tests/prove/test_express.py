@@ -9,7 +9,7 @@ from innervate.dialect.outbox import DELIVER, SEND
 from innervate.prove import execute
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
-from innervate.prove.records import Record, either, name_of, unknowns
+from innervate.prove.records import Partly, Record, either, name_of, unknowns
 from innervate.prove.solve import Formulas, Question
 from innervate.prove.steps import Stage, own_goals
 from innervate.prove.terms import Terms
@@ -262,11 +262,11 @@ def test_what_cannot_be_said_is_refused_with_its_place(name, why):
         played(name)
 
 
-def test_of_two_that_may_be_meant_one_is_taken_where_there_is_no_other():
+def test_of_two_that_may_be_meant_it_is_told_where_there_is_one():
     t = Terms()
     if_, one, other = t.less(t.unknown("n", 0, 9), t.number(3)), Record("a"), Record("b")
-    assert either(t, if_, one, None) is one
-    assert either(t, if_, None, other) is other
+    assert either(t, if_, one, None) == Partly(if_, one)  # a value there alone
+    assert either(t, if_, None, other) == Partly(t.negated(if_), other)
     assert either(t, if_, one, one) is one
     found = either(t, if_, one, other)
     assert (found.if_, found.a, found.b) == (if_, one, other)

@@ -285,7 +285,8 @@ def test_what_fills_an_outbox_on_two_ways_needs_room_for_one(name):
 
 
 def test_a_field_that_is_not_declared_is_told():
-    with pytest.raises(ProveError, match="s declares no field b"):
+    words = r"undeclared \(m.py:\d+\): s.b is no field that is declared"
+    with pytest.raises(ProveError, match=words):
         played("undeclared", (0, 3))
 
 

@@ -2,7 +2,16 @@
 
 import pytest
 
-from innervate.prove.records import Either, Record, State, each_of, either, merged, name_of
+from innervate.prove.records import (
+    Either,
+    Partly,
+    Record,
+    State,
+    each_of,
+    either,
+    merged,
+    name_of,
+)
 from innervate.prove.terms import Terms
 
 
@@ -27,10 +36,22 @@ def test_what_a_reference_stands_for_and_where(terms):
 def test_one_of_two_where_a_truth_holds(terms):
     p, x, y = truth(terms, "p"), terms.unknown("x", 0, 9), terms.unknown("y", 0, 9)
     assert either(terms, p, x, y) is terms.pick(p, x, y)
-    assert either(terms, p, None, "b") == "b"  # nothing was returned there
-    assert either(terms, p, "a", None) == "a"
+    assert either(terms, p, None, None) is None
+    assert either(terms, p, None, "b") == Partly(terms.negated(p), "b")  # no value there
+    assert either(terms, p, "a", None) == Partly(p, "a")
     assert either(terms, p, "a", "a") == "a"
     assert either(terms, p, "a", "b") == Either(p, "a", "b")
+
+
+def test_what_has_a_value_on_some_paths_has_it_where_one_of_them_goes(terms):
+    p, q = truth(terms, "p"), truth(terms, "q")
+    partly = either(terms, p, "a", None)
+    assert either(terms, q, partly, "b") == Partly(
+        terms.any(terms.negated(q), p), Either(q, "a", "b")
+    )
+    assert either(terms, p, partly, "b") == Either(p, "a", "b")
+    assert either(terms, terms.negated(p), None, partly) == partly
+    assert either(terms, q, None, partly) == Partly(terms.all(terms.negated(q), p), "a")
 
 
 def test_states_that_come_together_have_what_either_has(terms):
@@ -39,7 +60,8 @@ def test_states_that_come_together_have_what_either_has(terms):
     other = State({"i": y, "its": y}, {"both": y, "same": x, "its": y}, terms.negated(p))
     found = merged(terms, p, one, other, terms.true)
     assert found.path is terms.true
-    assert found.names == {"i": terms.pick(p, x, y), "mine": x, "its": y}
+    partly = {"mine": Partly(p, x), "its": Partly(terms.negated(p), y)}
+    assert found.names == {"i": terms.pick(p, x, y), **partly}
     assert found.store == {"both": terms.pick(p, x, y), "same": x, "mine": x, "its": y}
 
 

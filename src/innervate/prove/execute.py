@@ -17,6 +17,7 @@ from innervate.prove.express import Expressions
 from innervate.prove.records import (
     Action,
     Array,
+    Key,
     Outbox,
     Record,
     State,
@@ -124,14 +125,13 @@ class Machine(Expressions):
         match node:
             case ast.Expr():
                 if not isinstance(node.value, ast.Constant):
-                    self.value(node.value, state, call)
+                    self.returned(node.value, state, call)
                 return state
             case ast.Assign(targets=[target]):
                 self.assign(target, self.value(node.value, state, call), state, call)
                 return state
             case ast.AugAssign():
-                sum_ = ast.BinOp(node.target, node.op, node.value, lineno=node.lineno)
-                self.assign(node.target, self.value(sum_, state, call), state, call)
+                self.renew(node, state, call)
                 return state
             case ast.If():
                 return self.branch(node, state, call)
@@ -140,7 +140,7 @@ class Machine(Expressions):
             case ast.While():
                 return self.repeat(node, state, call)
             case ast.Return():
-                value = None if node.value is None else self.value(node.value, state, call)
+                value = self.returned(node.value, state, call)
                 call.returned.append((state, value))
                 return None
             case ast.Break():
@@ -153,10 +153,16 @@ class Machine(Expressions):
                 return state
         raise ProveError(f"{self.place(node, call)}: the dialect has no such statement")
 
+    def returned(self, node: ast.expr | None, state: State, call: Call) -> Any:
+        """The value of an expression that need have none: a call's that returns nothing."""
+        if isinstance(node, ast.Call):
+            return self.apply(node, state, call)
+        return None if node is None else self.value(node, state, call)
+
     def branch(self, node: ast.If, state: State, call: Call) -> State | None:
         """Run both ways of an `if` and merge them."""
         terms = self.terms
-        test = terms.as_truth(self.value(node.test, state, call))
+        test = self.truth(node.test, state, call)
         self.note(node, test, state, call)
         if test.op == "const":
             return self.block(node.body if test is terms.true else node.orelse, state, call)
@@ -181,24 +187,37 @@ class Machine(Expressions):
     def loop(self, node: ast.For, state: State, call: Call) -> State | None:
         """Unroll a loop over a range."""
         terms = self.terms
-        assert isinstance(node.iter, ast.Call)
-        ends = [terms.as_number(self.value(arg, state, call)) for arg in node.iter.args]
-        first, last = ends if len(ends) == 2 else (terms.number(0), ends[0])
-        passes = max(last.high - first.low, 0)
+        first, last, step = self.ends_of(node, state, call)
+        far = last.high - first.low if step > 0 else first.high - last.low
+        passes = max(-(-far // abs(step)), 0)
+        many = passes if last.value is not None else min(passes, LOOP_MAX)
         left = self.enter(call)
         after: State | None = state
-        for k in range(min(passes, LOOP_MAX if last.value is None else passes)):
+        for k in range(many):
             assert after is not None
-            at = terms.add(first, terms.number(k))
-            after = self.one_pass(node, terms.less(at, last), at, after, call)
+            at = terms.add(first, terms.number(k * step))
+            goes = terms.less(at, last) if step > 0 else terms.less(last, at)
+            after = self.one_pass(node, goes, at, after, call)
             if after is None:
                 break
         else:
-            if passes > LOOP_MAX and last.value is None:
-                more = terms.less(terms.add(first, terms.number(LOOP_MAX)), last)
+            if passes > many:
                 assert after is not None
+                at = terms.add(first, terms.number(many * step))
+                more = terms.less(at, last) if step > 0 else terms.less(last, at)
                 self.demand("a loop ends", terms.negated(more), node, after, call)
         return self.leave(left, after, call)
+
+    def ends_of(self, node: ast.For, state: State, call: Call) -> tuple[Term, Term, int]:
+        """Where a loop begins and ends, and by how much it goes on."""
+        assert isinstance(node.iter, ast.Call)
+        ends = [self.integer(arg, state, call) for arg in node.iter.args]
+        if len(ends) == 1:
+            return self.terms.number(0), ends[0], 1
+        step = ends[2].value if len(ends) == 3 else 1
+        if not step:
+            raise ProveError(f"{self.place(node, call)}: by how much a loop goes on is not known")
+        return ends[0], ends[1], step
 
     def repeat(self, node: ast.While, state: State, call: Call) -> State | None:
         """Unroll a loop with a condition."""
@@ -206,7 +225,7 @@ class Machine(Expressions):
         after: State | None = state
         for _ in range(LOOP_MAX):
             assert after is not None
-            test = self.terms.as_truth(self.value(node.test, after, call))
+            test = self.truth(node.test, after, call)
             if test is self.terms.false:
                 break
             after = self.one_pass(node, test, None, after, call)
@@ -214,7 +233,7 @@ class Machine(Expressions):
                 break
         else:
             assert after is not None
-            test = self.terms.as_truth(self.value(node.test, after, call))
+            test = self.truth(node.test, after, call)
             self.demand("a loop ends", self.terms.negated(test), node, after, call)
         return self.leave(left, after, call)
 
@@ -266,28 +285,60 @@ class Machine(Expressions):
         if isinstance(target, ast.Name):
             state.names[target.id] = value
             return
-        value = self.terms.as_number(value)
+        if not isinstance(value, Term):
+            what = f"{ast.unparse(target)} is set to what is no number"
+            raise ProveError(f"{self.place(target, call)}: {what}")
+        self.write_at(self.aimed(target, state, call), value, state)
+
+    def renew(self, node: ast.AugAssign, state: State, call: Call) -> None:
+        """Change a name or a place by something; which place is asked once."""
+        if isinstance(node.target, ast.Name):
+            there = ast.Name(node.target.id, ast.Load(), lineno=node.lineno)
+            old = self.integer(there, state, call)
+            new = self.integer(node.value, state, call)
+            state.names[node.target.id] = self.binary(node.op, old, new, node, state, call)
+            return
+        places = self.aimed(node.target, state, call)
+        old = self.read_at(places, state)
+        new = self.integer(node.value, state, call)
+        self.write_at(places, self.binary(node.op, old, new, node, state, call), state)
+
+    def aimed(self, target: ast.expr, state: State, call: Call) -> list[tuple[Term, Key]]:
+        """The places that a target may stand for, and where it does."""
+        terms = self.terms
+        found: list[tuple[Term, Key]] = []
         if isinstance(target, ast.Attribute):
             owner = self.value(target.value, state, call)
-            for where, record in each_of(self.terms, owner, self.terms.true):
-                self.put((record, target.attr, None), where, value, state)
-            return
+            for where, record in each_of(terms, owner, terms.true):
+                if (record, target.attr, None) not in state.store:
+                    what = f"{ast.unparse(target)} is no field that is declared"
+                    raise ProveError(f"{self.place(target, call)}: {what}")
+                found.append((where, (record, target.attr, None)))
+            return found
         assert isinstance(target, ast.Subscript)
         array = self.value(target.value, state, call)
-        index = self.terms.as_number(self.value(target.slice, state, call))
-        for where, one in each_of(self.terms, array, self.terms.true):
+        index = self.integer(target.slice, state, call)
+        for where, one in each_of(terms, array, terms.true):
             assert isinstance(one, Array)
             self.check_index(index, one.length, target, state, call)
             for k in range(max(index.low, 0), min(index.high, one.length - 1) + 1):
-                here = self.terms.same(index, self.terms.number(k))
-                key = (one.record, one.name, k)
-                self.put(key, self.terms.all(where, here), value, state)
+                here = terms.same(index, terms.number(k))
+                found.append((terms.all(where, here), (one.record, one.name, k)))
+        return found
 
-    def put(self, key: Any, where: Term, value: Term, state: State) -> None:
-        """Write a place where a truth holds."""
-        if key not in state.store:
-            raise ProveError(f"{key[0].name} declares no field {key[1]}")
-        state.store[key] = self.terms.pick(where, value, state.store[key])
+    def read_at(self, places: list[tuple[Term, Key]], state: State) -> Term:
+        """What stands at a place; of an index outside of its array, anything."""
+        found = self.terms.number(0)
+        for number, (where, key) in enumerate(places):
+            one = state.store[key]
+            found = one if not number else self.terms.pick(where, one, found)
+        return found
+
+    def write_at(self, places: list[tuple[Term, Key]], value: Term, state: State) -> None:
+        """Let a number stand at a place."""
+        terms = self.terms
+        for where, key in places:
+            state.store[key] = terms.pick(where, terms.as_number(value), state.store[key])
 
     # -- what stands for itself: actions and draws
 

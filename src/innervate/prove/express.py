@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from innervate.dialect.source import Function
@@ -12,6 +13,7 @@ from innervate.prove.records import (
     Array,
     Frames,
     Outbox,
+    Partly,
     Record,
     State,
     Store,
@@ -44,17 +46,16 @@ class Expressions:
                 if isinstance(known, bool):
                     return self.terms.truth_of(known)
                 return self.terms.number(int(known))
-            case ast.Name():
-                if node.id in state.names:
-                    return state.names[node.id]
-                if node.id in call.function.constants:
-                    return self.terms.number(call.function.constants[node.id])
+            case ast.Name() if node.id in state.names:
+                return self.there(state.names[node.id], node, state, call)
+            case ast.Name() if node.id in call.function.constants:
+                return self.terms.number(call.function.constants[node.id])
             case ast.Attribute():
                 return self.attribute(node, state, call)
             case ast.Subscript():
                 return self.subscript(node, state, call)
             case ast.BoolOp():
-                return self.connected(node, state, call)
+                return self.connected(node, state, call, self.term)
             case ast.UnaryOp():
                 return self.unary(node, state, call)
             case ast.IfExp():
@@ -62,12 +63,41 @@ class Expressions:
             case ast.Compare():
                 return self.compare(node, state, call)
             case ast.BinOp():
-                a = self.terms.as_number(self.value(node.left, state, call))
-                b = self.terms.as_number(self.value(node.right, state, call))
-                return self.binary(node, a, b, state, call)
+                a = self.integer(node.left, state, call)
+                b = self.integer(node.right, state, call)
+                return self.binary(node.op, a, b, node, state, call)
             case ast.Call():
-                return self.apply(node, state, call)
+                return self.there(self.apply(node, state, call), node, state, call)
         raise ProveError(f"{self.place(node, call)}: {ast.unparse(node)} is not of the dialect")
+
+    def there(self, found: Any, node: ast.expr, state: State, call: Call) -> Any:
+        """What a name stands for, or a call returned; it must do so on all paths that come here."""
+        if isinstance(found, Partly):
+            self.demand("what is used has a value", found.where, node, state, call)
+            return found.value
+        if found is None:
+            raise ProveError(f"{self.place(node, call)}: {ast.unparse(node)} has no value")
+        return found
+
+    def term(self, node: ast.expr, state: State, call: Call) -> Term:
+        """The value of an expression that must be a number or a truth."""
+        found = self.value(node, state, call)
+        if not isinstance(found, Term):
+            raise ProveError(f"{self.place(node, call)}: {ast.unparse(node)} is no number")
+        return found
+
+    def integer(self, node: ast.expr, state: State, call: Call) -> Term:
+        """The value of an expression as a number."""
+        return self.terms.as_number(self.term(node, state, call))
+
+    def truth(self, node: ast.expr, state: State, call: Call) -> Term:
+        """Whether an expression is not 0; what else it is does not matter."""
+        match node:
+            case ast.BoolOp():
+                return self.connected(node, state, call, self.truth)
+            case ast.UnaryOp(op=ast.Not()):
+                return self.terms.negated(self.truth(node.operand, state, call))
+        return self.terms.as_truth(self.term(node, state, call))
 
     def place(self, node: ast.AST, call: Call) -> str:
         """Where something stands, for people."""
@@ -92,7 +122,7 @@ class Expressions:
     def attribute(self, node: ast.Attribute, state: State, call: Call) -> Any:
         """A field of a record."""
         owner = self.value(node.value, state, call)
-        if owner is self.out:
+        if owner is self.out and node.attr == "frame":
             return FRAMES
         found: Any = None
         for where, record in each_of(self.terms, owner, self.terms.true):
@@ -115,17 +145,19 @@ class Expressions:
     def subscript(self, node: ast.Subscript, state: State, call: Call) -> Any:
         """An element of an array, or a record of a table."""
         owner = self.value(node.value, state, call)
-        index = self.value(node.slice, state, call)
         if owner is FRAMES:
             found: Any = None
+            index = self.value(node.slice, state, call)
             for where, action in each_of(self.terms, index, self.terms.true):
-                assert isinstance(action, Action)
+                if not isinstance(action, Action):
+                    what = "is none of a frame that was just sent or delivered"
+                    raise ProveError(f"{self.place(node, call)}: {ast.unparse(node)} {what}")
                 found = action.frame if found is None else either(
                     self.terms, where, action.frame, found)  # fmt: skip
             return found
-        index = self.terms.as_number(index)
+        index = self.integer(node.slice, state, call)
         if isinstance(owner, tuple):
-            if index.value is None:
+            if index.value is None or not 0 <= index.value < len(owner):
                 raise ProveError(f"{self.place(node, call)}: which record is not known")
             return owner[index.value]
         found = None
@@ -139,27 +171,39 @@ class Expressions:
         self.check_index(index, array.length, node, state, call)
         return chosen(self.terms, array, index, state.store)
 
-    def connected(self, node: ast.BoolOp, state: State, call: Call) -> Term:
-        """`and`, `or`: what stands later is asked only where it matters."""
-        terms, whole = self.terms, state.path
+    def connected(self, node: ast.BoolOp, state: State, call: Call, read: Read) -> Term:
+        """`and`, `or`: the part that decides; what stands later is asked only where it matters."""
+        terms = self.terms
         is_and = isinstance(node.op, ast.And)
-        found = terms.as_truth(self.value(node.values[0], state, call))
+        found: Term = read(node.values[0], state, call)
         for part in node.values[1:]:
-            goes = found if is_and else terms.negated(found)
+            holds = terms.as_truth(found)
+            goes = holds if is_and else terms.negated(holds)
             if goes is terms.false:
                 break
-            inner = state.fork(terms.all(whole, goes))
-            one = terms.as_truth(self.value(part, inner, call))
-            inner.path = whole
-            changed = merged(terms, goes, inner, state, whole)
-            state.store, state.names = changed.store, changed.names
-            found = terms.all(found, one) if is_and else terms.any(found, one)
+            one = self.behind(goes, part, state, call, read)
+            if found.is_truth and one.is_truth:
+                found = terms.all(found, one) if is_and else terms.any(found, one)
+            else:
+                found = terms.pick(goes, one, found)
+        return found
+
+    def behind(self, goes: Term, node: ast.expr, state: State, call: Call, read: Read) -> Term:
+        """What an expression is that is asked only where a truth holds."""
+        terms, whole = self.terms, state.path
+        if goes is terms.true:
+            return read(node, state, call)
+        inner = state.fork(terms.all(whole, goes))
+        found = read(node, inner, call)
+        inner.path = whole
+        changed = merged(terms, goes, inner, state, whole)
+        state.store, state.names = changed.store, changed.names
         return found
 
     def choice(self, node: ast.IfExp, state: State, call: Call) -> Any:
         """`a if test else b`."""
         terms, whole = self.terms, state.path
-        test = terms.as_truth(self.value(node.test, state, call))
+        test = self.truth(node.test, state, call)
         self.note(node, test, state, call)  # type: ignore[attr-defined]
         if test.op == "const":
             return self.value(node.body if test is terms.true else node.orelse, state, call)
@@ -171,49 +215,47 @@ class Expressions:
         return either(terms, test, a, b)
 
     def unary(self, node: ast.UnaryOp, state: State, call: Call) -> Term:
-        """The operators `not`, `-` and `~`."""
-        value = self.value(node.operand, state, call)
+        """The operators `not`, `-`, `+` and `~`."""
         if isinstance(node.op, ast.Not):
-            return self.terms.negated(self.terms.as_truth(value))
-        number = self.terms.as_number(value)
+            return self.truth(node, state, call)
+        number = self.integer(node.operand, state, call)
+        if isinstance(node.op, ast.UAdd):
+            return number
         less = 0 if isinstance(node.op, ast.USub) else -1
-        return self.terms.sub(self.terms.number(less), number)
+        return self.fitting(self.terms.sub(self.terms.number(less), number), node, state, call)
 
     def compare(self, node: ast.Compare, state: State, call: Call) -> Term:
-        """One comparison or several in a chain."""
-        parts = [self.value(part, state, call) for part in (node.left, *node.comparators)]
-        terms = self.terms
-        found = []
-        for op, a, b in zip(node.ops, parts, parts[1:], strict=False):
-            match op:
-                case ast.Eq():
-                    found.append(terms.same(a, b))
-                case ast.NotEq():
-                    found.append(terms.negated(terms.same(a, b)))
-                case ast.Lt():
-                    found.append(terms.less(a, b))
-                case ast.LtE():
-                    found.append(terms.at_most(a, b))
-                case ast.Gt():
-                    found.append(terms.less(b, a))
-                case ast.GtE():
-                    found.append(terms.at_most(b, a))
-                case _:
-                    raise ProveError(f"{self.place(node, call)}: no such comparison")
-        return terms.all(*found)
+        """One comparison or several in a chain, which ends with the first that does not hold."""
+        terms, found = self.terms, self.terms.true
+        if not all(type(op) in COMPARISONS for op in node.ops):
+            raise ProveError(f"{self.place(node, call)}: no such comparison")
+        a = self.term(node.left, state, call)
+        for op, part in zip(node.ops, node.comparators, strict=True):
+            if found is terms.false:
+                break
+            b = self.behind(found, part, state, call, self.term)
+            found = terms.all(found, COMPARISONS[type(op)](terms, a, b))
+            a = b
+        return found
 
-    def binary(self, node: ast.BinOp, a: Term, b: Term, state: State, call: Call) -> Term:
+    def binary(
+        self, op: ast.operator, a: Term, b: Term, node: ast.AST, state: State, call: Call
+    ) -> Term:
         """Arithmetic, and what it must keep."""
-        terms, op = self.terms, type(node.op)
-        if op in (ast.FloorDiv, ast.Mod):
+        terms = self.terms
+        if isinstance(op, ast.FloorDiv | ast.Mod):
             least = terms.at_most(terms.number(1), b)
             self.demand("what is divided by is at least 1", least, node, state, call)
-        if op in (ast.LShift, ast.RShift):
+        if isinstance(op, ast.LShift | ast.RShift):
             self.demand("shifts are by 0 .. 31", terms.within(b, 0, 31), node, state, call)
             b = terms.pick(terms.within(b, 0, 31), b, terms.number(0))
             b = self.narrowed(b, 0, 31)
-        made: Term = getattr(terms, OPERATIONS[op])(a, b)
-        holds = terms.within(made, -MOST - 1, MOST)
+        made: Term = getattr(terms, OPERATIONS[type(op)])(a, b)
+        return self.fitting(made, node, state, call)
+
+    def fitting(self, made: Term, node: ast.AST, state: State, call: Call) -> Term:
+        """A number that was worked out, which must fit."""
+        holds = self.terms.within(made, -MOST - 1, MOST)
         self.demand("every number fits 32 bits", holds, node, state, call)
         return made
 
@@ -226,10 +268,10 @@ class Expressions:
     def apply(self, node: ast.Call, state: State, call: Call) -> Any:
         """A call: of min, max, abs, an action, a draw, or a function of the protocol."""
         assert isinstance(node.func, ast.Name)
-        args = [self.value(arg, state, call) for arg in node.args]
         name = call.function.calls.get(node.func.id)
         if name is None:
-            return self.plain(node, [self.terms.as_number(arg) for arg in args], call)
+            return self.plain(node, state, call)
+        args = [self.value(arg, state, call) for arg in node.args]
         function = self.functions.get(name)
         if function is None:
             raise ProveError(f"{self.place(node, call)}: {node.func.id} is not of the protocol")
@@ -241,13 +283,15 @@ class Expressions:
         state.store = store
         return found
 
-    def plain(self, node: ast.Call, args: list[Term], call: Call) -> Term:
+    def plain(self, node: ast.Call, state: State, call: Call) -> Term:
         """min, max or abs of numbers."""
         terms = self.terms
+        args = [self.integer(arg, state, call) for arg in node.args]
         name = node.func.id  # type: ignore[attr-defined]
         if name == "abs":
-            zero = terms.number(0)
-            return terms.pick(terms.less(args[0], zero), terms.sub(zero, args[0]), args[0])
+            less = terms.sub(terms.number(0), args[0])
+            found = terms.pick(terms.less(args[0], terms.number(0)), less, args[0])
+            return self.fitting(found, node, state, call)
         if name not in ("min", "max"):
             raise ProveError(f"{self.place(node, call)}: {name} is not of the dialect")
         found = args[0]
@@ -256,6 +300,15 @@ class Expressions:
         return found
 
 
+Read = Callable[[ast.expr, State, Any], Term]
+COMPARISONS: dict[type[ast.cmpop], Callable[[Terms, Term, Term], Term]] = {
+    ast.Eq: lambda terms, a, b: terms.same(a, b),
+    ast.NotEq: lambda terms, a, b: terms.negated(terms.same(a, b)),
+    ast.Lt: lambda terms, a, b: terms.less(a, b),
+    ast.LtE: lambda terms, a, b: terms.at_most(a, b),
+    ast.Gt: lambda terms, a, b: terms.less(b, a),
+    ast.GtE: lambda terms, a, b: terms.at_most(b, a),
+}
 OPERATIONS: dict[type[ast.operator], str] = {
     ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.FloorDiv: "div", ast.Mod: "mod",
     ast.BitAnd: "bits_and", ast.BitOr: "bits_or", ast.BitXor: "bits_xor",

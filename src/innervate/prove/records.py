@@ -75,6 +75,14 @@ class Either:
     b: Any
 
 
+@dataclass(frozen=True, slots=True)
+class Partly:
+    """What has a value only where a truth holds: a name, or what a call returned."""
+
+    where: Term
+    value: Any
+
+
 @dataclass(eq=False, slots=True)
 class Action:
     """An action of the outbox: it is there where `guard` holds."""
@@ -129,23 +137,33 @@ def merged(terms: Terms, if_: Term, a: State, b: State, path: Term) -> State:
             store[key] = value
         elif mine is not value:
             store[key] = terms.pick(if_, mine, value)
-    names = a.names
-    for name, value in b.names.items():
-        mine = names.get(name)
-        if mine is None:
-            names[name] = value
-        elif mine is not value:
-            names[name] = either(terms, if_, mine, value)
+    names, others = a.names, b.names
+    for name in [*names, *(name for name in others if name not in names)]:
+        one, its = names.get(name), others.get(name)
+        if one is not its:
+            names[name] = either(terms, if_, one, its)
     return State(names, store, path)
 
 
 def either(terms: Terms, if_: Term, a: Any, b: Any) -> Any:
-    """One value or reference where a truth holds, else another."""
+    """One value or reference where a truth holds, else another; None is no value."""
+    if a is b or a == b:
+        return b
     if isinstance(a, Term) and isinstance(b, Term):
         return terms.pick(if_, a, b)
-    if a is None or a is b or a == b:
-        return b
-    return a if b is None else Either(if_, a, b)
+    if a is None or b is None or isinstance(a, Partly) or isinstance(b, Partly):
+        return _partly(terms, if_, a, b)
+    return Either(if_, a, b)
+
+
+def _partly(terms: Terms, if_: Term, a: Any, b: Any) -> Any:
+    """The same where one of them has no value on some paths."""
+    one, other = (x if isinstance(x, Partly) else Partly(terms.truth_of(x is not None), x)
+                  for x in (a, b))  # fmt: skip
+    where = terms.pick(if_, one.where, other.where)
+    values = [x.value for x in (one, other) if x.value is not None]
+    value = either(terms, if_, *values) if len(values) == 2 else values[0]
+    return value if where is terms.true else Partly(where, value)
 
 
 def each_of(terms: Terms, ref: Any, under: Term) -> Iterator[tuple[Term, Any]]:
