@@ -105,9 +105,18 @@ def test_what_is_broken_from_the_start_is_one_state():
     assert (story.title, story.sentences) == ("nobody is", ["n0 is switched on."])
 
 
+def test_what_holds_of_all_nodes_is_looked_at_before_the_first_event():
+    net, budget = net_of()
+    net.of_all = {"nobody is": lambda nodes, *_: False}
+    tally, story = explore(net, budget, 100, lambda *_: False, "a pair")
+    assert (story.title, story.sentences) == ("nobody is", ["All nodes are switched on."])
+    assert (tally.states, tally.expanded, tally.ended) == (1, 0, "broken")
+
+
 def test_what_holds_of_all_nodes_is_looked_at_behind_each_event():
     net, budget = net_of()
-    net.of_all = {"no node ticks": lambda nodes, *_: False}
+    seen = []
+    net.of_all = {"no node ticks": lambda nodes, *_: not seen and not seen.append(1)}
     tally, story = explore(net, budget, 100, lambda *_: False, "a pair")
     assert (story.title, tally.ended) == ("no node ticks", "broken")
     assert len(story.sentences) == 1

@@ -94,7 +94,7 @@ class Net:
             state, broken = self.call(state, number, 0, self.do.on_start, COLD)
             if broken:
                 return Step(f"{self.graph.label(number)} is switched on", state, broken)
-        return Step("", state, "")
+        return Step("All nodes are switched on", state, "")
 
     def steps(self, state: State) -> Iterator[Step]:
         """All that can happen next."""
@@ -303,8 +303,8 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
     """All states breadth first, up to `limit`; the story has no title if nothing is broken."""
     started, tally = wall_s(), Tally(states=1)
     first = net.begin(budget)
-    if first.broken:
-        return replace(tally, ended="broken"), Story(first.broken, [f"{first.words}."])
+    if broken := first.broken or (net.of_all and net.broken_of_all(first.state)):
+        return replace(tally, ended="broken"), Story(broken, [f"{first.words}."])
     before: dict[State, tuple[State, str] | None] = {first.state: None}
     level = [first.state]
     waits = bool(net.given) and is_still(first.state)  # for its user: so it does from the start
