@@ -178,16 +178,19 @@ def test_what_is_concluded_of_a_protocol(most, broken, failed, faults):
     said = {"outbox": {"on_frame": most, "on_timer": 2}, "broken": broken}
     if failed is not None:
         said |= {"tests_failed": failed, "reached": 7, "functions": 9}
-    line = making._conclusion(said, 16, 5_000)
+    case = Of(record={"states": 5_000}, is_complete=most == 3)
+    line = making._conclusion(said, 16, case)
     assert said["faults"] == faults
-    assert f"at most {max(2, most or 0)} actions a call of 16, 5,000 states explored" in line
+    room = f"at most {max(2, most or 0)} actions a call of 16"
+    room += "" if most else " where that is seen"
+    assert f"{room}, {'all' if most == 3 else 'the first'} 5,000 states explored" in line
     assert ("values and frames fit" in line) == (not faults)
     assert line.endswith("7 of 9 functions reached by tests") == (failed is not None)
 
 
 def test_a_protocol_is_explored_on_two_nodes_in_so_many_states(monkeypatch):
     asked = []
-    case = Of(record={"broken": None, "states": 5_000}, lines=["a line"])
+    case = Of(record={"broken": None, "states": 5_000}, lines=["a line"], is_complete=True)
 
     def explore(network, **how):
         asked.append(how)

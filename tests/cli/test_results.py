@@ -92,12 +92,27 @@ def test_what_came_of_a_theory(came, summary, is_so):
     assert came.is_as_expected == is_so
     assert came.as_dict()["expected"] == is_so
     assert proving.lines(came)[-1] == f"  {summary}"
-    said = proving._verdict([came, outcome(checked("x", 4))])
+    said = proving._verdict([came, outcome(checked("x", 4))], 2)
     lemmas = came.lemmas + 4
     wall_s = 0.25 * (len(came.checked) + 1)
     much = f"{lemmas} lemmas in {wall_s:.1f} s"
-    assert said == (f"All as it should be: {much}." if is_so
-                    else f"NOT as it should be: loops ({much}).")  # fmt: skip
+    if came.ended == "stopped":
+        cut = "interrupted after 1 of 2 theories"
+        assert said == f"As it should be so far: {much}; {cut}."
+    else:
+        assert said == (f"All as it should be: {much}." if is_so
+                        else f"NOT as it should be: loops ({much}).")  # fmt: skip
+
+
+def test_of_theories_that_were_not_tried_nothing_is_claimed():
+    fine, bad = outcome(checked("a", 2)), outcome(checked("a", refuted=["g"]))
+    stopped = outcome(checked("a"), ended="stopped")
+    cut = "interrupted after 1 of 3 theories"
+    assert proving._verdict([fine], 3) == f"As it should be so far: 2 lemmas in 0.2 s; {cut}."
+    assert proving._verdict([bad, stopped], 3) == (
+        f"NOT as it should be: loops (2 lemmas in 0.5 s); {cut}."
+    )
+    assert proving._verdict([], 3).startswith("As it should be so far: 0 lemmas")
 
 
 def test_a_theory_line_by_line():

@@ -38,14 +38,15 @@ WHOLE, PART, BROKEN = case(), case(is_complete=False), case(is_broken=True, is_c
         ([BROKEN], "1 of 1 broken."),
         ([WHOLE, WHOLE], "Nothing broken in 2 explorations, all completely."),
         ([WHOLE, PART, PART], "Nothing broken in 3 explorations; 2 of them only in part."),
-        ([PART, BROKEN, WHOLE, BROKEN], "2 of 4 broken."),
+        ([PART, BROKEN, WHOLE, BROKEN], "2 of 4 broken; 1 of the others only in part."),
+        ([WHOLE, BROKEN], "1 of 2 broken."),
         ([WHOLE, case(sums_up=False)], ""),
         ([], "Nothing was explored."),
     ],
 )
 def test_the_last_line_says_what_came_of_all(done, said):
     assert verdict(done) == said
-    if said.startswith("Nothing broken"):
+    if "broken" in said:
         assert verdict(done, True) == f"{said[:-1]}; interrupted before the others."
 
 

@@ -113,12 +113,15 @@ def _look_further(
         lines += [f"{place}: no test reaches {what}" for what, place in said["unreached"].items()]
         if said["tests_failed"]:
             lines.append(said["tests_failed"])
-    lines.append(f"{network.name}: {_conclusion(said, room, case.record['states'])}")
+    lines.append(f"{network.name}: {_conclusion(said, room, case)}")
 
 
-def _conclusion(said: dict[str, Any], room: int, states: int) -> str:
-    """What holds and, before it, what does not, which is noted under `faults`."""
-    most = max((n for n in said["outbox"].values() if n is not None), default=0)
+def _conclusion(said: dict[str, Any], room: int, case: Any) -> str:
+    """What holds, what does not, which is noted under `faults`, and how far that was seen."""
+    counts = said["outbox"].values()
+    most = max((n for n in counts if n is not None), default=0)
+    seen = " where that is seen" if None in counts else ""
+    states = f"{'all' if case.is_complete else 'the first'} {case.record['states']:,} states"
     shown = {"the outbox is too small": most > room,
              "some order of events breaks it": said["broken"],
              "its tests fail": said.get("tests_failed")}  # fmt: skip
@@ -129,8 +132,8 @@ def _conclusion(said: dict[str, Any], room: int, states: int) -> str:
     fits = "values and frames fit,"
     if said["faults"]:
         fits = f"but: {', '.join(said['faults'])} (see above);"
-    return (f"the dialect is kept, {fits} at most {most} actions a call of {room}, "
-            f"{states:,} states explored{reached}")  # fmt: skip
+    return (f"the dialect is kept, {fits} at most {most} actions a call of {room}{seen}, "
+            f"{states} explored{reached}")  # fmt: skip
 
 
 def _tested(folder: Path, network: Network) -> dict[str, Any]:

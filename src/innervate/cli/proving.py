@@ -31,13 +31,14 @@ def _theories(network: Network, as_json: bool) -> int:
     from innervate.prove.theory import prove as attempt
 
     done: list[Outcome] = []
+    theories = network.prove.theories(network)
     with Display(as_json) as display, Stop() as stop:
 
         def tell(what: str, part: int, of: int) -> bool:
             display.show(what, part, of, None)
             return stop.asked
 
-        for theory in network.prove.theories(network):
+        for theory in theories:
             done.append(attempt(theory, tell))
             if not as_json:
                 print("\n".join([*lines(done[-1]), ""]), flush=True)
@@ -46,7 +47,7 @@ def _theories(network: Network, as_json: bool) -> int:
     if as_json:
         print(json.dumps([outcome.as_dict() for outcome in done], indent=2))
     else:
-        print(_verdict(done))
+        print(_verdict(done, len(theories)))
     if stop.asked:
         return errors.INTERRUPTED
     return 0 if all(outcome.is_as_expected for outcome in done) else 1
@@ -89,15 +90,18 @@ def _summary(outcome: Outcome) -> str:
     return f"{words}." if not outcome.unreached else f"{words}; some are not."
 
 
-def _verdict(done: list[Outcome]) -> str:
-    bad = [outcome for outcome in done if not outcome.is_as_expected]
+def _verdict(done: list[Outcome], asked: int) -> str:
+    """The last line: what came of all theories that were asked for, as far as they were tried."""
+    bad = [one for one in done if not one.is_as_expected and one.ended == "complete"]
+    tried = [one for one in done if one.is_as_expected or one.ended == "complete"]
     lemmas = sum(outcome.lemmas for outcome in done)
     wall_s = sum(one.wall_s for outcome in done for one in outcome.checked)
     much = f"{lemmas} lemmas in {wall_s:.1f} s"
+    cut = "" if len(tried) == asked else f"; interrupted after {len(tried)} of {asked} theories"
     if bad:
         names = ", ".join(outcome.theory.name for outcome in bad)
-        return f"NOT as it should be: {names} ({much})."
-    return f"All as it should be: {much}."
+        return f"NOT as it should be: {names} ({much}){cut}."
+    return f"As it should be so far: {much}{cut}." if cut else f"All as it should be: {much}."
 
 
 def _faults(network: Network, as_json: bool) -> int:

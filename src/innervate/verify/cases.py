@@ -75,10 +75,11 @@ def verdict(done: list[Case], is_cut: bool = False) -> str:
     if not done:
         return "Nothing was explored."
     broken = sum(case.is_broken for case in done)
-    if broken:
-        return f"{broken} of {len(done)} broken."
-    part = sum(not case.is_complete for case in done)
+    part = sum(not case.is_complete and not case.is_broken for case in done)
     end = "; interrupted before the others." if is_cut else "."
+    if broken:
+        rest = f"; {part} of the others only in part" if part else ""
+        return f"{broken} of {len(done)} broken{rest}{end}"
     if len(done) == 1:
         return f"Nothing broken in one exploration, {'only in part' if part else 'completely'}{end}"
     sampled = f"; {part} of them only in part" if part else ", all completely"
