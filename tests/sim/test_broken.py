@@ -296,17 +296,17 @@ def codes(*modules):
 def test_everything_that_can_be_broken_has_a_case():
     tried = {network: {code for of, code, *_ in CASES if of == network} for network in AT}
     assert tried[SKIN] == codes(skin_observer, cables) == set(skin.SkinSimulation.broken_words)
-    assert tried[RADIO] == set(radio.BROKEN_WORDS)
+    assert tried[RADIO] == set(radio.RadioSimulation.broken_words)
     assert tried[RADIO] == codes(channel_medium, channel_loop, radio_recorder)
-    assert tried[MESH] == set(mesh.BROKEN_WORDS)
+    assert tried[MESH] == set(mesh.MeshSimulation.broken_words)
     assert tried[MESH] | tried[OVER] == codes(field_medium, mesh_recorder)
 
 
 @pytest.mark.parametrize(
     ("words", "modules"),
     [
-        (mesh.BROKEN_WORDS, [mesh_recorder, field_medium]),
-        (radio.BROKEN_WORDS, [radio_recorder, channel_loop, channel_medium]),
+        (mesh.MeshSimulation.broken_words, [mesh_recorder, field_medium]),
+        (radio.RadioSimulation.broken_words, [radio_recorder, channel_loop, channel_medium]),
     ],
 )
 def test_whatever_can_be_broken_has_a_number_and_words_of_its_own(words, modules):

@@ -57,11 +57,13 @@ class Simulation(ABC):
     Attributes:
         tables: the tables of rows that the loop fills, each with the fields of its rows.
         wide: fields of rows that have 64 bits.
+        broken_words: what is broken, by number, with {node} and {other} for who it concerns.
         slice_events: about how many events between two looks at Ctrl-C and progress.
     """
 
     tables: ClassVar[Mapping[str, Names]]
     wide: ClassVar[frozenset[str]] = WIDE
+    broken_words: ClassVar[Mapping[int, str]]
     slice_events: int = 1_000_000
 
     def __init__(self, plan: Any, world: Any, advance: Advance, name: str = "") -> None:
@@ -173,6 +175,16 @@ class Simulation(ABC):
     def schedule(self, fault: Any) -> None:
         """Something is to be done to the network at `fault.at_us`, which has not come yet."""
 
-    @abstractmethod
     def broken_line(self) -> str:
         """The broken invariant, in one line."""
+        what = self.broken_words[int(get(self.world.run, 0, "broken"))].format(**self.whom())
+        at = self.broken_us() / 1e6
+        return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
+
+    def broken_us(self) -> int:
+        """When it broke, us; `run.broken_at` on media that note it."""
+        return self.clock_us()
+
+    def whom(self) -> dict[str, str]:
+        """Who it concerns, in words."""
+        return {"node": f"node {int(get(self.world.run, 0, 'broken_node'))}"}

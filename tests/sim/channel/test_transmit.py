@@ -280,9 +280,6 @@ def test_who_broke_the_run_first_and_when_stays(monkeypatch):
 class Watched(Channel):
     tables: ClassVar = {}
 
-    def broken_line(self):
-        return ""
-
 
 def channel(**plan):
     made = radio_plan(3, **plan)

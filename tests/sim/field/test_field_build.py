@@ -18,6 +18,7 @@ from innervate.sim.field.build import build
 from innervate.sim.field.declared import DeclaredField
 from innervate.sim.field.loop import BOOT
 from innervate.sim.field.medium import NONE
+from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import ALIVE, DEAD, OFF
 from innervate.sim.recorded import Recorded
 from innervate.sim.status import POOL_FULL, ROWS_FULL
@@ -143,7 +144,7 @@ def test_what_is_kept_has_room_for_one_event_more(kept, limits):
 
 
 class Bare(DeclaredField):
-    broken_words = declared.WORDS
+    broken_words = Field.broken_words
 
 
 @pytest.fixture

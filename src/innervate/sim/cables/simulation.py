@@ -48,7 +48,6 @@ class Cables(Simulation):
     """Nodes that are joined by cables; a network may keep other rows, and have more to break.
 
     Attributes:
-        broken_words: what is broken, with {node} and {other} for who it concerns.
         sink: what the node with a port per interface has, and what it has for each port.
     """
 
@@ -80,14 +79,14 @@ class Cables(Simulation):
             **ended.rows,
         )
 
-    def broken_line(self) -> str:
-        """The broken invariant, in one line."""
-        run, label = self.world.run, self.plan.graph.label
-        node, other = (int(get(run, 0, name)) for name in ("broken_node", "broken_other"))
-        words = self.broken_words[int(get(run, 0, "broken"))]
-        what = words.format(node=label(node), other=label(other))
-        at = max(int(get(run, 0, "broken_at")), 0) / 1e6
-        return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
+    def broken_us(self) -> int:
+        """When it broke, us."""
+        return max(int(get(self.world.run, 0, "broken_at")), 0)
+
+    def whom(self) -> dict[str, str]:
+        """Two nodes, as the graph calls them."""
+        label, run = self.plan.graph.label, self.world.run
+        return {name: label(int(get(run, 0, f"broken_{name}"))) for name in ("node", "other")}
 
     def broken_between(self) -> tuple[int, int] | None:
         """The ranges of the node with a port per interface."""

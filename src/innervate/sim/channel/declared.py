@@ -166,8 +166,8 @@ class DeclaredChannel(Channel):
     }  # fmt: skip
 
     @cached_property
-    def broken_words(self) -> dict[int, str]:
-        """What is broken, by number, with {node} for who it concerns."""
+    def broken_words(self) -> dict[int, str]:  # type: ignore[override]
+        """What is broken, by number."""
         return {**listening.WORDS, **words_of(self.plan.kind)}
 
     def take(self) -> dict[str, Any]:
@@ -194,14 +194,6 @@ class DeclaredChannel(Channel):
             offered=int(get(self.world.run, 0, "offers")),
             delivered=int(numbers[listening.DELIVERED]),
         )
-
-    def broken_line(self) -> str:
-        """The broken invariant, in one line."""
-        run = self.world.run
-        node = f"node {int(get(run, 0, 'broken_node'))}"
-        what = self.broken_words[int(get(run, 0, "broken"))].format(node=node)
-        at = max(int(get(run, 0, "broken_at")), 0) / 1e6
-        return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
 
 
 def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:

@@ -24,6 +24,10 @@ class Channel(Simulation):
         wanted = int(get(self.world.run, 0, "wanted"))
         return int(get(self.world.run, 0, "completed")) >= wanted > 0
 
+    def broken_us(self) -> int:
+        """When it broke, us."""
+        return max(int(get(self.world.run, 0, "broken_at")), 0)
+
     def clock_us(self) -> int:
         """Time of the newest event, us."""
         return int(get(self.world.run, 0, "now"))

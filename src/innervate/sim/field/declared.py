@@ -43,13 +43,6 @@ KEPT = (
     listening.pressing, listening.offer, listening.sample, listening.tell_sent,
     listening.note_report, listening.record_sent,
 )  # fmt: skip
-WORDS = {
-    medium.BROKEN_AIR: "{node} has too many frames under way",
-    medium.BROKEN_OUTBOX: "outbox of {node} overflowed",
-    medium.BROKEN_RANGE: "a value of {node} is out of its declared range",
-    medium.BROKEN_HELD: "{node} handed down a frame while another was under way",
-    medium.BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
-}
 
 
 def functions(network: Network) -> ModuleType:
@@ -281,9 +274,9 @@ class DeclaredField(Field):
     }  # fmt: skip
 
     @cached_property
-    def broken_words(self) -> dict[int, str]:
-        """What is broken, by number, with {node} for who it concerns."""
-        return {**WORDS, **words_of(self.plan.kind)}
+    def broken_words(self) -> dict[int, str]:  # type: ignore[override]
+        """What is broken, by number."""
+        return {**Field.broken_words, **words_of(self.plan.kind)}
 
     def grow(self, status: int) -> None:
         """Make room for more events."""
@@ -309,14 +302,6 @@ class DeclaredField(Field):
         """Switched off, or not there yet; not who is only about to start with the others."""
         state = int(get(radios, node, "state"))
         return state == DEAD or (state == OFF and bool(self.plan.absent[node]))
-
-    def broken_line(self) -> str:
-        """The broken invariant, in one line."""
-        run = self.world.run
-        node = f"node {int(get(run, 0, 'broken_node'))}"
-        what = self.broken_words[int(get(run, 0, "broken"))].format(node=node)
-        at = int(get(run, 0, "now")) / 1e6
-        return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> DeclaredField:

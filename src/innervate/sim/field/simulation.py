@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 
 from innervate.sim.driver import Simulation
-from innervate.sim.field import queue
+from innervate.sim.field import medium, queue
 from innervate.sim.queue import first_of, with_command
 from innervate.sim.tables import get
 
 
 class Field(Simulation):
-    """Nodes that hear whom they can; its network says which rows it keeps, and what broke."""
+    """Nodes that hear whom they can; its network says which rows it keeps, what more may break."""
+
+    broken_words: ClassVar[Mapping[int, str]] = {
+        medium.BROKEN_AIR: "{node} has too many frames under way",
+        medium.BROKEN_OUTBOX: "outbox of {node} overflowed",
+        medium.BROKEN_RANGE: "a value of {node} is out of its declared range",
+        medium.BROKEN_HELD: "{node} handed down a frame while another was under way",
+        medium.BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
+    }
 
     def clock_us(self) -> int:
         """Time of the newest event, us."""

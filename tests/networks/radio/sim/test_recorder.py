@@ -171,20 +171,21 @@ def test_all_names_of_one_protocol_share_what_is_compiled():
     assert simulate.simulation(radio_plan(3), plain=True).name == ""
 
 
-@pytest.mark.parametrize("broken", simulate.BROKEN_WORDS)
+@pytest.mark.parametrize("broken", simulate.RadioSimulation.broken_words)
 def test_what_is_broken_is_said_with_who_and_when(broken):
     world = world_of()
     run = world.run[0]
     run.broken, run.broken_node, run.broken_at = broken, 2, 1_500_000
-    said = simulate.broken_line(SimpleNamespace(seed=7), world)
+    running = simulate.RadioSimulation(SimpleNamespace(seed=7), world, None)
+    said = running.broken_line()
     assert said.startswith("invariant broken at 1.500000 s (seed 7): ")
     assert "station 2" in said
     run.broken_at = -1
-    assert "at 0.000000 s" in simulate.broken_line(SimpleNamespace(seed=7), world)
+    assert "at 0.000000 s" in running.broken_line()
 
 
 def test_what_can_be_broken_is_known_in_words():
-    words = simulate.BROKEN_WORDS
+    words = simulate.RadioSimulation.broken_words
     assert len(set(words.values())) == len(words) == 7
     assert "began a turn while another" in words[recorder.BROKEN_TURNS]
     assert "declared range" in words[recorder.BROKEN_RANGE]

@@ -162,6 +162,9 @@ class MeshSimulation(Field):
         "rows": w.ROW, "sent": w.SENT, "delivered": w.DELIVERED, "rounds": w.ROUND,
         "trail": w.TRAIL,
     }  # fmt: skip
+    broken_words: ClassVar[Mapping[int, str]] = {
+        **Field.broken_words, recorder.BROKEN_TWICE: "{node} delivered a packet twice",
+    }  # fmt: skip
 
     def grow(self, status: int) -> None:
         """Make room for more events, or for more deliveries to be remembered."""
@@ -180,8 +183,16 @@ class MeshSimulation(Field):
         return None
 
     def broken_line(self) -> str:
-        """The broken invariant, in one line."""
-        return broken_line(self.plan, self.world)
+        """The broken invariant, in one line; what is below has its own words."""
+        if int(get(self.world.run, 0, "broken")) == recorder.BROKEN_BELOW:
+            below = radio_simulate.RadioSimulation(self.plan, self.world.below, self._advance)
+            return below.broken_line()
+        return super().broken_line()
+
+    def whom(self) -> dict[str, str]:
+        """A node, as the scenario calls it."""
+        name = self.plan.names[int(get(self.world.run, 0, "broken_node"))]
+        return {"node": f"node {name}"}
 
 
 def simulation(
@@ -227,24 +238,3 @@ def _plain_layer(mac: str) -> stacks.Layer:
         return stacks.Layer(over_medium)
     entry = radio_stacks.PROTOCOLS[mac].entry
     return stacks.Layer(over_channel, radio_stacks.bind(entry, radio_recorder, over_channel))
-
-
-# What is broken, with {node} for who it concerns; what is below has its own words.
-BROKEN_WORDS = {
-    medium.BROKEN_AIR: "node {node} has too many frames under way",
-    medium.BROKEN_OUTBOX: "outbox of node {node} overflowed",
-    medium.BROKEN_RANGE: "a value of node {node} is out of its declared range",
-    recorder.BROKEN_TWICE: "node {node} delivered a packet twice",
-    medium.BROKEN_HELD: "node {node} handed down a frame while another was under way",
-    medium.BROKEN_FRAME: "a receiver changed the frame that node {node} had sent",
-}
-
-
-def broken_line(plan: Any, world: w.World) -> str:
-    """A broken invariant in one line."""
-    if int(get(world.run, 0, "broken")) == recorder.BROKEN_BELOW:
-        return radio_simulate.broken_line(plan, world.below)
-    at = int(get(world.run, 0, "now")) / 1e6
-    name = plan.names[int(get(world.run, 0, "broken_node"))]
-    what = BROKEN_WORDS[int(get(world.run, 0, "broken"))].format(node=name)
-    return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"

@@ -111,6 +111,16 @@ class RadioSimulation(Channel):
         "rows": w.ROW, "sent": w.SENT, "packets": w.PACKET, "trail": w.TRAIL,
     }  # fmt: skip
 
+    broken_words: ClassVar[Mapping[int, str]] = {
+        medium.BROKEN_DEAF: "{node} sent while its radio could not",
+        medium.BROKEN_AIR: "{node} has too many transmissions under way",
+        medium.BROKEN_EMPTY: "{node} sent a frame of no slots",
+        loop.BROKEN_OUTBOX: "outbox of {node} overflowed",
+        loop.BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
+        recorder.BROKEN_TURNS: "{node} began a turn while another station had its own",
+        recorder.BROKEN_RANGE: "a value of {node} is out of its declared range",
+    }
+
     def prepare(self) -> None:
         """Compile the loop; all names of one protocol share it."""
         super().prepare()
@@ -129,9 +139,9 @@ class RadioSimulation(Channel):
         if fault.action in (KILL, LEAVE):
             put(self.world.run, 0, wanted=0)
 
-    def broken_line(self) -> str:
-        """The broken invariant, in one line."""
-        return broken_line(self.plan, self.world)
+    def whom(self) -> dict[str, str]:
+        """A station."""
+        return {"node": f"station {int(get(self.world.run, 0, 'broken_node'))}"}
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> RadioSimulation:
@@ -143,23 +153,3 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> RadioSimulati
     world = builder.build(plan, plain, **kept)
     name = "" if plain else plan.protocol.replace("/", "-")
     return RadioSimulation(plan, world, advance, name)
-
-
-# What is broken, with {node} for who it concerns.
-BROKEN_WORDS = {
-    medium.BROKEN_DEAF: "station {node} sent while its radio could not",
-    medium.BROKEN_AIR: "station {node} has too many transmissions under way",
-    medium.BROKEN_EMPTY: "station {node} sent a frame of no slots",
-    loop.BROKEN_OUTBOX: "outbox of station {node} overflowed",
-    loop.BROKEN_FRAME: "a receiver changed the frame that station {node} had sent",
-    recorder.BROKEN_TURNS: "station {node} began a turn while another station had its own",
-    recorder.BROKEN_RANGE: "a value of station {node} is out of its declared range",
-}
-
-
-def broken_line(plan: Any, world: w.World) -> str:
-    """A broken invariant in one line."""
-    node = int(get(world.run, 0, "broken_node"))
-    at = max(int(get(world.run, 0, "broken_at")), 0) / 1e6
-    what = BROKEN_WORDS[int(get(world.run, 0, "broken"))].format(node=node)
-    return f"invariant broken at {at:.6f} s (seed {plan.seed}): {what}"
