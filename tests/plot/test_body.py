@@ -181,7 +181,7 @@ def test_what_was_delivered_so_far_and_how_fast():
     assert reports.get_ydata().tolist() == [1, 2, 2]
     assert made.axes[0].get_xlim() == (0, 2.0)
     with pytest.raises(ValueError, match='no figure "x"; there are delivered, latency'):
-        figures.draw(None, "x")
+        figures.draw(Of(result=result([])), "x")
 
 
 def test_a_table_says_what_each_node_was_at_the_end(monkeypatch):

@@ -18,6 +18,7 @@ import innervate
 from innervate import scenario
 from innervate.network import networks
 from innervate.networks.skin.plot.words import fault_words
+from innervate.plot import figures as drawing
 from innervate.plot import notebook, panels, report, style
 from tests.fixtures.plots import MANY_EVENTS, make_tables
 from tests.networks.mesh.tables_runs import mesh_tables, without_fence
@@ -65,12 +66,12 @@ def body(run: Any) -> str:
 
 def figures(run: Any, prefix: str, **options: dict[str, Any]) -> dict[str, Drawn]:
     """Every figure of a run, and some with other options."""
-    made = networks()[run.summary["kind"]].figures
     found: dict[str, Drawn] = {
-        f"{prefix}, {name}": lambda name=name: made.draw(run, name) for name in made.FIGURES
+        f"{prefix}, {name}": lambda name=name: drawing.draw(run, name)
+        for name in networks()[run.summary["kind"]].figures
     }
     for name, more in options.items():
-        found[f"{prefix}, {name} {more}"] = lambda name=name, more=more: made.draw(
+        found[f"{prefix}, {name} {more}"] = lambda name=name, more=more: drawing.draw(
             run, name, **more
         )
     return found
@@ -242,14 +243,13 @@ def ring(kind: str) -> Any:
     tables = {"kind": "tokenring", "nodes": 5, "duration_s": 0.3, "event": events}
     with ring_known():
         run = timeless(innervate.run(tables, plain=True))
-        made = networks()["tokenring"]
         if kind == "page":
             return report.render(run)
         if kind == "notebook":
             return notebook.render(run.result, run.summary)
         if kind == "said":
             return import_module("innervate.plot.lines").summary_lines(run)
-        return made.figures.draw(run, kind)
+        return drawing.draw(run, kind)
 
 
 def of_spine() -> Iterator[tuple[str, Drawn]]:

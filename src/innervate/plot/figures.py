@@ -10,27 +10,19 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.analysis.summary import known_latencies_us
+from innervate.network import networks
 from innervate.plot import charts, paint, style
 from innervate.plot.svg import Drawing
 
 
-def draw(run: Any, figure: str = "delivered", **options: Any) -> Figure:
-    """One of FIGURES of a run; save it with `.savefig`.
+def draw(run: Any, figure: str = "", **options: Any) -> Figure:
+    """A figure of a run by its name, or the first, in the house's style; save it with `.savefig`.
 
     Raises:
         ValueError: no figure of that name.
     """
-    return draw_one(FIGURES, run, figure, options)
-
-
-def draw_one(
-    figures: Mapping[str, Callable[..., Figure]], run: Any, figure: str, options: dict[str, Any]
-) -> Figure:
-    """The figure of that name, in the house's style.
-
-    Raises:
-        ValueError: no figure of that name.
-    """
+    figures: Mapping[str, Callable[..., Figure]] = networks()[run.result.plan.kind].figures
+    figure = figure or next(iter(figures))
     if figure not in figures:
         raise ValueError(f'no figure "{figure}"; there are {", ".join(figures)}')
     with style.house():

@@ -123,8 +123,7 @@ class Run(Summaries):
 
     def plot(self, figure: str = "", **options: Any) -> Any:
         """A matplotlib figure of the run; the error of one that is none says which there are."""
-        drawn = (figure,) if figure else ()
-        return networks()[self.plan.kind].figures.draw(self, *drawn, **options)
+        return import_module("innervate.plot.figures").draw(self, figure, **options)
 
     def report(self) -> str:
         """The run's report, one page of HTML."""

@@ -80,7 +80,7 @@ class Cables(Simulation):
         )
 
     def broken_us(self) -> int:
-        """When it broke, us."""
+        """When it broke, as it was noted, us."""
         return max(int(get(self.world.run, 0, "broken_at")), 0)
 
     def whom(self) -> dict[str, str]:

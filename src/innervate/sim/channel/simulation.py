@@ -25,7 +25,7 @@ class Channel(Simulation):
         return int(get(self.world.run, 0, "completed")) >= wanted > 0
 
     def broken_us(self) -> int:
-        """When it broke, us."""
+        """When it broke, as it was noted, us."""
         return max(int(get(self.world.run, 0, "broken_at")), 0)
 
     def clock_us(self) -> int:

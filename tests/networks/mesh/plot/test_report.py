@@ -5,12 +5,12 @@ import pytest
 
 from innervate import run
 from innervate.networks.mesh.analysis.alarms import all_crossings
-from innervate.networks.mesh.plot import figures as mesh_figures
 from innervate.networks.mesh.plot import film as mesh_film
 from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot import report as mesh_report
+from innervate.networks.mesh.plot.figures import FIGURES
 from innervate.networks.mesh.plot.sheet import Labels, Sheet
-from innervate.plot import style
+from innervate.plot import figures, style
 from tests.networks.mesh.tables_runs import mesh_tables, without_fence
 from tests.plot.ink import measured
 
@@ -127,10 +127,10 @@ def test_labels_without_room_are_left_out():
     assert names.put((50.0, 15.0), "much too long a name", 9.0) is None
 
 
-@pytest.mark.parametrize("figure", mesh_figures.FIGURES)
+@pytest.mark.parametrize("figure", FIGURES)
 @pytest.mark.parametrize("which", ["field", "plain"])
 def test_each_figure_draws(which, figure, request, tmp_path):
-    made = mesh_figures.draw(request.getfixturevalue(which), figure)
+    made = figures.draw(request.getfixturevalue(which), figure)
     with style.house():
         style.save(made, tmp_path, figure)
     _, ink = measured(tmp_path / f"{figure}.png", 0.97)

@@ -6,11 +6,11 @@ from innervate import scenario
 from innervate.dialect.access import REPORT_DELIVERED
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.analysis.headline import headline
-from innervate.networks.radio.plot import figures as radio_figures
 from innervate.networks.radio.plot import report as radio_report
 from innervate.networks.radio.plot import scene as radio_scene
 from innervate.networks.radio.plot import timeline as radio_timeline
 from innervate.networks.radio.plot import words as words
+from innervate.networks.radio.plot.figures import FIGURES
 from innervate.networks.radio.protocol.constants import (
     CRR,
     DATA,
@@ -21,7 +21,7 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_TURN,
 )
 from innervate.networks.radio.scenario.plan import RadioFault
-from innervate.plot import page, style
+from innervate.plot import figures, page, style
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from tests.networks.radio.runs import START_US, run
 from tests.networks.skin.plot.test_report import read
@@ -194,11 +194,11 @@ def test_who_is_off_is_shown(runs, parse, texts):
     assert "station 3: next 2 CR-Rs not heard by anybody" in body
 
 
-@pytest.mark.parametrize("figure", radio_figures.FIGURES)
+@pytest.mark.parametrize("figure", FIGURES)
 @pytest.mark.parametrize("name", ["four", "hundred", "faults", "nothing"])
 @pytest.mark.few(6)
 def test_each_figure_draws(runs, name, figure, tmp_path):
-    made = radio_figures.draw(SimpleNamespace(result=runs[name]), figure)
+    made = figures.draw(SimpleNamespace(result=runs[name]), figure)
     with style.house():
         style.save(made, tmp_path, figure)
     _, ink = measured(tmp_path / f"{figure}.png", 0.97)
@@ -207,7 +207,7 @@ def test_each_figure_draws(runs, name, figure, tmp_path):
 
 def test_an_unknown_figure_is_refused(runs):
     with pytest.raises(ValueError, match='no figure "routes"; there are timeline, delay'):
-        radio_figures.draw(SimpleNamespace(result=runs["four"]), "routes")
+        figures.draw(SimpleNamespace(result=runs["four"]), "routes")
 
 
 def test_words_of_reports():

@@ -13,16 +13,7 @@ from innervate.networks.mesh.plot import charts
 from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.plot import paint, style
-from innervate.plot.figures import chart, draw_one, nothing
-
-
-def draw(run: Any, figure: str = "field", **options: Any) -> Figure:
-    """One of FIGURES of a run; save it with `.savefig`.
-
-    Raises:
-        ValueError: no figure of that name.
-    """
-    return draw_one(FIGURES, run, figure, options)
+from innervate.plot.figures import chart, nothing
 
 
 def field(run: Any) -> Figure:

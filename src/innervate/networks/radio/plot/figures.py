@@ -12,16 +12,7 @@ from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot import charts
 from innervate.networks.radio.plot import timeline as radio_timeline
 from innervate.plot import paint
-from innervate.plot.figures import chart, draw_one
-
-
-def draw(run: Any, figure: str = "timeline", **options: Any) -> Figure:
-    """One of FIGURES of a run (anything with a `result`); save it with `.savefig`.
-
-    Raises:
-        ValueError: no figure of that name.
-    """
-    return draw_one(FIGURES, run, figure, options)
+from innervate.plot.figures import chart
 
 
 def timeline(run: Any, from_us: int | None = None, to_us: int | None = None) -> Figure:

@@ -140,7 +140,7 @@ class RadioSimulation(Channel):
             put(self.world.run, 0, wanted=0)
 
     def whom(self) -> dict[str, str]:
-        """A station."""
+        """The station that it concerns, in words."""
         return {"node": f"station {int(get(self.world.run, 0, 'broken_node'))}"}
 
 

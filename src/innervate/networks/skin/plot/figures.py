@@ -14,18 +14,9 @@ from innervate.networks.skin.plot.report import legend
 from innervate.networks.skin.plot.words import fault_words
 from innervate.plot import paint, style
 from innervate.plot.charts import Axis, Mark, Steps
-from innervate.plot.figures import chart, draw_one
+from innervate.plot.figures import chart
 
 NAMED_MAX = 12  # of the marked events; each takes a row above the curve
-
-
-def draw(run: Any, figure: str = "recovery", **options: Any) -> Figure:
-    """One of FIGURES of a run, with its options; save it with `.savefig`.
-
-    Raises:
-        ValueError: no figure of that name.
-    """
-    return draw_one(FIGURES, run, figure, options)
 
 
 def recovery(run: Any, from_s: float | None = None, to_s: float | None = None) -> Figure:
