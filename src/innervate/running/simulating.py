@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from innervate import folders
 from innervate.analysis.summary import summarize
 from innervate.network import networks
@@ -19,12 +17,12 @@ from innervate.sim.counts import Counts
 from innervate.sim.driver import Ended, InvariantBroken, Simulation
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.tables import get
-from innervate.trace.tables import Column, Table
+from innervate.trace.tables import Column, Table, taken
 
 __all__ = ["TABLES", "call_words", "columns", "simulate", "summarize", "tables_of", "trail",
            "written_of"]  # fmt: skip
 
-_TIME = Column("time_us", "Int64", "us", "when, true time")
+_TIME = Column("time_us", "Int64", "us", "when, true time", "time")
 _NODE = Column("node", "Int32", "node", "who")
 REPORTS = Table(
     "reports",
@@ -36,6 +34,7 @@ REPORTS = Table(
         Column("a", "Int64", "raw", "of the report"),
         Column("b", "Int64", "raw", "of the report"),
     ),
+    rows="rows",
 )
 DELIVERIES = Table(
     "deliveries",
@@ -44,12 +43,11 @@ DELIVERIES = Table(
         _TIME,
         _NODE,
         Column("port", "Int32", "port", "it came in on"),
-        Column("latency_us", "Int64", "us", "since it was sent"),
+        Column("latency_us", "Int64", "us", "since it was sent", "latency"),
     ),
+    rows="deliveries",
 )
 TABLES = (REPORTS, DELIVERIES)
-_ROWS = {REPORTS.name: "rows", DELIVERIES.name: "deliveries"}
-_FIELDS = {"time_us": "time", "latency_us": "latency"}
 
 
 @dataclass(slots=True)
@@ -136,7 +134,7 @@ def _result(plan: Any, running: Simulation, ended: Ended) -> Result:
 
 def tables_of(result: Any) -> tuple[Table, ...]:
     """The tables of a run: of the rows that its loop keeps."""
-    return tuple(table for table in TABLES if _ROWS[table.name] in result.rows)
+    return tuple(table for table in TABLES if table.rows in result.rows)
 
 
 written_of = tables_of
@@ -144,14 +142,11 @@ written_of = tables_of
 
 def columns(table: Table, result: Any) -> dict[str, Any]:
     """One array for every column of a table; what rows do not say is null."""
-    rows = result.rows[_ROWS[table.name]]
-    found = {}
-    for column in table.columns:
-        name = _FIELDS.get(column.name, column.name)
-        has = name in rows.dtype.names
-        found[column.name] = np.ascontiguousarray(rows[name]) if has else [None] * len(rows)
-        if name == "latency" and has:
-            found[column.name] = [us if us >= 0 else None for us in rows[name].tolist()]
+    rows = result.rows[table.rows]
+    found = dict.fromkeys((column.name for column in table.columns), [None] * len(rows))
+    found |= taken(table, rows)
+    if "latency" in rows.dtype.names:
+        found["latency_us"] = [us if us >= 0 else None for us in rows["latency"].tolist()]
     return found
 
 

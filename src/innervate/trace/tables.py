@@ -18,25 +18,41 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column: its name, its polars type by name, its unit and its meaning."""
+    """A column: its name, its polars type by name, its unit and its meaning.
+
+    `field` of the simulation's rows holds it where that is called otherwise.
+    """
 
     name: str
     kind: str
     unit: str
     meaning: str
+    field: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
     """A table: its name (also its file's), what a row is, and its columns.
 
-    In recordings it is called as it is, or by its `topic`.
+    In recordings it is called as it is, or by its `topic`; `rows` of a result hold it, where its
+    columns are taken from there as they are.
     """
 
     name: str
     row: str
     columns: tuple[Column, ...]
     topic: str = ""
+    rows: str = ""
+
+
+def taken(table: Table, rows: Any) -> dict[str, Any]:
+    """One array for every column that an array of records has a field for."""
+    import numpy as np
+
+    fields = {column.name: column.field or column.name for column in table.columns}
+    # Fields of records lie apart in memory; polars wants each in one piece.
+    return {name: np.ascontiguousarray(rows[field])
+            for name, field in fields.items() if field in rows.dtype.names}  # fmt: skip
 
 
 def frame(table: Table, columns: Mapping[str, Any]) -> polars.DataFrame:

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from innervate.networks.mesh import tables as mesh_tables
 from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER, messages
@@ -16,7 +14,7 @@ from innervate.networks.mesh.plot.words import HANDED, PACKETS, TIMERS
 from innervate.networks.mesh.sim import simulate as simulator
 from innervate.sim.field.access import MAC
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
-from innervate.trace.tables import Table
+from innervate.trace.tables import Table, taken
 
 __all__ = ["call_words", "columns", "simulate", "summarize", "tables_of", "trail"]
 
@@ -45,12 +43,12 @@ written_of = tables_of
 
 def columns(table: Table, result: Any) -> Columns:
     """One array for every column of a table."""
-    made = _MAKERS[table.name](result)
-    # Fields of rows lie apart in memory; polars wants each in one piece.
-    return {
-        name: np.ascontiguousarray(values) if isinstance(values, np.ndarray) else values
-        for name, values in made.items()
-    }
+    if table.name in _MAKERS:
+        return _MAKERS[table.name](result)
+    found = taken(table, getattr(result, table.rows))
+    if "looped" in found:
+        found["looped"] = found["looped"] == 1
+    return found
 
 
 def _or_null(values: Any) -> list[int | None]:
@@ -79,45 +77,7 @@ def _crossings(result: Any) -> Columns:
     }  # fmt: skip
 
 
-def _deliveries(result: Any) -> Columns:
-    rows = result.delivered
-    return {
-        "time_us": rows["time"],
-        "hops": rows["path_len"],
-        "looped": rows["looped"] == 1,
-        **{name: rows[name] for name in ("node", "kind", "flags", "origin", "seq")},
-    }
-
-
-def _sent(result: Any) -> Columns:
-    rows = result.sent
-    same = [column.name for column in mesh_tables.SENT.columns[2:]]
-    return {
-        "start_us": rows["time"],
-        "end_us": rows["end"],
-        **{name: rows[name] for name in same},
-    }
-
-
-def _rounds(result: Any) -> Columns:
-    rows = result.rounds
-    same = [column.name for column in mesh_tables.ROUNDS.columns[1:]]
-    return {"time_us": rows["time"], **{name: rows[name] for name in same}}
-
-
-def _reports(result: Any) -> Columns:
-    rows = result.rows
-    return {"time_us": rows["time"], **{name: rows[name] for name in ("node", "code", "a", "b")}}
-
-
-_MAKERS = {
-    mesh_tables.MESSAGES.name: _messages,
-    mesh_tables.CROSSINGS.name: _crossings,
-    mesh_tables.DELIVERIES.name: _deliveries,
-    mesh_tables.SENT.name: _sent,
-    mesh_tables.ROUNDS.name: _rounds,
-    mesh_tables.REPORTS.name: _reports,
-}
+_MAKERS = {mesh_tables.MESSAGES.name: _messages, mesh_tables.CROSSINGS.name: _crossings}
 
 
 def trail(plan: Any, until_us: int) -> Iterator[Any]:

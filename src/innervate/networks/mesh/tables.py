@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from innervate.trace.tables import Column, Table
 
-_TIME = Column("time_us", "Int64", "us", "when, true time")
+_TIME = Column("time_us", "Int64", "us", "when, true time", "time")
 _NODE = Column("node", "Int16", "node", "who")
 _FLAGS = Column("flags", "Int16", "flags", "of its header: 2 end to end, 4 flood, 128 retry, ...")
 _KIND = Column("kind", "Int8", "type", "8 data, 10 alarm; the others: protocol/constants.py")
@@ -53,17 +53,18 @@ DELIVERIES = Table(
         _FLAGS,
         _ORIGIN,
         _SEQ,
-        Column("hops", "Int16", "hops", "transmissions on its way"),
+        Column("hops", "Int16", "hops", "transmissions on its way", "path_len"),
         Column("looped", "Boolean", "", "a node was twice on its way"),
     ),
     topic="/alarms",
+    rows="delivered",
 )
 SENT = Table(
     "transmissions",
     "a node sent something",
     (
-        Column("start_us", "Int64", "us", "first moment on the air"),
-        Column("end_us", "Int64", "us", "last moment on the air"),
+        Column("start_us", "Int64", "us", "first moment on the air", "time"),
+        Column("end_us", "Int64", "us", "last moment on the air", "end"),
         _NODE,
         _KIND,
         _FLAGS,
@@ -75,6 +76,7 @@ SENT = Table(
         Column("bytes", "Int16", "bytes", "without those of the PHY"),
         Column("receivers", "Int16", "nodes", "how many received it, others than meant too"),
     ),
+    rows="sent",
 )
 ROUNDS = Table(
     "rounds",
@@ -87,6 +89,7 @@ ROUNDS = Table(
         Column("good", "Int32", "links", "that are good in both directions at the start"),
         Column("both", "Int32", "links", "that it knows and that are good"),
     ),
+    rows="rounds",
 )
 REPORTS = Table(
     "reports",
@@ -98,5 +101,6 @@ REPORTS = Table(
         Column("a", "Int32", "", "first detail"),
         Column("b", "Int32", "", "second detail"),
     ),
+    rows="rows",
 )
 TABLES = (MESSAGES, CROSSINGS, DELIVERIES, SENT, ROUNDS, REPORTS)

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from innervate.dialect.access import CLOCK, LEAVE, RESULT
 from innervate.networks.radio import tables as radio_tables
 from innervate.networks.radio.analysis import summary as analysis
@@ -17,9 +15,7 @@ from innervate.networks.radio.sim import simulate as simulator
 from innervate.networks.radio.slotted import run as radio_slotted
 from innervate.sim.channel.loop import ON_CARRIER
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
-from innervate.trace.tables import Table
-
-Columns = dict[str, Any]
+from innervate.trace.tables import Table, taken
 
 
 def simulate(
@@ -55,50 +51,9 @@ def tables_of(result: Any) -> tuple[Table, ...]:
 written_of = tables_of
 
 
-def columns(table: Table, result: Any) -> Columns:
+def columns(table: Table, result: Any) -> dict[str, Any]:
     """One array for every column of a table."""
-    made = _MAKERS[table.name](result)
-    # Fields of rows lie apart in memory; polars wants each in one piece.
-    return {name: np.ascontiguousarray(values) for name, values in made.items()}
-
-
-def _packets(result: Any) -> Columns:
-    rows = result.packets
-    return {
-        "station": rows["node"],
-        "offered_us": rows["offered"],
-        "ended_us": rows["end"],
-        "known_us": rows["time"],
-        **{name: rows[name] for name in ("handle", "slots", "tries", "receivers", "listeners")},
-    }
-
-
-def _sent(result: Any) -> Columns:
-    rows = result.sent
-    return {
-        "start_us": rows["time"],
-        "end_us": rows["end"],
-        "station": rows["node"],
-        "position": rows["pos"],
-        "packets": rows["count"],
-        **{name: rows[name] for name in ("kind", "slots", "next", "handle")},
-    }
-
-
-def _reports(result: Any) -> Columns:
-    rows = result.rows
-    return {
-        "time_us": rows["time"],
-        "station": rows["node"],
-        **{name: rows[name] for name in ("code", "a", "b")},
-    }
-
-
-_MAKERS = {
-    radio_tables.PACKETS.name: _packets,
-    radio_tables.SENT.name: _sent,
-    radio_tables.REPORTS.name: _reports,
-}
+    return taken(table, getattr(result, table.rows))
 
 
 def trail(plan: Any, until_us: int) -> Iterator[Any]:

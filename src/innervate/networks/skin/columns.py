@@ -9,7 +9,7 @@ import numpy as np
 from innervate.networks.skin.analysis import rows
 from innervate.networks.skin.protocol.constants import PORTS
 from innervate.networks.skin.tables import LINKS, LOOPS, OUTAGES, RECEIVED, ROUTES
-from innervate.trace.tables import Table
+from innervate.trace.tables import Table, taken
 
 Columns = dict[str, Any]
 
@@ -65,17 +65,11 @@ def _loops(result: Any) -> Columns:
 
 def _received(result: Any) -> Columns:
     part = result.deliveries
-    made = {
-        "time_us": part["time"],
-        "interface": part["port"],
-        **{name: part[name] for name in ("cell", "seq", "hops", "proximity", "temperature")},
-        "latency_us": part["latency"],
-    }
+    made = taken(RECEIVED, part)
     for i in range(3):
-        made[f"force_{i}"] = part["force"][:, i]
-        made[f"accel_{'xyz'[i]}"] = part["accel"][:, i]
-    # Fields of rows lie apart in memory; polars wants each in one piece.
-    return {name: np.ascontiguousarray(values) for name, values in made.items()}
+        made[f"force_{i}"] = np.ascontiguousarray(part["force"][:, i])
+        made[f"accel_{'xyz'[i]}"] = np.ascontiguousarray(part["accel"][:, i])
+    return made
 
 
 _MAKERS = {

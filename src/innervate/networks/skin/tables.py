@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from innervate.trace.tables import Column, Table
 
-_TIME = Column("time_us", "Int64", "us", "when, true time")
+_TIME = Column("time_us", "Int64", "us", "when, true time", "time")
 _CELL = Column("cell", "Int32", "cell", "who")
 
 ROUTES = Table(
@@ -57,11 +57,11 @@ RECEIVED = Table(
     "the PC received a tactile sample",
     (
         _TIME,
-        Column("interface", "Int16", "port", "interface port it came in on"),
+        Column("interface", "Int16", "port", "interface port it came in on", "port"),
         Column("cell", "Int32", "cell", "who measured it"),
         Column("seq", "Int16", "number", "counts the cell's samples, 0..255"),
         Column("hops", "Int16", "hops", "cells that forwarded it"),
-        Column("latency_us", "Int64", "us", "since it was measured"),
+        Column("latency_us", "Int64", "us", "since it was measured", "latency"),
         Column("proximity", "Int32", "raw", "nearness of an object, 0 far"),
         Column("force_0", "Int32", "mN", "first force sensor"),
         Column("force_1", "Int32", "mN", "second force sensor"),
