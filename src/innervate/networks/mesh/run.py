@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable
 from typing import Any
 
 from innervate.networks.mesh import tables as mesh_tables
@@ -12,6 +11,7 @@ from innervate.networks.mesh.analysis.messages import NEVER, messages
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.plot.words import HANDED, PACKETS, TIMERS
 from innervate.networks.mesh.sim import simulate as simulator
+from innervate.running.simulating import trail
 from innervate.sim.field.access import MAC
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table, taken
@@ -78,12 +78,6 @@ def _crossings(result: Any) -> Columns:
 
 
 _MAKERS = {mesh_tables.MESSAGES.name: _messages, mesh_tables.CROSSINGS.name: _crossings}
-
-
-def trail(plan: Any, until_us: int) -> Iterator[Any]:
-    """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
-    shorter = replace(plan, duration_us=until_us)
-    yield simulator.simulate(shorter, checks=False, observe=False, trail=True).trail
 
 
 def call_words(plan: Any, row: Any) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
 from innervate.dialect.access import CLOCK, LEAVE, RESULT
@@ -13,6 +12,7 @@ from innervate.networks.radio.analysis.summary_keys import RadioSummary, Slotted
 from innervate.networks.radio.protocol.constants import MAIN
 from innervate.networks.radio.sim import simulate as simulator
 from innervate.networks.radio.slotted import run as radio_slotted
+from innervate.running import simulating
 from innervate.sim.channel.loop import ON_CARRIER
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table, taken
@@ -58,10 +58,7 @@ def columns(table: Table, result: Any) -> dict[str, Any]:
 
 def trail(plan: Any, until_us: int) -> Iterator[Any]:
     """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
-    if _is_slotted(plan):
-        return  # it has no handler calls
-    shorter = replace(plan, duration_us=until_us)
-    yield simulator.simulate(shorter, checks=False, observe=False, trail=True).trail
+    return iter(()) if _is_slotted(plan) else simulating.trail(plan, until_us)
 
 
 def summary_name(summary: Mapping[str, Any]) -> str:
