@@ -7,8 +7,8 @@ import pytest
 
 from innervate.dialect.outbox import SEND, SET_TIMER
 from innervate.prove.errors import ProveError
-from innervate.prove.parity import TRIES, Twin
 from innervate.prove.records import Record
+from tests.prove.parity import TRIES, Twin
 
 FRAME = (("kind", 0, 0, 7, "kind", ""), ("to", 2, 1, 30, "x", ""))
 

@@ -6,10 +6,10 @@ import pytest
 
 from innervate.network import networks
 from innervate.networks.mesh.prove import theories
-from innervate.networks.mesh.prove import twins as mesh_twins
-from innervate.networks.mesh.prove.twins import twins
 from innervate.prove.faults import faults_of, hunt
 from innervate.prove.theory import prove
+from tests.networks.mesh.prove import twins as mesh_twins
+from tests.networks.mesh.prove.twins import twins
 
 MESH = networks()["mesh"]
 # The theory and the step that are quick to refute it.

@@ -6,9 +6,9 @@ from innervate.dialect.plain import make
 from innervate.network import networks
 from innervate.networks.mesh.protocol import duplicates, fields
 from innervate.networks.mesh.prove import hops, theories
-from innervate.networks.mesh.prove.twins import HOPS, hop_twin
 from innervate.prove.faults import faults_of
 from innervate.prove.theory import prove, source
+from tests.networks.mesh.prove.twins import HOPS, hop_twin
 
 FAULTS = (
     "who had the packet is asked again",

@@ -4,10 +4,10 @@ import random
 
 import pytest
 
-from innervate.networks.skin.prove.twins import HANDLERS, twins
-from innervate.prove.parity import compiled
 from innervate.prove.solve import Formulas, z3
 from innervate.prove.terms import Terms
+from tests.networks.skin.prove.twins import HANDLERS, twins
+from tests.prove.parity import compiled
 
 CALLS = 150  # of each handler
 ALL_CALLS = 25_000  # ... in `make full`: 100,000 in all

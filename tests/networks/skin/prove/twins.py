@@ -6,7 +6,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.prove.parity import Twin, twin
+from tests.prove.parity import Twin, twin
 
 DECLARED = {"cell": fields.CELL, "params": fields.PARAMS, "frame": fields.FRAME}
 GIVEN = ("cell", "params", ("now", 0, MASK30))

@@ -8,8 +8,8 @@ from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.protocol.constants import SEARCH
 from innervate.networks.mesh.prove import hops
 from innervate.networks.mesh.prove.theories import DELIVERED, ENTRY, ORIGINS
-from innervate.prove.parity import Twin, twin
 from innervate.prove.records import Declaration
+from tests.prove.parity import Twin, twin
 
 PACKETS = fields.packets(ORIGINS)
 PACKET = (("origin", 0, 254), ("seq", 0, MASK16), ("who", 0, 254))
