@@ -6,22 +6,13 @@ what `run.skin` holds. Nothing is loaded from here but by who asks for one of th
 
 from __future__ import annotations
 
-from innervate.networks.mesh.analysis.summary_keys import MeshSummary
-from innervate.networks.radio.analysis.summary_keys import RadioSummary, SlottedSummary
-from innervate.networks.skin.analysis.summary_keys import SkinSummary
-from innervate.networks.skin.sizing import Answer, Question, size
-
-__all__ = [
-    "Answer",
-    "MeshSummary",
-    "Question",
-    "RadioSummary",
-    "SkinSummary",
-    "SlottedSummary",
-    "Summaries",
-    "Summary",
-    "size",
-]
+from innervate.networks.mesh.analysis.summary_keys import MeshSummary as MeshSummary
+from innervate.networks.radio.analysis.summary_keys import RadioSummary as RadioSummary
+from innervate.networks.radio.analysis.summary_keys import SlottedSummary as SlottedSummary
+from innervate.networks.skin.analysis.summary_keys import SkinSummary as SkinSummary
+from innervate.networks.skin.sizing import Answer as Answer
+from innervate.networks.skin.sizing import Question as Question
+from innervate.networks.skin.sizing import size as size
 
 # `kind` tells them apart; of radio's two, the slotted one has the key `level`.
 Summary = SkinSummary | RadioSummary | SlottedSummary | MeshSummary

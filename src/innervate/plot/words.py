@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from innervate.analysis.words import figure_words, share_words
-
-__all__ = [
-    "count_words",
-    "figure_words",
-    "headline_line",
-    "ms_words",
-    "number_of",
-    "share_words",
-    "stood_words",
-]
+from innervate.analysis.words import figure_words as figure_words
+from innervate.analysis.words import share_words as share_words
 
 
 def headline_line(found: Mapping[str, object]) -> str:

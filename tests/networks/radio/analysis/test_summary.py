@@ -5,8 +5,10 @@ import pytest
 
 import innervate
 from innervate.dialect.access import REPORT_LEFT
+from innervate.networks.radio.analysis import air, airtime
 from innervate.networks.radio.analysis import air as radio_air
 from innervate.networks.radio.analysis import airtime as radio_airtime
+from innervate.networks.radio.analysis import packets as radio_packets
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot.words import off_words
 from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_BOUNDS
@@ -104,7 +106,7 @@ def test_nothing_ever_happened():
     assert summary["order"] == []
     assert summary["collisions"] == 0
     assert summary["bounds_noticed"] == {"count": 0, "stations": []}
-    assert radio.airtime_steps(made()).values.max() == 0
+    assert airtime.airtime_steps(made()).values.max() == 0
 
 
 def test_saturation_leaves_out_the_first_tenth():
@@ -112,8 +114,8 @@ def test_saturation_leaves_out_the_first_tenth():
     ends = [1000, 2000, *range(2010, 2190, 10)]
     packets = [packet(0, end * SLOT, i % 2) for i, end in enumerate(ends)]
     result = made(packets, traffic="saturated")
-    assert len(radio.settled(result)) == 18
-    assert radio.throughput(result) == pytest.approx(0.5)
+    assert len(radio_packets.settled(result)) == 18
+    assert airtime.throughput(result) == pytest.approx(0.5)
     assert radio.delays(result)[0] == 2010
 
 
@@ -153,7 +155,7 @@ def test_collisions_are_groups_with_a_packet_in_them():
         sent(2000, 2208, 0, CRR), sent(2100, 2308, 1, CRR),  # CR-Rs among themselves
         sent(3000, 3416, 0, OPEN), sent(3100, 3308, 1, CRR),
     ]  # fmt: skip
-    found = radio.groups(made(sent=on_air))
+    found = air.groups(made(sent=on_air))
     assert found.members.tolist() == [3, 1, 2, 2]
     assert found.collision.tolist() == [True, False, False, True]
     assert found.start.tolist() == [0, 1600, 2000, 3000]
@@ -176,7 +178,7 @@ def test_measured_delays():
 def test_throughput_over_time():
     # A frame of two packets from 0 to 10 slots, one of a single packet from 15 to 20.
     packets = [packet(0, 10 * SLOT, 0), packet(0, 10 * SLOT, 0), packet(0, 20 * SLOT, 1)]
-    steps = radio.airtime_steps(made(packets), 4, 0, 20 * SLOT)
+    steps = airtime.airtime_steps(made(packets), 4, 0, 20 * SLOT)
     assert steps.values == pytest.approx([1, 1, 0, 1])
     assert steps.time_us.tolist() == [0, 5 * SLOT, 10 * SLOT, 15 * SLOT]
     assert radio_airtime._spans(made(packets), made(packets).packets)[0].tolist() == [0, 1040, 3120]
@@ -185,21 +187,21 @@ def test_throughput_over_time():
 def test_signals_by_hand():
     # 0 sends 0-1000, 1 sends 400-800: 2 hears both after 52 us; the senders hear what is left.
     result = made(sent=[sent(0, 1000, 0), sent(400, 800, 1)], stations=3)
-    first, second, third = radio.signals(result, -10, 2000)
+    first, second, third = air.signals(result, -10, 2000)
     assert first.deaf.tolist() == [[0, 1000]]
     assert first.cd.tolist() == []
     assert second.cd.tolist() == second.voc.tolist() == [[52, 400], [800, 1052]]
     assert third.cd.tolist() == [[52, 1052]]
     assert third.voc.tolist() == [[52, 452], [852, 1052]]
     assert third.deaf.tolist() == third.off.tolist() == []
-    assert radio.signals(result, 500, 600)[2].cd.tolist() == [[500, 600]]
+    assert air.signals(result, 500, 600)[2].cd.tolist() == [[500, 600]]
 
 
 def test_signals_with_a_turnaround_faults_and_hidden_stations():
     faults = [RadioFault(500, KILL, 0, 0, 0), RadioFault(5000, JOIN, 0, 0, 1)]
     result = made(sent=[sent(100, 1140, 0)], stations=3, ta=100, faults=faults)
     result.plan.delays_us[0][2] = -1
-    first, second, third = radio.signals(result, 0, 9000)
+    first, second, third = air.signals(result, 0, 9000)
     assert first.deaf.tolist() == [[0, 1240]]
     assert first.off.tolist() == [[500, 5000]]
     assert second.cd.tolist() == [[152, 552]]  # it stopped when its sender died
@@ -209,7 +211,7 @@ def test_signals_with_a_turnaround_faults_and_hidden_stations():
 def test_signals_of_what_a_fade_hid():
     faults = [RadioFault(0, GARBLE, 0, 1, 0), RadioFault(0, FADE, 0, 1, 1)]
     on_air = [sent(at, at + SLOT, 0, CRR) for at in (1000, 2000, 3000)]
-    heard = radio.signals(made(sent=on_air, faults=faults), 0, 9000)[1]
+    heard = air.signals(made(sent=on_air, faults=faults), 0, 9000)[1]
     assert heard.cd.tolist() == [[1052, 1260], [3052, 3260]]
 
 
@@ -251,7 +253,7 @@ def test_signals_are_what_the_medium_told_the_stations(n, options):
     told = result.trail[result.trail["handler"] == ON_CARRIER]
     assert len(told) > 4
     compared = 0
-    for station, heard in enumerate(radio.signals(result, 0, result.ended_us + 1)):
+    for station, heard in enumerate(air.signals(result, 0, result.ended_us + 1)):
         mine = told[told["node"] == station]
         # A station may decide to send in the moment in which it is told: deaf from there on.
         mine = mine[~inside(heard.deaf, mine["time"]) & ~inside(heard.off, mine["time"])]
@@ -279,7 +281,7 @@ def test_a_disaster_as_simulated(packet_slots):
     first_us = min(at for (at,) in result.plan.arrivals)
     assert summary["duration_slots"] == pytest.approx((last_us - first_us) / SLOT)
     assert summary["delay_slots"]["max"] <= summary["duration_slots"]
-    steps = radio.airtime_steps(result, 100)
+    steps = airtime.airtime_steps(result, 100)
     assert np.mean(steps.values) == pytest.approx(summary["throughput"])
 
 
@@ -315,22 +317,22 @@ def test_throughput_counts_the_time_in_which_nothing_came_through():
     # Three of 195 packets are delivered in the first 20 slots of 1,000; then nothing any more.
     packets = [packet(0, end * SLOT, 0) for end in (5, 12, 20)]
     poisson = made(packets, ended_us=1000 * SLOT, arrivals=[[0] * 195, []], wanted=0)
-    assert radio.throughput(poisson) == pytest.approx(3 * 5 / 1000)
-    assert radio.airtime_steps(poisson, 50).values[1:].max() == 0
+    assert airtime.throughput(poisson) == pytest.approx(3 * 5 / 1000)
+    assert airtime.airtime_steps(poisson, 50).values[1:].max() == 0
     stuck = made(packets, ended_us=1000 * SLOT, traffic="saturated", wanted=200)
-    assert radio.throughput(stuck) == pytest.approx(3 * 5 / 1000)
+    assert airtime.throughput(stuck) == pytest.approx(3 * 5 / 1000)
 
 
 def test_throughput_ends_with_the_last_packet_that_was_wanted():
     packets = [packet(0, end * SLOT, end % 2) for end in (5, 20)]
     done = made(packets, ended_us=1000 * SLOT, traffic="saturated", wanted=2)
-    assert radio.throughput(done) == pytest.approx(2 * 5 / 20)
+    assert airtime.throughput(done) == pytest.approx(2 * 5 / 20)
     # A disaster is over when nobody who is on waits any more, though who died had a packet.
     killed = [RadioFault(at_us=1, action=KILL, node=0, value=0, index=0)]
     over = made(packets[:1], ended_us=1000 * SLOT, faults=killed, arrivals=[[0], [0]], wanted=0)
-    assert radio.throughput(over) == 1.0
+    assert airtime.throughput(over) == 1.0
     put(over.world.radios, 1, alive=1, backlog=1)
-    assert radio.throughput(over) == pytest.approx(5 / 1000)
+    assert airtime.throughput(over) == pytest.approx(5 / 1000)
 
 
 def test_packets_of_who_left_are_told_apart():

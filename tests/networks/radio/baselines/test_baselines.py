@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from innervate.networks.radio.analysis import air as radio_air
+from innervate.networks.radio.analysis import airtime
 from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.analysis import summary as analysis
 from innervate.networks.radio.protocol.constants import REPORT_COLLISION, REPORT_STOPPED
@@ -84,7 +86,7 @@ def test_csma_cd_agrees_with_the_slotted_level(mac, packet_slots):
     # Delays of half a slot put all stations on a grid of slots. One station at a time has the
     # channel for long: means settle slowly.
     for n in (2, 10):
-        found = analysis.throughput(saturate(mac, n, packet_slots, 20_000))
+        found = airtime.throughput(saturate(mac, n, packet_slots, 20_000))
         exact = slotted(mac, n, packet_slots, "saturated", packets=20_000 // n).throughput
         assert close(found, exact, 0.03), n
 
@@ -95,7 +97,7 @@ def test_csma_cd_agrees_with_the_slotted_level(mac, packet_slots):
 def test_capture_and_its_absence(mac, packet_slots, published):
     # [radio F3]
     result = saturate(mac, 5, packet_slots, 20_000)
-    assert close(analysis.throughput(result), published)
+    assert close(airtime.throughput(result), published)
     if mac == "csma-cd-d2":
         assert close(analysis.jain_round(result), 0.20)
 
@@ -112,7 +114,7 @@ def test_two_stations_after_a_disaster(mac):
 
 def test_backoff_slots_longer_than_the_turnaround_keep_stations_apart():
     near, far = (
-        analysis.throughput(saturate("csma-cd-d2p", 10, 25, 8000, ta=2000, backoff_slots=slots))
+        airtime.throughput(saturate("csma-cd-d2p", 10, 25, 8000, ta=2000, backoff_slots=slots))
         for slots in (1, 11)
     )
     assert far > 1.1 * near
@@ -127,7 +129,7 @@ def test_dcf_agrees_with_bianchi(n, packet_slots):
             n, least, stages, payload=packet_slots, success=packet_slots + 3,
             collision=packet_slots + 1,
         )  # fmt: skip
-        assert close(analysis.throughput(result), exact)
+        assert close(airtime.throughput(result), exact)
 
 
 def aloha(result):
@@ -169,7 +171,7 @@ def test_csma(mac, packet_slots):
     n = 50
     for per_slot in (0.1, 0.5):
         result = saturate(mac, n, packet_slots, 6000, p=per_slot / n)
-        found = analysis.throughput(result)
+        found = airtime.throughput(result)
         p = result.plan.params["p_q15"] / 32768
         assert close(found, forms.finite_csma_throughput(n, packet_slots, p))
         # Who tries by chance in each slot makes Poisson traffic of load a G = n p.
@@ -189,9 +191,9 @@ def test_splitting(n):
 @pytest.mark.parametrize("packet_slots", [5, 25])
 def test_tdma(packet_slots):
     result = saturate("tdma", 7, packet_slots, 2100)
-    assert analysis.throughput(result) == pytest.approx(forms.slotted_bound(packet_slots))
+    assert airtime.throughput(result) == pytest.approx(forms.slotted_bound(packet_slots))
     assert analysis.order(result)[:7] == list(range(7))
-    slow = analysis.throughput(saturate("tdma", 7, packet_slots, 2100, ta=2000))
+    slow = airtime.throughput(saturate("tdma", 7, packet_slots, 2100, ta=2000))
     bound = forms.handover_bound(packet_slots, 2000 / SLOT_US, TAU_US / SLOT_US)
     assert slow == pytest.approx(bound)
 
@@ -201,11 +203,11 @@ def test_a_cable_breaks_collisions_off():
     stopped = result.rows[result.rows["code"] == REPORT_STOPPED]
     collided = result.rows[result.rows["code"] == REPORT_COLLISION]
     assert len(stopped) == len(collided) >= 5
-    air = analysis.air(result)
+    air = radio_air.air(result)
     short = air.end - air.start < 5 * SLOT_US
     assert short.sum() == len(stopped)
     assert ((air.end - air.start)[short] <= TAU_US).all()
-    found = analysis.groups(result)
+    found = radio_air.groups(result)
     assert not found.collision[found.of[~short]].any()
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from innervate import scenario
 from innervate.dialect.access import REPORT_DELIVERED
+from innervate.networks.radio.analysis import air, packets
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.analysis.headline import headline
 from innervate.networks.radio.plot import report as radio_report
@@ -130,10 +131,10 @@ def test_the_window_is_the_first_resolution(runs):
     for name in ("four", "saturated"):
         result = runs[name]
         low, high, origin = radio_scene.resolution(result)
-        first = radio.groups(result)
+        first = air.groups(result)
         assert origin == first.start[first.collision][0]
         assert low < origin < high
-        served = radio.successes(result)
+        served = packets.successes(result)
         inside = served[(served["end"] > low) & (served["end"] < high)]
         assert set(inside["node"].tolist()) == set(range(4))
         assert len(inside) <= 5

@@ -13,8 +13,8 @@ import numpy as np
 from innervate.analysis.summary_common import measured
 from innervate.networks.radio.analysis import headline as radio_headline
 from innervate.networks.radio.analysis import state as radio_state
-from innervate.networks.radio.analysis.air import Air, Groups, Heard, air, groups, signals
-from innervate.networks.radio.analysis.airtime import Steps, airtime_steps, throughput
+from innervate.networks.radio.analysis.air import groups
+from innervate.networks.radio.analysis.airtime import throughput
 from innervate.networks.radio.analysis.packets import (
     first_offer_us,
     settled,
@@ -24,33 +24,6 @@ from innervate.networks.radio.analysis.packets import (
 )
 from innervate.networks.radio.analysis.summary_keys import BoundsNoticed, Delays, RadioSummary
 from innervate.networks.radio.protocol.constants import REPORT_BOUNDS
-
-__all__ = [
-    "Air",
-    "Groups",
-    "Heard",
-    "Steps",
-    "air",
-    "airtime_steps",
-    "bounds_noticed",
-    "delay_slots",
-    "delays",
-    "duration_us",
-    "facts",
-    "fifo",
-    "first_offer_us",
-    "groups",
-    "jain",
-    "jain_round",
-    "order",
-    "settled",
-    "signals",
-    "successes",
-    "summarize",
-    "throughput",
-    "timed",
-    "traffic_of",
-]
 
 ORDER_MAX = 1000
 PAIRS_FROM = 20_000  # successes whose order is looked at

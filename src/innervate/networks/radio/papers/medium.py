@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from innervate.networks.radio.analysis import airtime
 from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.analysis.packets import settled, traffic_of
 from innervate.networks.radio.papers.common import TAU_US, Options
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.scenario.plan import RadioPlan, parameters
@@ -119,11 +121,11 @@ def measure(channel: Channel, seed: int) -> dict[str, Any]:
     result = channel.run(seed)
     length, slot = radio.duration_us(result), result.plan.params["slot_us"]
     return {
-        "throughput": radio.throughput(result),
+        "throughput": airtime.throughput(result),
         "duration": None if length is None else length / slot,
         "jain_round": radio.jain_round(result),
         "fifo": radio.fifo(result),
-        "ordered": is_ordered(result) if radio.traffic_of(result.plan) == "disaster" else None,
+        "ordered": is_ordered(result) if traffic_of(result.plan) == "disaster" else None,
         "open": left_open(result),
         "delay": radio.delay_slots(result),
         "waits": waits(result) if result.plan.saturated else None,
@@ -141,7 +143,7 @@ def left_open(result: Any) -> int:
 
 def waits(result: Any) -> list[float]:
     """Slots between two packets of a station that got through: 50, 95, 99 % and the longest."""
-    found = radio.settled(result)
+    found = settled(result)
     slot = result.plan.params["slot_us"]
     ends = (found["end"][found["node"] == node] for node in range(result.plan.stations))
     gaps = np.concatenate([np.diff(one) / slot for one in ends])

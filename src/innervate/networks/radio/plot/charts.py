@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.networks.radio.analysis import airtime, packets
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot.words import fault_words, slots_words
 from innervate.plot import words
@@ -19,8 +20,8 @@ NOTHING = "No packet was delivered."  # why a chart is empty
 
 def came(result: Any) -> Steps:
     """The packets delivered, so far."""
-    begin, slot = radio.first_offer_us(result), result.plan.params["slot_us"]
-    ends = (radio.successes(result)["end"] - begin) / slot
+    begin, slot = packets.first_offer_us(result), result.plan.params["slot_us"]
+    ends = (packets.successes(result)["end"] - begin) / slot
     x = Axis(0.0, 1.02 * float(ends[-1]), "slots after the first start")
     y = Axis(0.0, 1.08 * len(ends))
     head = "Packets delivered over time"
@@ -29,7 +30,7 @@ def came(result: Any) -> Steps:
 
 def filled(result: Any, bins: int = BINS) -> Steps:
     """Which share of the time delivered packets filled, over the run."""
-    steps = radio.airtime_steps(result, bins)
+    steps = airtime.airtime_steps(result, bins)
     seconds = steps.time_us / 1e6
     width = float(seconds[1] - seconds[0]) if bins > 1 else 1e-6
     share = 100.0 * steps.values
@@ -64,7 +65,7 @@ def delays(result: Any, summary: Mapping[str, Any]) -> Steps | None:
 
 def waits(result: Any) -> Bars:
     """When each station's packet was delivered, in a disaster."""
-    who = radio.timed(result)["node"].tolist()
+    who = packets.timed(result)["node"].tolist()
     found = dict(zip(who, radio.delays(result).tolist(), strict=True))
     bars = [
         Bar(f"station {i}", found.get(i, 0.0), slots_words(found[i]) if i in found else "never")
@@ -77,7 +78,7 @@ def waits(result: Any) -> Bars:
 def shares(result: Any, summary: Mapping[str, Any]) -> Bars:
     """Packets that each station got through, against the even share."""
     n = result.plan.stations
-    counts = np.bincount(radio.settled(result)["node"], minlength=n).tolist()
+    counts = np.bincount(packets.settled(result)["node"], minlength=n).tolist()
     text = "" if summary["jain"] is None else f"Jain's index {summary['jain']:.4f}; 1 is even."
     if summary["jain_round"] is not None:
         text += f" Over one round of {n} turns: {summary['jain_round']:.3f}."

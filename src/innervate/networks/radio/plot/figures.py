@@ -8,6 +8,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from innervate.networks.radio.analysis import airtime
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot import charts
 from innervate.networks.radio.plot import timeline as radio_timeline
@@ -33,7 +34,7 @@ def fairness(run: Any) -> Figure:
 
 def throughput(run: Any, bins: int = charts.BINS) -> Figure:
     """Share of the time that delivered packets fill, over the run, and the scenario's events."""
-    filled, mean = charts.filled(run.result, bins), radio.throughput(run.result)
+    filled, mean = charts.filled(run.result, bins), airtime.throughput(run.result)
     if mean is None:
         return chart(filled)
     head = f"Share of the time, %; dashed: throughput {mean:.3f}"

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from innervate.networks.radio.analysis import summary as radio
+from innervate.networks.radio.analysis import air
 from innervate.networks.radio.plot import charts as radio_charts
 from innervate.networks.radio.plot import scene as radio_scene
 from innervate.networks.radio.plot import slotted_report as radio_slotted_report
@@ -116,7 +116,7 @@ def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
     count = summary["collisions"]
     if not count:
         return ["No packet collided with another one."]
-    found = radio.groups(result)
+    found = air.groups(result)
     struck = found.collision
     most = int(found.members[struck].max())
     if count == 1:

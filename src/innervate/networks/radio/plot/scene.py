@@ -9,7 +9,7 @@ import numpy as np
 
 from innervate.dialect.access import REPORT_DELIVERED
 from innervate.networks.radio.analysis.air import Air, Groups, Heard, air, groups, signals
-from innervate.networks.radio.analysis.summary import first_offer_us, successes
+from innervate.networks.radio.analysis.packets import first_offer_us, successes
 from innervate.networks.radio.plot.words import FrameWords, frame_words, report_words, turn_words
 from innervate.networks.radio.protocol.constants import (
     DATA,

@@ -16,37 +16,14 @@ from innervate.networks.skin.analysis.reach import reach, skin_facts
 from innervate.networks.skin.analysis.recovery import recoveries, start_up
 from innervate.networks.skin.analysis.rows import (
     NEVER,
-    BrokenChanges,
-    LoopEpisodes,
-    ParentChanges,
-    UnroutedSteps,
     broken_changes,
     loop_episodes,
-    parent_changes,
-    unrouted_steps,
 )
 from innervate.networks.skin.analysis.summary_keys import BrokenPort, Loops, SkinSummary
 from innervate.networks.skin.protocol.constants import ONE, PORTS
 from innervate.networks.skin.scenario.warnings import warnings
 from innervate.sim.cables.world import ALIVE
 from innervate.topology import PORT_NAMES
-
-__all__ = [
-    "NEVER",
-    "BrokenChanges",
-    "LoopEpisodes",
-    "ParentChanges",
-    "UnroutedSteps",
-    "broken_changes",
-    "broken_ports",
-    "loop_episodes",
-    "loops",
-    "parent_changes",
-    "recoveries",
-    "start_up",
-    "summarize",
-    "unrouted_steps",
-]
 
 
 def summarize(result: Any) -> SkinSummary:

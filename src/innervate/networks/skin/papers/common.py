@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate import scenario
+from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import loop_episodes
-from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Measured, Point

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from innervate import scenario
 from innervate.networks.skin.analysis import formulas
+from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import unrouted_steps
-from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.papers import arm
 from innervate.networks.skin.papers.common import loaded, seeds_of
 from innervate.networks.skin.sim.simulate import simulate

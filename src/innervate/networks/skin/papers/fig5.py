@@ -12,8 +12,8 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import parent_changes
-from innervate.networks.skin.analysis.summary import recoveries
 from innervate.networks.skin.papers.common import seeds_of, simulated
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
 from innervate.papers.words import joined
