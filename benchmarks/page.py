@@ -4,11 +4,10 @@ The skin is slowed down so far that all frames on the cables are drawn on their 
 there is to draw; the server simulates on the same machine meanwhile.
 """
 
-import shutil
 import tempfile
 from pathlib import Path
 
-from tests.browser.servers import serving
+from tests.browser.servers import chromium, serving
 
 CELLS = {1_000: (40, 25), 4_000: (80, 50)}
 SPEED = 0.02
@@ -39,7 +38,7 @@ def measure(cells):
 
     None where Chromium is missing.
     """
-    path = shutil.which("chromium")
+    path = chromium()
     if path is None:
         return None
     from playwright.sync_api import sync_playwright

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -24,7 +23,7 @@ from playwright.sync_api import sync_playwright
 
 from docs.tour import FINE, FOLDER
 from innervate.live import status
-from tests.browser.servers import serving
+from tests.browser.servers import MISSING, chromium, serving
 
 PAGE = {"width": 1080, "height": 620}
 TEXT = FOLDER.parent / "firmware.md"
@@ -67,9 +66,9 @@ def picture(browser: Any, folder: Path) -> bytes:
 
 def main() -> int:
     """Take it."""
-    path = shutil.which("chromium")
+    path = chromium()
     if path is None:
-        print("Chromium is missing (Debian, Ubuntu: apt install chromium)", file=sys.stderr)
+        print(MISSING, file=sys.stderr)
         return 1
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
         folder = Path(name)

@@ -1,4 +1,4 @@
-"""Takes the pictures of docs/watch-tour.md and of the README's head, in Debian's Chromium.
+"""Takes the pictures of docs/watch-tour.md and of the README's head, in Chromium.
 
 `python -m docs.tour [NAME ...]` starts `innervate watch` for each picture, brings the network to a
 moment by its own controls, and writes docs/images/watch-NAME.png.
@@ -6,7 +6,6 @@ moment by its own controls, and writes docs/images/watch-NAME.png.
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Callable
 from io import BytesIO
@@ -16,7 +15,7 @@ from typing import Any
 from PIL import Image
 from playwright.sync_api import expect, sync_playwright
 
-from tests.browser.servers import PHONE, click, seek, serving
+from tests.browser.servers import MISSING, PHONE, chromium, click, seek, serving
 
 FOLDER = Path(__file__).resolve().parent / "images"
 FINE = 1.5  # px of the picture per px of the page
@@ -99,9 +98,9 @@ def take(browser: Any, name: str) -> int:
 
 def main(names: list[str]) -> int:
     """Take all pictures, or those that are named."""
-    path = shutil.which("chromium")
+    path = chromium()
     if path is None:
-        print("Chromium is missing (Debian, Ubuntu: apt install chromium)", file=sys.stderr)
+        print(MISSING, file=sys.stderr)
         return 1
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])

@@ -1,25 +1,21 @@
 """A browser, and servers that it can look at."""
 
 import os
-import shutil
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-from tests.browser.servers import SKIN, WIDE, beside
-
-# The headless shell draws the same, and takes a third less time: it has no window around the page.
-BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+from tests.browser.servers import MISSING, SKIN, WIDE, beside, chromium
 
 
 @pytest.fixture(scope="module")  # while it is open its event loop runs, in which no other may run
 def browser():
     sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is missing")
-    path = next(filter(None, map(shutil.which, BROWSERS)), None)
+    path = chromium()
     if path is None:
-        pytest.skip("Chromium is missing (Debian, Ubuntu: apt install chromium-headless-shell)")
+        pytest.skip(MISSING)
     with sync_api.sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield started
