@@ -53,15 +53,22 @@ def test_how_long_samples_took_is_told_where_some_came():
         assert show.latency_lines(WAITS | {name: None}) == []
 
 
-def test_samples_and_loops_are_told_with_their_reasons(monkeypatch):
+@pytest.mark.parametrize(("early", "more"), [
+    (None, ""), (0, ""), (1, "; 1 of them before cells had a way for the first time"),
+    (40, "; all before cells had a way for the first time"),
+])  # fmt: skip
+def test_samples_and_loops_are_told_with_their_reasons(monkeypatch, early, more):
+    """And those that the headline does not count: else it and this line seem to disagree."""
     monkeypatch.setattr(show, "command_lines", lambda commands: [])
     data = {"sent": 4000, "lost": 40, "loss_ratio": 0.01, "latency_ms": WAITS,
             "lost_by": {"cut": 10, "noise": 30, "loop": 0}}  # fmt: skip
     loops = {"longest_ms": 0.0, "episodes": 1}
     found = show.state_lines({"data": data, "port_loads": [3], "balance_factor": 1.0,
-                              "commands": None, "loops": loops})  # fmt: skip
+                              "commands": None, "loops": loops,
+                              "lost_at_start": early})  # fmt: skip
     assert found == [
-        "Samples: 4,000 sent, 40 lost (1 %), 30 noise or a loose plug, 10 on a cut cable.",
+        "Samples: 4,000 sent, 40 lost (1 %), 30 noise or a loose plug, 10 on a cut cable"
+        f"{more}.",
         *show.latency_lines(WAITS), "1 forwarding loop, the longest for less than 0.001 ms.",
     ]  # fmt: skip
 

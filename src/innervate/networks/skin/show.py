@@ -55,8 +55,10 @@ def state_lines(summary: SkinSummary) -> list[str]:
     data, loads = summary["data"], summary["port_loads"]
     if data["loss_ratio"] is not None:
         share = words.share_words(data["loss_ratio"])
+        early = skin_words.early_words(data["lost"], summary["lost_at_start"] or 0)
         lines.append(
-            f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}."
+            f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}"
+            f"{early and f'; {early}'}."
         )
         lines += latency_lines(data["latency_ms"])
     lines += command_lines(summary["commands"])

@@ -67,7 +67,7 @@ def test_the_terminal_says_how_long_samples_took(crowded):
     summary = {
         "data": data_summary(crowded), "port_loads": [], "balance_factor": None,
         "loops": {"episodes": 0, "longest_ms": None},
-        "commands": commands_summary(crowded),
+        "commands": commands_summary(crowded), "lost_at_start": 0,
     }  # fmt: skip
     said = "\n".join(state_lines(summary))
     assert "From sensor to PC: half within" in said

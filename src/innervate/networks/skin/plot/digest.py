@@ -288,11 +288,10 @@ class Digest:
             charts.Bar(skin_words.LOST.get(reason, reason), count, f"{count:,}")
             for reason, count in sorted(lost.items(), key=lambda item: -item[1])
         ]
-        all_lost, first = data["lost"], lost_at_start(self.result)
+        all_lost = data["lost"]
         verb = "was" if all_lost == 1 else "were"
         total = f"{all_lost:,} of {data['sent']:,} samples {verb} lost"
-        if first:
-            which = f"{first:,} of them " if first < all_lost else "all " if all_lost > 1 else ""
-            total += f", {which}before cells had a way for the first time"
+        if early := skin_words.early_words(all_lost, lost_at_start(self.result)):
+            total += f", {early}"
         return charts.Bars(bars, "Where samples were lost", f"{total}.",
                            label="Lost samples by reason")  # fmt: skip

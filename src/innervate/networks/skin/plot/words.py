@@ -26,6 +26,14 @@ MISSED = {
 }
 
 
+def early_words(lost: int, early: int) -> str:
+    """How many of the lost samples are no loss to the headline; "" = none."""
+    if not early:
+        return ""
+    which = f"{early:,} of them " if early < lost else "all " if lost > 1 else ""
+    return f"{which}before cells had a way for the first time"
+
+
 def end_words(graph: Graph, end: int) -> str:
     """A cable by one of its ends: "cable to interface 1" or "cable p0 r1 c2 E - p0 r1 c3 W"."""
     far = graph.peer[end]
