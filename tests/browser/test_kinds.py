@@ -1,7 +1,7 @@
 """The page of a radio team and of a mesh."""
 
 from tests.browser.servers import beside, click, expect, place
-from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN
+from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN, hold
 
 RADIO = """
 kind = "radio"
@@ -64,6 +64,33 @@ def test_a_mesh(look, tmp_path):
         expect(page.locator("#selected-facts")).to_contain_text("link, cut")
         expect(page.locator("#recovery .more")).to_contain_text("home")
         assert page.evaluate(PAINTED, "#stage") > 1000
+
+
+STANDBY = MESH.replace("duration_s = 60", "duration_s = 20\nstandby = [1]") + """
+[[event]]
+at_s = 5
+action = "kill"
+node = "home"
+"""
+
+
+def test_who_leads_a_mesh_now_is_its_gateway_on_the_map(look, tmp_path):
+    path = tmp_path / "mesh.toml"
+    path.write_text(STANDBY)
+    with beside(path, None) as address:
+        page = look(address, script=WRITTEN)
+        hold(page, 4.0)
+        assert {"home gateway", "middle standby", "far"} <= written(page)
+        hold(page, 19.0)
+        assert {"home", "middle gateway", "far"} <= written(page)
+        click(page, "middle")
+        expect(page.locator("#selected-facts")).to_have_text("gateway")
+
+
+def written(page):
+    """What is written on the map."""
+    page.evaluate(DRAWN)
+    return {text for canvas in page.evaluate(WORDS_OF, "#stage canvas") for text, *_ in canvas}
 
 
 BABEL = """

@@ -361,7 +361,9 @@ def test_without_a_gateway_nobody_has_a_way_until_the_standby_leads():
     made.carry_out(messages.Kill(0))
     assert made.fields()["recovery"]["recovered_ms"] is None
     assert made.fields()["unconnected"] == 11
+    assert not any(made.fields()["leads"])
     made.run_to_end()
+    assert np.flatnonzero(made.fields()["leads"]).tolist() == [1]
     assert 500 < made.fields()["recovery"]["recovered_ms"] < 6_000
     assert "n1 leads as gateway" in texts(made)
 

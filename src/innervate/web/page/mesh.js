@@ -41,7 +41,7 @@ export class MeshView {
     const any = (...names) => names.some((name) => changed.has(name));
     const found = [];
     if (any("link_up", "node_up")) found.push(LAYERS.ground);
-    if (any("parent", "node_up", "alarm", "outside", "headline")) found.push(LAYERS.lines);
+    if (any("parent", "node_up", "alarm", "outside", "leads", "headline")) found.push(LAYERS.lines);
     if (any("flights")) found.push(LAYERS.moving);
     return found;
   }
@@ -78,8 +78,8 @@ export class MeshView {
 
   facts(i) {
     const { now, nodes } = this.network;
-    const facts = [nodes[i].role];
-    if (!now.node_up[i]) return `${nodes[i].role}, ${off(this.network, i)}`;
+    const facts = [this.network.role(i)];
+    if (!now.node_up[i]) return `${facts[0]}, ${off(this.network, i)}`;
     const next = this.network.parentOf(i);
     const lacks = WAYS[now.way[i]];
     if (lacks) facts.push(lacks);
@@ -199,9 +199,9 @@ export class MeshView {
     context.font = FONT;
     const names = new Labels(context, stage.width, stage.height);
     this.#keepOff(names, stage);
-    nodes.forEach((node, i) => {
+    nodes.forEach((_, i) => {
       const [x, y] = [stage.x[i], stage.y[i]];
-      symbol(context, x, y, dot, node.role, now.node_up[i]);
+      symbol(context, x, y, dot, network.role(i), now.node_up[i]);
       names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
       if (now.alarm[i]) this.#ring(context, x, y, dot + 6, [], 3);
       else if (now.outside[i]) this.#ring(context, x, y, dot + 6, [4, 3], 2);
@@ -241,12 +241,14 @@ export class MeshView {
 
   /** Those with a part to play are named first: the others find what room is left. */
   #names(context, stage, names, dot) {
-    const { now, nodes } = this.network;
-    const told = (i) => nodes[i].role !== "node" || now.alarm[i] || now.outside[i];
+    const { network } = this;
+    const { now, nodes } = network;
+    const told = (i) => network.role(i) !== "node" || now.alarm[i] || now.outside[i];
     const order = [...nodes.keys()].sort((a, b) => told(b) - told(a) || a - b);
     context.textAlign = "left";
     for (const i of order) {
-      const { role, label, also } = nodes[i];
+      const { label, also } = nodes[i];
+      const role = network.role(i);
       const state = now.alarm[i] ? " ALARM" : now.outside[i] ? " outside" : "";
       const plain = role === "node" || role === "post" || label.includes(role);
       const called = also ? [`${also} (${label})`, also] : [label]; // the scenario's and its own

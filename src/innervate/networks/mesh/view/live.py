@@ -94,6 +94,7 @@ class MeshState(State):
             "parent": self.hop,
             "depth": self.depth,
             "way": self.ways.lacks,
+            "leads": self.ways.leads.astype(np.int64),
             "apart": int(self.ways.cut_off.sum()),
             **self._robots(),
         }

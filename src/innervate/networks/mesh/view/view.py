@@ -206,6 +206,7 @@ class MeshView(View):
             "unconnected": int(np.count_nonzero(ways.without)),
             "apart": int(np.count_nonzero(ways.cut_off)),
             "way": ways.lacks,
+            "leads": ways.leads.astype(np.int64),
             "flights": self._flights() if flights else [],
         }
         if self.field.walks:
