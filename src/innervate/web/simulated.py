@@ -62,6 +62,7 @@ class Simulated(Source):
         self._budget = BUDGET
         self._target_us: int | None = None  # where a seek leads
         self._next_point_us = self._point_us()
+        self._sampled_us = 0
         self._marks: list[Checkpoint] = []
         self._apart_us = APART_US
 
@@ -108,7 +109,7 @@ class Simulated(Source):
             self._advance(self._target_us)
             if self.engine.now_us >= self._target_us or self.at_end:
                 self._target_us = None
-                self._plan_point()
+                self._point_at_rest()
                 self.playback.start_from(self.engine.now_us)
             return 0.0
         due_us = self.playback.due_us(end_us)
@@ -123,6 +124,7 @@ class Simulated(Source):
         now_us = self.engine.now_us
         if isinstance(command, Pause):
             self.playback.hold(now_us)
+            self._point_at_rest()
         elif isinstance(command, Go):
             self.playback.go(now_us)
         elif isinstance(command, Speed):
@@ -158,6 +160,7 @@ class Simulated(Source):
         self.view.forget(kept.memory)
         self.history.go_back(kept.engine.now_us)
         self.broken = ""
+        self._sampled_us = self.engine.now_us
         self._plan_point()
         self.playback.start_from(self.engine.now_us)
 
@@ -180,9 +183,10 @@ class Simulated(Source):
             if self.view.is_open and self.engine.now_us >= edge:
                 self.view.check()
             if self.engine.now_us >= self._next_point_us:
-                self.view.sample()
-                self._plan_point()
+                self._sample()
                 self._keep()
+            elif self.at_end:
+                self._sample()
             if time.perf_counter() - began > SLICE_S:
                 return
 
@@ -192,6 +196,18 @@ class Simulated(Source):
         if self.playback.speed == 0 or self._target_us is not None:
             return whole_us
         return min(whole_us, max(POINT_US[1], round(1e6 * self.playback.speed / POINTS_PER_S)))
+
+    def _sample(self) -> None:
+        self._sampled_us = self.engine.now_us
+        self.view.sample()
+        self._plan_point()
+
+    def _point_at_rest(self) -> None:
+        """Plots tell of the moment at which somebody looks, too: not only of the one before."""
+        if self.engine.now_us >= self._sampled_us + POINT_US[0]:
+            self._sample()
+        else:
+            self._plan_point()
 
     def _plan_point(self) -> None:
         every_us = self._point_us()
