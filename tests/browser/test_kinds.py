@@ -1,6 +1,6 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser.servers import beside, click, expect, place
+from tests.browser.servers import beside, click, expect, place, seek
 from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN, hold
 
 RADIO = """
@@ -91,6 +91,18 @@ def written(page):
     """What is written on the map."""
     page.evaluate(DRAWN)
     return {text for canvas in page.evaluate(WORDS_OF, "#stage canvas") for text, *_ in canvas}
+
+
+def test_at_the_end_of_a_disaster_nobody_sends_and_all_is_counted(look):
+    with beside("radio-disaster", 0.1) as address:
+        page = look(address, script=WRITTEN)
+        seek(page, 60)
+        expect(page.locator("#go")).to_have_text("Replay")
+        expect(page.locator("#headline")).to_have_text("All 10 packets were delivered.")
+        last = page.locator("#plots b").last
+        expect(last).to_contain_text(" ms")  # from offer to delivery
+        # The end of the last frame is still on its way to some, so that the channel is not free.
+        assert "nobody sends" in written(page)
 
 
 BABEL = """

@@ -13,8 +13,9 @@ export const DOING = [
   { sign: "R", words: "receives", colour: () => colours.p[2] },
   { sign: "X", words: "hears several at once", colour: () => colours.p[1] },
   { sign: "W", words: "waits its turn", colour: () => colours.p[7] },
+  { sign: "T", words: "in its turnaround, deaf", colour: () => colours.panel },
 ];
-const [SENDS, WAITS] = [1, 4];
+const [SENDS, RECEIVES, SEVERAL, WAITS, TURNS] = [1, 2, 3, 4, 5];
 const RING_PX = 15;
 const NAME_PX = 13; // from a station to its name: the ring round what is selected lies between
 const WORDS_PX = 55; // from this radius on there is room for words in the middle
@@ -73,9 +74,11 @@ export class RadioView {
 
   legend() {
     const disc = (state, up = 1) => (context) => this.#disc(context, 13, 8, 7, state, up);
-    const isLive = this.network.scene.source === "live"; // what is asked now and then has no boxes
-    const known = isLive ? [0, SENDS, WAITS] : DOING.keys();
-    return [...[...known].map((state) => [disc(state), DOING[state].words]),
+    const { source, turnaround_us: turnaround } = this.network.scene;
+    const isLive = source === "live"; // what is asked now and then has no boxes
+    const known = isLive ? [0, SENDS, WAITS]
+      : [...DOING.keys()].filter((state) => state !== TURNS || turnaround);
+    return [...known.map((state) => [disc(state), DOING[state].words]),
       [disc(0, 0), offWord(this.network)], affectedSample, ...(isLive ? [] : boxSamples())];
   }
 
@@ -128,7 +131,10 @@ export class RadioView {
     stroke(context, senders.length > 1 ? colours.alarm : colours.accent, 2.4, path,
       senders.length > 1 ? [6, 4] : []);
     if (stage.scale < WORDS_PX) return;
-    const text = ["channel free", "one sends", "several send"][Math.min(2, senders.length)];
+    const isHeard = radio.now.some((state, i) => (
+      now.node_up[i] && (state === RECEIVES || state === SEVERAL))); // the end is still on its way
+    const text = [isHeard ? "nobody sends" : "channel free", "one sends", "several send"]
+      .at(Math.min(2, senders.length));
     context.font = "600 13px system-ui, sans-serif";
     const wide = context.measureText(text).width + 10;
     context.fillStyle = colours.ground; // lines to the middle end before the words

@@ -11,6 +11,7 @@ from innervate.networks.radio.view import live
 from innervate.networks.radio.view.view import RadioView
 from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.channel import world as w
+from innervate.sim.heap import AIRS
 from innervate.web.engine import engine_of
 from innervate.web.errors import Refused
 from innervate.web.history import LOG, TIMELINE, History
@@ -48,6 +49,13 @@ def test_what_every_station_does_now(view):
     radios["present"][:5] = (0, 0, 1, 2, 1)
     assert view.arrays(False)["radio"]["now"] == [0, 4, 2, 3, 0]
     radios["deaf"][2] = 1
+    sent = world.air.reshape(-1, AIRS)[2]
+    sent["start"][1], sent["end"][1] = 1_000, 2_000
+    doing = []
+    for view.engine.now_us in (999, 1_000, 2_000, 2_001):
+        doing.append(view.arrays(False)["radio"]["now"][2])
+    assert doing == [5, 1, 1, 5]  # it hears nothing while its radio turns round, and sends nothing
+    view.engine.now_us = 1_500
     shown = view.arrays(False)
     assert shown["radio"]["now"] == [0, 4, 1, 3, 0]
     assert shown["node_up"].tolist() == [1, 1, 1, 1, 0]

@@ -25,6 +25,7 @@ from innervate.networks.radio.protocol.constants import (
 from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.scenario.planning import duration_us
 from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.sim.heap import AIRS
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import TIMELINE, History
@@ -32,7 +33,7 @@ from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
 KINDS = {DATA: "frame", OPEN: "voc", CRR: "cr", REPORT: "ack"}
-IDLE, SENDING, RECEIVING, SEVERAL, WAITING = range(5)
+IDLE, SENDING, RECEIVING, SEVERAL, WAITING, TURNING = range(6)
 PLACES = ("pos", "place")  # fields of a station that say when its turn is
 
 
@@ -71,7 +72,7 @@ class RadioView(View):
             for i, a in enumerate(turn)
         ]  # fmt: skip
         series = [
-            {"id": "throughput", "label": "time with packets that were delivered", "unit": "%"},
+            {"id": "throughput", "label": "time with delivered packets", "unit": "%"},
             {"id": "collisions", "label": "collisions", "unit": "per s"},
             {"id": "delay", "label": "from offer to delivery", "unit": "ms"},
         ]
@@ -79,6 +80,7 @@ class RadioView(View):
             "nodes": nodes, "links": [], "fence": None, "series": series,
             "protocol": protocol_words(self.plan.protocol),
             "slot_us": int(self.plan.params["slot_us"]),
+            "turnaround_us": int(self.plan.params["ta_us"]),
         }  # fmt: skip
 
     def note(self, rows: Rows) -> None:
@@ -170,7 +172,8 @@ class RadioView(View):
         now = np.where(waits, WAITING, IDLE)
         now = np.where(radios["present"] == 1, RECEIVING, now)
         now = np.where(radios["present"] > 1, SEVERAL, now)
-        now = np.where(radios["deaf"] > 0, SENDING, now)
+        now = np.where(radios["deaf"] > 0, TURNING, now)
+        now = np.where((radios["deaf"] > 0) & self._on_air(), SENDING, now)
         up = radios["alive"] > 0
         return {
             "node_up": up.astype(np.int64),
@@ -182,6 +185,11 @@ class RadioView(View):
             "unconnected": int(np.count_nonzero(~up)),
             "flights": [],
         }
+
+    def _on_air(self) -> Any:
+        """Per station, true while a frame of it is on the air: not in the turnaround round it."""
+        air, now = self.engine.world.air.reshape(-1, AIRS)[: self.plan.stations], self.engine.now_us
+        return ((air["start"] <= now) & (now <= air["end"])).any(axis=1)
 
     def headline(self) -> Headline:
         """Is all well, and if not, what is wrong."""
