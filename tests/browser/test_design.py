@@ -229,6 +229,17 @@ def test_a_cut_that_nobody_needed_says_so(look, skin):
     raise AssertionError("every one of these cables was on somebody's way")
 
 
+def test_the_pc_is_no_cell(look, tmp_path):
+    path = tmp_path / "restart.toml"
+    event = '[[event]]\nat_s = 1\naction = "restart"\npc = true\n'
+    path.write_text(SKIN.replace("duration_s = 60", "duration_s = 3") + event)
+    with beside(path, 0.5) as address:
+        page = look(address)
+        hold(page, 2.0)
+        said = "the PC restarted: no cell affected"
+        expect(page.locator("#recovery .more")).to_have_text(said)
+
+
 def test_the_mouse_is_told_what_lies_under_it_and_what_a_click_would_do(look, skin):
     page = look(skin)
     tip = page.locator("#tip")

@@ -54,9 +54,10 @@ export function showNumbers(network) {
       const word = WORDS[network.kind] ?? "node";
       show("recovery", "–", `${recovery.cause}: no ${word} is left that could have a way`, "bad");
     } else if (isKnown && recovery.recovered_ms === 0) {
+      const word = WORDS[network.kind] ?? "node"; // what neither a cable nor the PC is
       const whom = recovery.apart ? `${recovery.apart} cut off, no other `
-        : /cable|link/.test(recovery.cause) ? "no " : "no other ";
-      const who = `${whom}${WORDS[network.kind] ?? "node"}`;
+        : /cable|link|^the PC /.test(recovery.cause) ? "no " : "no other ";
+      const who = `${whom}${word}`;
       show("recovery", "–", `${recovery.cause}: ${who} affected`, "");
     } else show("recovery", shown, more, look);
   }
