@@ -1,6 +1,6 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser.servers import beside, click, expect, place, seek
+from tests.browser.servers import PHONE, beside, click, expect, place, seek
 from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN, hold
 
 RADIO = """
@@ -128,6 +128,11 @@ def test_a_network_that_does_not_say_who_has_a_way(look, tmp_path):
         expect(page.locator("#unconnected output")).to_have_text("4")
         expect(page.locator("#unconnected .more")).to_have_text("of 5 nodes")
         expect(page.locator("#recovery")).to_be_hidden()
+        page.set_viewport_size(PHONE)
+        page.evaluate(DRAWN)
+        row, last = (page.locator(one).bounding_box() for one in ("#numbers", "#unconnected"))
+        right, end = (one["x"] + one["width"] for one in (row, last))
+        assert abs(end - right) < 1  # two numbers fill the row, as three do
 
 
 TWO = """

@@ -4,7 +4,7 @@ import { Labels } from "./labels.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, arrow, boxRound, cross, flightSample, flights, stroke, word,
+  affected, affectedSample, arrow, boxRound, cross, cutSample, flightSample, flights, stroke, word,
 } from "./shapes.js";
 import { symbol } from "./symbols.js";
 import { off, offWord, plural } from "./words.js";
@@ -103,12 +103,7 @@ export class MeshView {
     found.push([shape("node", 0), offWord(this.network)], affectedSample);
     found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
       [line("soft", 1.4, [1.5, 4]), "poor"]);
-    found.push([(context) => {
-      stroke(context, colours.alarm, 2, new Path2D("M1 8h24"), [4, 3]);
-      const gap = new Path2D();
-      cross(gap, 13, 8, 4);
-      stroke(context, colours.alarm, 3, gap);
-    }, "cut"]);
+    found.push(cutSample);
     found.push([(context) => {
       const path = new Path2D();
       arrow(path, 0, 8, 26, 8, 1);

@@ -2,7 +2,7 @@
 import { colours, shade } from "./colours.js";
 import { Labels } from "./labels.js";
 import { MeshView, NAME_PX } from "./mesh.js";
-import { affected, affectedSample, arrow, cross, stroke, word } from "./shapes.js";
+import { affected, affectedSample, arrow, cross, cutSample, stroke, word } from "./shapes.js";
 import { LAYERS } from "./stage.js";
 import { off, offWord } from "./words.js";
 
@@ -44,9 +44,7 @@ export class PlainView extends MeshView {
     const found = this.colour === "" ? [[disc(colours.d[5]), "node"]]
       : [[disc(colours.h[0]), `${this.colour}: least`], [disc(colours.h[7]), "most"]];
     found.push([disc(colours.faint, 0), offWord(this.network)], affectedSample);
-    if (this.network.links.length) found.push([(context) => {
-      stroke(context, colours.alarm, 2, new Path2D("M1 8h24"), [4, 3]);
-    }, "cut"]);
+    if (this.network.links.length) found.push(cutSample);
     return found;
   }
 

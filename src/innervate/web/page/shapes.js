@@ -112,6 +112,14 @@ export const affectedSample = [(context) => {
   stroke(context, colours.warn, 2, ring, [2, 2]);
 }, "affected"];
 
+/** A sample of a cut link: dashes, and a cross at its middle. */
+export const cutSample = [(context) => {
+  stroke(context, colours.alarm, 2.2, new Path2D("M1 8h24"), [4, 3]);
+  const gap = new Path2D();
+  cross(gap, 13, 8, 4);
+  stroke(context, colours.alarm, 3, gap);
+}, "cut"];
+
 /** The frames on their way, a shape for each kind; with less motion in the middle of their link. */
 export function flights(context, network, stage, size) {
   const paths = new Map();

@@ -3,7 +3,8 @@ import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, boxRound, brick, cross, flightSample, flights, hexagon, stroke, word,
+  affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hexagon,
+  stroke, word,
 } from "./shapes.js";
 import { off, offWord, plural } from "./words.js";
 
@@ -121,12 +122,7 @@ export class SkinView {
       found.push(flightSample("beacon", "beacon"), flightSample("data", "sample to the PC"));
       if (this.network.can.has("command")) found.push(flightSample("command", "command down"));
     }
-    found.push([(context) => {
-      line("alarm", 2.4, [4, 3])(context);
-      const gap = new Path2D();
-      cross(gap, 13, 8, 4);
-      stroke(context, colours.alarm, 3, gap);
-    }, "cut"]);
+    found.push(cutSample);
     return found;
   }
 
