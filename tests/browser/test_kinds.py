@@ -66,12 +66,15 @@ def test_a_mesh(look, tmp_path):
         assert page.evaluate(PAINTED, "#stage") > 1000
 
 
-STANDBY = MESH.replace("duration_s = 60", "duration_s = 20\nstandby = [1]") + """
+STANDBY = (
+    MESH.replace("duration_s = 60", "duration_s = 20\nstandby = [1]")
+    + """
 [[event]]
 at_s = 5
 action = "kill"
 node = "home"
 """
+)
 
 
 def test_who_leads_a_mesh_now_is_its_gateway_on_the_map(look, tmp_path):

@@ -12,10 +12,10 @@ import pytest
 from innervate.dialect.plain import make
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
-from innervate.prove.parity import compiled
 from innervate.prove.records import Partly
 from innervate.prove.solve import Formulas
 from innervate.prove.steps import Stage, own_goals
+from tests.prove.parity import compiled
 from tests.prove.programs import HELPERS, drawn
 
 STATE = (("a", 0, -5, 20, "x", "one"), ("b", 0, 0, 3, "x", "one"), ("list", 4, -3, 9, "x", "four"))

@@ -29,8 +29,8 @@ Places = dict[str, tuple[float, float]]
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """All of it, as HTML."""
     parts = (
-        top(result, summary), graph(result.plan, result.counts.off), _over_time(result), _nodes(result),
-        _events(result.plan),
+        top(result, summary), graph(result.plan, result.counts.off),
+        _over_time(result), _nodes(result), _events(result.plan),
     )  # fmt: skip
     return "\n".join(part for part in parts if part)
 

@@ -182,11 +182,11 @@ class Simulated(Source):
             self.view.note(self.engine.take())
             if self.view.is_open and self.engine.now_us >= edge:
                 self.view.check()
-            if self.engine.now_us >= self._next_point_us:
+            is_point = self.engine.now_us >= self._next_point_us
+            if is_point or self.at_end:
                 self._sample()
+            if is_point:
                 self._keep()
-            elif self.at_end:
-                self._sample()
             if time.perf_counter() - began > SLICE_S:
                 return
 
