@@ -31,10 +31,13 @@ class SimulatedLoop(asyncio.SelectorEventLoop):
 
 
 class Clocked(Machine):
-    """This machine, but for its clock that never jumps."""
+    """A machine as this one, but for its clock that never jumps and the start that it is in."""
 
     def __init__(self, loop):
-        self.loop = loop
+        self.loop, self.boots = loop, 1
+
+    def boot(self):
+        return f"boot {self.boots}"
 
     def monotonic_ns(self):
         return round(self.loop.time() * 1e9)

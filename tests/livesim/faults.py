@@ -76,7 +76,7 @@ FAULTS = (
           "        elif not self._had(before):\n", "        elif False:\n",
           {**LOSSES, "in_order": True}),
     Fault("what comes after its turn is handed up", MESH + "order",
-          "if self._is_late(seq, before, is_new, now - self.last_at >= QUIET_US):", "if False:",
+          "if self._is_late(seq, before, boot, now - self.last_at >= QUIET_US):", "if False:",
           {"hurts": ("lossy", "sluggish"), "in_order": True, "storm_s": 60}),
     Fault("no message names the one before it", MESH + "chains",
           "return self._open[dest][-1] if self._open.get(dest) else seq", "return seq",
@@ -164,9 +164,9 @@ FAULTS = (
           "is_again = self._is_copy(frame.origin, frame.seq, body) or is_again", "pass",
           {**LIVES, "in_order": False}),
     Fault("who drew its numbers is late", MESH + "order",
-          "(is_new and is_far)", "False", {**LIVES, "in_order": True}),
+          "(is_drawn and is_far)", "False", {**LIVES, "in_order": True}),
     Fault("whoever is far behind has drawn its numbers", MESH + "order",
-          "(is_new and is_far)", "is_far", {**LIVES, "in_order": True}),
+          "(is_drawn and is_far)", "is_far", {**LIVES, "in_order": True}),
 )  # fmt: skip
 
 

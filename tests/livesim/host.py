@@ -41,6 +41,7 @@ class Host:
         self.lives = 0
         self.said = []
         self.how = ""
+        self.boots = 1
         self.boot_ns = self.chance.randrange(SECOND, 10**15)  # its clock that never jumps, at 0
         self.main = None  # what runs on it in place of a node
         self.serial = {}  # device: the end of a line
@@ -69,6 +70,7 @@ class Host:
         if life is not None:
             life.die("power")
         self.disk.power_cut()
+        self.boots += 1
 
     def signal(self, number):
         """A signal to the process."""
@@ -173,6 +175,9 @@ class Life(Machine):
 
     def monotonic_ns(self):
         return self.clock()
+
+    def boot(self):
+        return f"{self.host.name} {self.host.boots}"
 
     def time_ns(self):
         return EPOCH_NS + self.world.now + self.host.wall_ns

@@ -22,6 +22,7 @@ from innervate.live import private
 from innervate.live.errors import LiveError
 
 ANSWER_S = 5.0
+BOOT = Path("/proc/sys/kernel/random/boot_id")  # Linux
 IDLE_STATES = Path("/dev/cpu_dma_latency")  # Linux: the longest that a wake-up may take, us
 
 Socket = socket.socket
@@ -63,6 +64,12 @@ class Machine:
     def monotonic_ns(self) -> int:
         """A clock that never jumps."""
         return time.monotonic_ns()
+
+    def boot(self) -> str:
+        """Which start of the machine this is, no other has the same; "" = the system says none."""
+        with suppress(OSError):
+            return BOOT.read_text(encoding="ascii").strip()
+        return ""
 
     def time_ns(self) -> int:
         """The machine's idea of the time, since 1970 (UTC)."""

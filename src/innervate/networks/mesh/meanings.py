@@ -26,7 +26,7 @@ MEANINGS = {
     "data": "what the application sends",
     "mark": "number of the packet and 16384: this is a piece",
     "message": "number of the packet that the first piece went in",
-    "in_order": "1: in turn with its origin's other messages; 2: and the origin is new there",
+    "in_order": "1: in turn with its origin's other messages; 2 + b: its origin is new, boot b",
     "at": "byte of the message with which the piece begins",
     "size": "bytes of the message, less one",
     "acked": "seq of each packet that has arrived",

@@ -48,7 +48,7 @@ def test_pieces_are_as_long_as_there_is_room_and_the_last_is_the_rest(size, size
 
 @pytest.mark.parametrize("chained", [False, True])
 def test_the_last_piece_goes_when_all_others_have_their_end_and_those_before_it(chained):
-    chains = Chains(is_drawn=False)
+    chains = Chains()
     long = Long(DEST, 0, bytes(25), ROOM, chains if chained else None)
     chains.sent(1, DEST, 40, True)
     assert long.in_order == chained

@@ -18,14 +18,14 @@ class Orderly:
     """Notes what it is given."""
 
     def __init__(self):
-        self.taken, self.repeated, self.stopped, self.new = [], [], 0, []
+        self.taken, self.repeated, self.stopped, self.boots = [], [], 0, []
 
     def take(self, message):
-        self.new.append(message.is_new)
+        self.boots.append(message.boot)
         self.taken.append((message.sender, message.seq, message.before, message.payload))
 
     def again(self, message):
-        self.new.append(message.is_new)
+        self.boots.append(message.boot)
         self.repeated.append((message.sender, message.seq, message.before, message.payload))
 
     def counters(self):
@@ -77,18 +77,19 @@ def test_a_message_in_order_begins_with_the_one_before_it(flags, dest, body, bef
     run(come)
 
 
-@pytest.mark.parametrize(("before", "is_new"), [
-    (b"\x80\x0a", True), (b"\x80\x09", False), (b"\x80\x0b", False), (b"\x00\x0a", False),
+@pytest.mark.parametrize(("before", "boot"), [
+    (b"\x80\x0a", 0), (b"\x80\x09", 1), (b"\x7f\x8b", 127), (b"\x7f\x8a", None),
+    (b"\x80\x0b", None), (b"\x00\x0a", None),
 ])  # fmt: skip
 @pytest.mark.parametrize("is_again", [False, True])
-def test_a_message_of_an_origin_that_is_new_comes_after_none(before, is_new, is_again):
+def test_a_message_of_an_origin_that_is_new_comes_after_none(before, boot, is_again):
     def come():
         one = inbox()
         one.note(frame(before + b"text"), is_again)
         one.hand_up()
         (found,) = one.orderly.repeated if is_again else one.orderly.taken
         assert found[2] == (32_779 if before == b"\x80\x0b" else 10)
-        assert one.orderly.new == [is_new]
+        assert one.orderly.boots == [boot]
 
     run(come)
 
@@ -140,8 +141,8 @@ def piece(seq, at, data, size=4, in_order=0, message=10):
     return frame(struct.pack(PIECE_STRUCT, mark, message, in_order, at, size - 1) + data, seq)
 
 
-@pytest.mark.parametrize("in_order", [0, 1, 2])
-def test_pieces_are_acknowledged_as_they_come_and_the_last_with_the_whole(in_order):
+@pytest.mark.parametrize(("in_order", "boot"), [(0, None), (1, None), (2, 0), (129, 127)])
+def test_pieces_are_acknowledged_as_they_come_and_the_last_with_the_whole(in_order, boot):
     def come():
         one = inbox()
         for seq, at, data in ((10, 0, b"ab"), (11, 2, b"cd")):
@@ -149,14 +150,14 @@ def test_pieces_are_acknowledged_as_they_come_and_the_last_with_the_whole(in_ord
             one.hand_up()
         assert one.outcomes == {"pieces received": 2, "messages received": 1}
         assert one.got == [(5, b"abcd")]
-        assert one.orderly.new == [in_order == 2]
+        assert one.orderly.boots == [boot]
         assert one.told == ([(5, 10)] if in_order else [(5, 10), (5, 11)])
         assert one.orderly.taken == [(5, 11, 11 if in_order else None, b"abcd")]
         one.note(piece(11, 2, b"cd", in_order=in_order), True)  # it was not heard that it came
         one.hand_up()
         assert one.orderly.repeated == ([(5, 11, 11, b"")] if in_order else [])
         assert one.told[1 if in_order else 2 :] == ([] if in_order else [(5, 11)])
-        assert one.orderly.new == [in_order == 2] * (2 if in_order else 1)
+        assert one.orderly.boots == [boot] * (2 if in_order else 1)
         assert one.outcomes == {"pieces received": 2, "messages received": 1}
         assert one.held() == {"messages": 0, "bytes": 0}
 

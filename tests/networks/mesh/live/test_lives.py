@@ -2,12 +2,15 @@
 
 import pytest
 
-from innervate.dialect.arith import MASK16
+from innervate.dialect.arith import HALF16, MASK16
+from innervate.live.machine import machine
 from innervate.live.receipts import DELIVERED
 from innervate.networks.mesh.live.order import ANEW, QUIET_US, Order
 from tests.live import time_by_hand
 from tests.live.net import Mesh
 from tests.networks.mesh.live.test_order import PROFILE, WAIT, handed_up, until_simulated
+
+BEHIND = (25, 77)  # boots whose numbers are far behind those of the one before
 
 
 @pytest.mark.parametrize("start", [0, 65_500])
@@ -22,8 +25,18 @@ def test_one_of_an_earlier_life_that_comes_behind_those_of_the_next_is_late(star
 def test_a_sender_that_drew_its_numbers_may_be_far_behind_itself(behind, is_late):
     seq = (200 - behind) & MASK16
     order = Order(200, WAIT)
-    assert order.take(seq, seq, b"new", 0, is_new=True) == [b"new"] * (not is_late)
+    assert order.take(seq, seq, b"new", 0, boot=3) == [b"new"] * (not is_late)
     assert order.late == is_late
+
+
+def test_an_old_one_of_numbers_drawn_in_the_same_boot_is_late():
+    order = Order(None, WAIT)
+    assert order.take(7000, 7000, b"second life", now=0, boot=5) == [b"second life"]
+    assert order.take(7001, 7000, b"knows us", now=1) == [b"knows us"]
+    assert order.take(4000, 4000, b"first life", now=2, boot=5) == []
+    assert order.take(4001, 4001, b"numbers kept", now=3) == []
+    assert order.take(4002, 4002, b"switched on again", now=4, boot=6) == [b"switched on again"]
+    assert order.late == 2
 
 
 @pytest.mark.parametrize("seq", [1000, 6990, 7000])  # over many starts they may have come round
@@ -48,7 +61,7 @@ def test_one_that_waited_too_long_is_the_last_from_then_on():
 def test_a_sender_that_lost_its_numbers_is_heard_all_the_same():
     async def main():
         async with Mesh(2, [(0, 1)], **PROFILE) as mesh:
-            heard, states = [], []
+            heard, states, boots = [], [], iter(BEHIND)
             mesh.nodes[0].receive_messages(lambda _, data: heard.append(data[:1]), in_order=True)
             sender = mesh.nodes[1]
             for first in (b"a", b"f"):  # another message is long, and goes in pieces
@@ -57,8 +70,10 @@ def test_a_sender_that_lost_its_numbers_is_heard_all_the_same():
                     states.append(await receipt.wait())
                     newest = receipt.seq
                 await sender.stop()
-                sender.state.numbers, sender.stack.first = -1, (newest - 5000) & MASK16
+                sender.state.numbers = -1
+                machine().boots = next(boots)
                 await sender.start()
+                assert ANEW < (newest - sender.stack.first) & MASK16 < HALF16
                 await until_simulated(lambda: sender.stack.node.version != 0)
             late = sender.send_message(0, bytes(300), in_order=True)
             return heard, [*states, await late.wait()]

@@ -118,7 +118,7 @@ def test_heads_of_pieces_are_read_as_they_are_written():
 
 
 def test_a_message_comes_after_the_newest_that_has_no_end():
-    chains = Chains(is_drawn=False)
+    chains = Chains()
     assert chains.before(4, 10) == 10  # none to wait for
     assert not chains.is_open(4)
     for handle, (dest, seq) in enumerate(((4, 10), (4, 11), (4, 12), (5, 13))):
@@ -135,7 +135,7 @@ def test_a_message_comes_after_the_newest_that_has_no_end():
 
 
 def test_one_that_is_not_reliable_stands_for_all_before_it():
-    chains = Chains(is_drawn=False)
+    chains = Chains()
     chains.sent(1, 4, 10, is_reliable=True)
     chains.sent(2, 4, 11, is_reliable=False)
     assert chains.before(4, 12) == 11
@@ -147,7 +147,7 @@ def test_one_that_is_not_reliable_stands_for_all_before_it():
 
 
 def test_numbers_go_round():
-    chains = Chains(is_drawn=False)
+    chains = Chains()
     for handle, seq in enumerate((65_535, 0)):
         chains.sent(handle, 4, seq, is_reliable=True)
     chains.ended(0, is_delivered=True)
@@ -157,11 +157,11 @@ def test_numbers_go_round():
 
 
 def test_a_recipient_that_has_none_of_ours_may_have_numbers_of_an_earlier_life():
-    chains = Chains(is_drawn=True)
+    chains = Chains(boot=0)
     chains.sent(1, 4, 10, is_reliable=True)
     chains.sent(2, 5, 11, is_reliable=True)
     chains.ended(1, is_delivered=True)
     chains.ended(2, is_delivered=False)
-    assert [chains.is_new(dest) for dest in (4, 5, 6)] == [False, True, True]
-    chains = Chains(is_drawn=False)
-    assert not chains.is_new(4)
+    assert [chains.boot(dest) for dest in (4, 5, 6)] == [None, 0, 0]
+    chains = Chains()
+    assert chains.boot(4) is None

@@ -5,20 +5,24 @@ What was delivered was handed up, and needs not be waited for; what has expired 
 
 from __future__ import annotations
 
+import zlib
 from collections import defaultdict
 
-from innervate.dialect.arith import later
+from innervate.dialect.arith import MASK16, later
+from innervate.live.machine import machine
+from innervate.networks.mesh.live.order import BOOTS
 
 
 class Chains:
     """Our messages that are to come in order and have no end yet, by recipient.
 
     Args:
-        is_drawn: True = our numbers begin at a random one, not behind those that we had.
+        boot: of this machine, 0 to 127, where our numbers were drawn; None = they go on behind
+            those that we had.
     """
 
-    def __init__(self, is_drawn: bool) -> None:
-        self._is_drawn = is_drawn
+    def __init__(self, boot: int | None = None) -> None:
+        self._boot = boot
         self._reached: set[int] = set()  # recipients that had one from us
         self._open: defaultdict[int, list[int]] = defaultdict(list)  # numbers, the newest last
         self._by_handle: dict[int, tuple[int, int]] = {}
@@ -27,9 +31,9 @@ class Chains:
         """The number of the message before a new one; its own = there is none to wait for."""
         return self._open[dest][-1] if self._open.get(dest) else seq
 
-    def is_new(self, dest: int) -> bool:
-        """True if our numbers may be far behind those that a recipient had of an earlier life."""
-        return self._is_drawn and dest not in self._reached
+    def boot(self, dest: int) -> int | None:
+        """The boot, where our numbers may be far behind those that a recipient had; else None."""
+        return None if dest in self._reached else self._boot
 
     def is_open(self, dest: int) -> bool:
         """True if the end of one to this recipient will be told."""
@@ -55,3 +59,14 @@ class Chains:
         self._open[dest] = left
         if not left:
             del self._open[dest]
+
+
+def drawn_number() -> tuple[int, int]:
+    """The boot, and a number for a life that knows of none; lives of one boot go up, by 1 a ms.
+
+    An old packet of the life before is behind those of this one then, whichever comes first.
+    """
+    boot = machine().boot()
+    drawn = zlib.crc32(boot.encode()) if boot else machine().chance.getrandbits(32)
+    since_boot_ms = machine().monotonic_ns() // 1_000_000
+    return drawn % BOOTS, ((drawn >> 7) + since_boot_ms) & MASK16

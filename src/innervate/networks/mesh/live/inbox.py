@@ -10,7 +10,7 @@ from typing import Any
 from innervate.dialect.arith import MASK16, later
 from innervate.live.engine import clock_us
 from innervate.live.streams import Arrivals
-from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD, Message, Orderly
+from innervate.networks.mesh.live.order import BEFORE_BYTES, BOOTS, NEW_AHEAD, Message, Orderly
 from innervate.networks.mesh.live.pieces import NEW, NO_TURN, Piece, Pieces, read_piece
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
 
@@ -45,20 +45,21 @@ class Inbox:
 
     def note(self, frame: Any, is_again: bool) -> None:
         """A message, or a piece of one, came; the record is used again."""
-        body, before, is_new = bytes(frame.body[: frame.length]), None, False
-        piece = None
+        body = bytes(frame.body[: frame.length])
+        before = boot = piece = None
         if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
             piece = read_piece(frame.seq, body)
             before = int.from_bytes(body[:BEFORE_BYTES], "big")
-            is_new = before == (frame.seq + NEW_AHEAD) & MASK16
-            if is_new or later(before, frame.seq):  # that of a last piece before it, which expired
+            behind = (frame.seq + NEW_AHEAD - before) & MASK16
+            boot = behind if behind < BOOTS else None
+            if boot is not None or later(before, frame.seq):  # or of a last piece, which expired
                 before = frame.seq
             body = body[BEFORE_BYTES:]
         if piece is None:
             is_again = self._is_copy(frame.origin, frame.seq, body) or is_again
         if not is_again:
             self.outcomes["messages received" if piece is None else "pieces received"] += 1
-        message = Message(frame.origin, frame.seq, before, body, is_new)
+        message = Message(frame.origin, frame.seq, before, body, boot)
         self._came.append((message, piece, is_again))
 
     def _is_copy(self, sender: int, seq: int, body: bytes) -> bool:
@@ -118,16 +119,16 @@ class Inbox:
         is_kept, whole = self.pieces.take(sender, piece, clock_us())
         self._arm()
         ordered = seq if piece.turn != NO_TURN and piece.is_last else None
-        is_new = piece.turn == NEW
+        boot = piece.turn - NEW if piece.turn >= NEW else None
         if whole is not None:
             self.outcomes["messages received"] += 1
-            self._up(Message(sender, seq, ordered, whole, is_new))
+            self._up(Message(sender, seq, ordered, whole, boot))
             if ordered is None:
                 self._acknowledge(sender, seq)
         elif is_kept and ordered is None:
             self._acknowledge(sender, seq)
         elif is_kept:  # it came before, and may have been too late for its turn
-            self.orderly.again(Message(sender, seq, ordered, b"", is_new))
+            self.orderly.again(Message(sender, seq, ordered, b"", boot))
 
     def _up(self, message: Message) -> None:
         self.arrivals.put((message.sender, message.payload))

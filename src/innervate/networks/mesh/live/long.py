@@ -85,7 +85,10 @@ class Long:
         if self._message < 0:
             self._message = seq
         mark, size = (seq + PIECE_AHEAD) & MASK16, len(self.payload) - 1
-        turn = NO_TURN if self._chains is None else NEW if self._chains.is_new(self.dest) else TURN
+        turn = NO_TURN
+        if self._chains is not None:
+            boot = self._chains.boot(self.dest)
+            turn = TURN if boot is None else NEW + boot
         return struct.pack(PIECE_STRUCT, mark, self._message, turn, at, size)
 
     def told(self, piece: PieceReceipt, state: str, reason: str) -> None:

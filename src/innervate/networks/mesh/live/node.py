@@ -15,7 +15,7 @@ from innervate.live.receipts import Receipt, check_bytes
 from innervate.live.state import State
 from innervate.live.streams import Stream, message_line
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, place_of, read_alarm
-from innervate.networks.mesh.live.chains import Chains
+from innervate.networks.mesh.live.chains import Chains, drawn_number
 from innervate.networks.mesh.live.inbox import Inbox
 from innervate.networks.mesh.live.order import Callback, Orderly
 from innervate.networks.mesh.live.outgoing import Outgoing, refused
@@ -166,9 +166,12 @@ class MeshNode(LiveNode):
 
         By how much is drawn: where a disk failed, nobody may have noted those used last.
         """
-        self.outgoing.chains = Chains(self.state.numbers < 0)
         if self.state.numbers >= 0:
+            self.outgoing.chains = Chains()
             self.stack.first = (self.state.numbers + machine().chance.getrandbits(12)) & MASK16
+        else:
+            boot, self.stack.first = drawn_number()
+            self.outgoing.chains = Chains(boot)
         await super()._switch_on()
 
     async def stop(self) -> None:

@@ -20,7 +20,8 @@ WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
 BUFFER = 256
 REMEMBERED = 256  # numbers of messages that came too late: a router keeps no more apart
 ANEW = 320  # numbers behind the newest, as in the router's windows (duplicates.py)
-NEW_AHEAD = 32_768  # in place of the message before, so far ahead: numbers were drawn at random
+NEW_AHEAD = 32_768  # in place of the message before, so far ahead less the boot: drawn numbers
+BOOTS = 128  # boots of a machine that are told apart
 QUIET_US = 30_000_000  # a packet is under way for 26 s at most: behind that none is an old one
 BEFORE_BYTES = 2  # in front of the payload: the number of the message before
 
@@ -36,14 +37,15 @@ class Message(NamedTuple):
         seq: its number.
         before: the number of the one before it, `seq` = there is none; None = order is no matter.
         payload: what it says.
-        is_new: its sender drew its numbers at random, and does not know that we had one of them.
+        boot: of its sender's machine, 0 to 127, where that drew its numbers and does not know that
+            we had one of them; None = else. In one boot those drawn later are higher.
     """
 
     sender: int
     seq: int
     before: int | None
     payload: bytes
-    is_new: bool = False
+    boot: int | None = None
 
 
 class Held(NamedTuple):
@@ -88,15 +90,17 @@ class Order:
         self.held: list[Held] = []
         self.ended: list[int] = []
         self.dropped: deque[int] = deque(maxlen=REMEMBERED)
+        self._boot: int | None = None  # in which the sender last drew its numbers
 
     def take(
-        self, seq: int, before: int, payload: bytes, now: int, is_new: bool = False
+        self, seq: int, before: int, payload: bytes, now: int, boot: int | None = None
     ) -> list[bytes]:
         """A message came; what may be handed up now. `before == seq`: there is none to wait for."""
-        if self._is_late(seq, before, is_new, now - self.last_at >= QUIET_US):
+        if self._is_late(seq, before, boot, now - self.last_at >= QUIET_US):
             self.late += 1
             self.dropped.append(seq)
             return []
+        self._boot = self._boot if boot is None else boot
         ready = self._put(seq, before, payload, now)
         self.last_at = now if ready else self.last_at
         return ready
@@ -113,13 +117,13 @@ class Order:
             return self._skip() if len(self.held) > self.buffer else ready
         return ready + self._up(seq, payload) + self._follow()
 
-    def again(self, seq: int, before: int, now: int, is_new: bool = False) -> list[bytes]:
+    def again(self, seq: int, before: int, now: int, boot: int | None = None) -> list[bytes]:
         """A message that waits came again, and may be after another one now; what may go up."""
         found = [one for one in self.held if one.seq == seq]
         if not found:
             return []
         self.held.remove(found[0])
-        return self.take(seq, before, found[0].payload, now, is_new)
+        return self.take(seq, before, found[0].payload, now, boot)
 
     def is_up(self, seq: int) -> bool:
         """True if a message that came was handed up: it neither waits nor came too late."""
@@ -137,16 +141,17 @@ class Order:
         """When somebody has waited long enough, us; only while messages are held."""
         return min(one.due for one in self.held)
 
-    def _is_late(self, seq: int, before: int, is_new: bool, is_quiet: bool) -> bool:
+    def _is_late(self, seq: int, before: int, boot: int | None, is_quiet: bool) -> bool:
         """True if a message is too late; one without another before it may be of a new start.
 
-        Its sender drew its numbers, and then an old one is not far behind; or nothing old is left,
-        and the numbers went on over so many starts unheard that they have come round.
+        Its sender drew its numbers in another boot, and then an old one is not far behind; or
+        nothing old is left, and the numbers went on over so many starts that they have come round.
         """
         if self.last is None or later(seq, self.last):
             return False
+        is_drawn = boot is not None and boot != self._boot
         is_far = (self.last - seq) & MASK16 >= ANEW
-        return before != seq or not (is_quiet or (is_new and is_far))
+        return before != seq or not (is_quiet or (is_drawn and is_far))
 
     def _had(self, before: int) -> bool:
         """True if there is nothing more to wait for before a message that comes after that one."""
@@ -203,7 +208,7 @@ class Orderly:
 
     def take(self, message: Message) -> None:
         """A message came; callbacks are called for whatever it sets free."""
-        sender, seq, before, payload, is_new = message
+        sender, seq, before, payload, boot = message
         now = clock_us()
         if before is None:
             self._hand_up(sender, [payload])
@@ -217,15 +222,15 @@ class Orderly:
         if order is None:
             last, last_at = self._newest.get(sender, (None, now))
             order = self._orders[sender] = Order(last, self.wait_us, self.buffer, last_at)
-        self._hand_up(sender, order.take(seq, before, payload, now, is_new), order)
+        self._hand_up(sender, order.take(seq, before, payload, now, boot), order)
         self._arm()
 
     def again(self, message: Message) -> None:
         """A message that came before came again: its sender was not told that it was handed up."""
-        sender, seq, before, _, is_new = message
+        sender, seq, before, _, boot = message
         order = self._orders.get(sender)
         if order is not None and before is not None:
-            self._hand_up(sender, order.again(seq, before, clock_us(), is_new), order)
+            self._hand_up(sender, order.again(seq, before, clock_us(), boot), order)
         if order is None or order.is_up(seq):
             self.on_up(sender, seq)
 

@@ -68,7 +68,7 @@ class Outgoing:
         self.turns = Turns(stack, self._new_item)
         self.receipts: dict[int, Receipt] = {}
         self._outcomes = outcomes
-        self.chains = Chains(True)
+        self.chains = Chains()
         self._handle = 0
         self._long_bytes = 0  # of long messages
         self._feeding = False
@@ -186,8 +186,9 @@ class Outgoing:
             item.body[: len(head)] = head
             return (dest, seq) if receipt.is_last and receipt.long.in_order else None
         before = self.chains.before(dest, seq)
-        if before == seq and self.chains.is_new(dest):
-            before = (seq + NEW_AHEAD) & MASK16
+        boot = self.chains.boot(dest)
+        if before == seq and boot is not None:
+            before = (seq + NEW_AHEAD - boot) & MASK16
         item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
         return dest, seq
 
@@ -195,7 +196,7 @@ class Outgoing:
         """Nothing goes any more: whoever waits for the end of a message is told so."""
         for handle in list(self.receipts):
             self._end(handle, EXPIRED, STOPPED)
-        self.turns, self.chains = Turns(self._stack, self._new_item), Chains(True)
+        self.turns, self.chains = Turns(self._stack, self._new_item), Chains()
         self._long_bytes = 0
 
     def status(self) -> dict[str, Any]:

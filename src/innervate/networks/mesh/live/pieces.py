@@ -22,7 +22,8 @@ IDLE_US = 30_000_000  # a piece is tried for 26 s at most: then its sender is go
 PRESSED_US = 5_000_000  # where there is no room for another message
 HAD = 8  # messages of a sender that were handed up: copies of their pieces may still come
 
-NO_TURN, TURN, NEW = range(3)  # the whole among its sender's messages in order; NEW: see order.py
+# The whole among its sender's messages in order; from NEW on: and the boot, see order.py.
+NO_TURN, TURN, NEW = range(3)
 
 Name = tuple[int, int, int]  # of a message: its sender, the number of its first packet, its bytes
 
@@ -32,7 +33,7 @@ class Piece(NamedTuple):
 
     Attributes:
         message: the number of the packet that its first piece was in.
-        turn: NO_TURN, TURN or NEW.
+        turn: NO_TURN, TURN, or NEW and a boot.
         at: its place in the message, in bytes.
         size: bytes of the whole.
         data: its bytes.
