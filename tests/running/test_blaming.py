@@ -12,12 +12,22 @@ from tests.own import alone, own
 
 __all__ = ["alone", "own"]
 TAKE = "    node.value = frame.value\n"
+SAY = "    frame.value = node.value\n"
 BROKEN = {
     "no such field": (TAKE, "    node.valu = frame.value\n", "node.valu =",
                       'did you mean "value"?'),
     "another's": (TAKE, "    node.value = frame.beat_us\n", "frame.beat", "has no attribute"),
     "out of range": (TAKE, "    node.value = frame.value * 100\n", "* 100",
                      "value is 700, declared 0 to 255. invariant broken at 0.1"),
+    "a frame out of range": (SAY, "    frame.value = node.value + 256\n", "+ 256",
+                             "value of a frame that on_timer sends is 256, declared 0 to 255. inv"),
+    "a frame's field that is not set": (SAY, "", "[send(", "value of a frame that on_timer sends "
+                                        "is not set: it would be what an earlier frame had there"),
+    "a kind without a layout": ("= NEWS\n", "= node.number & 2\n", "number & 2",
+                                "kind of a frame that on_timer sends is 0, which has no layout"),
+    "when what is delivered was made": ("fill(out.frame[deliver(out, NEWS)], node)",
+                                        "out.frame[deliver(out, NEWS)].value = 3", "[deliver(",
+                                        "made_at of a frame that on_frame delivers is not set"),
     "division": (TAKE, "    node.value = frame.value // (node.number - node.number)\n", "//",
                  "ZeroDivisionError"),
 }  # fmt: skip

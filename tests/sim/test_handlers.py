@@ -6,6 +6,7 @@ import pytest
 
 from innervate.networks.mesh.sim import stacks
 from innervate.sim.cables import declared as cables
+from innervate.sim.channel import declared as channel
 from innervate.sim.channel.calls import handlers
 from innervate.sim.field import declared as field
 from innervate.sim.field import listening
@@ -30,6 +31,10 @@ class Protocol:
             if name not in without:
                 setattr(self, name, lambda *what, name=name: self.said.append((name, *what)))
 
+    def look(self, world, node):
+        """Frames are looked at once a handler is done."""
+        self.said.append(("look", world is WORLD or world.cells[0], node))
+
 
 WORLD = Of(
     stations=["s0", "s1"], nodes=["n0", "n1"], params=["params"], out="out", item=["item"],
@@ -49,11 +54,20 @@ def test_over_a_channel(name):
     assert protocol.said == [(name, "s1", "params", *HANDED[name], "out")]
 
 
+@pytest.mark.parametrize("name", ["on_start", "on_frame", "on_timer", "on_carrier"])
+def test_over_a_channel_frames_of_a_declared_protocol_are_looked_at(name):
+    protocol = Protocol()
+    made = channel._entries(protocol, protocol.look, None, False)
+    made[name](WORLD, NODE, *CALLED[name])
+    assert protocol.said == [(name, "s1", "params", *HANDED[name], "out"), ("look", True, NODE)]
+
+
 @pytest.mark.parametrize("name", HANDED)
 def test_over_a_field(name):
     protocol = Protocol()
-    by_name(field._entries(protocol, set()))[name](WORLD, NODE, *CALLED[name])
-    assert protocol.said == [(name, "s1", "params", *HANDED[name], "out")]
+    made = by_name(field._entries(protocol, set(), protocol.look))
+    made[name](WORLD, NODE, *CALLED[name])
+    assert protocol.said == [(name, "s1", "params", *HANDED[name], "out"), ("look", True, NODE)]
 
 
 @pytest.mark.parametrize("name", ["on_start", "on_timer", "on_frame", "on_input"])
@@ -63,8 +77,8 @@ def test_over_cables(name):
                clocks=[None, Of(offset=100, rate=0)])  # fmt: skip
     called = {**CALLED, "on_frame": (NOW - 100, 2, FRAME)}
     handed = {**HANDED, "on_frame": (NOW, 2, FRAME)}
-    cables._entries(protocol)[name](world, NODE, *called[name])
-    assert protocol.said == [(name, "c1", "params", *handed[name], "out")]
+    cables._entries(protocol, protocol.look)[name](world, NODE, *called[name])
+    assert protocol.said == [(name, "c1", "params", *handed[name], "out"), ("look", "c0", NODE)]
 
 
 @pytest.mark.parametrize("name", ["on_start", "on_timer", "on_frame", "on_input"])
@@ -104,11 +118,11 @@ def test_who_hears_carriers_is_told_of_its_own_end_and_of_changes(monkeypatch):
     monkeypatch.setattr(
         listening, "tell_changes", lambda _w, _do, *what: told.append(("all", *what))
     )
-    made = by_name(field._entries(Protocol(), set()))
+    made = by_name(field._entries(Protocol(), set(), print))
     made["tell_end"](WORLD, None, NODE, NOW, 1)
     made["note_carriers"](WORLD, None, NOW)
     assert told == [("one", NODE, NOW), ("all", NOW)]
-    deaf = by_name(field._entries(Protocol("on_carrier"), set()))
+    deaf = by_name(field._entries(Protocol("on_carrier"), set(), print))
     deaf["tell_end"](WORLD, None, NODE, NOW, 1)
     deaf["note_carriers"](WORLD, None, NOW)
     assert len(told) == 2
@@ -119,11 +133,11 @@ def test_who_wants_to_know_is_told_what_became_of_its_frames(monkeypatch):
     monkeypatch.setattr(listening, "tell_gone", lambda _w, _do, *what: told.append(what))
     protocol = Protocol("on_carrier")
     protocol.on_sent = lambda *what: protocol.said.append(what)
-    made = by_name(field._entries(protocol, set()))
+    made = by_name(field._entries(protocol, set(), protocol.look))
     made["on_sent"](WORLD, NODE, NOW, 1)
     made["tell_end"](WORLD, None, NODE, NOW, 0)
     made["note_carriers"](WORLD, None, NOW)
-    assert protocol.said == [("s1", "params", NOW, 1, "out")]
+    assert protocol.said == [("s1", "params", NOW, 1, "out"), ("look", True, NODE)]
     assert told == [(NODE, NOW, 0)]
 
 

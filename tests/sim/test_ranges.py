@@ -274,8 +274,8 @@ def test_every_checker_of_ranges_has_a_row():
         if any(word in text for word in watches):
             found.add(".".join(path.relative_to(home).with_suffix("").parts))
     # Where a lost memory is put back no range is looked at; what users give is refused in a line;
-    # which line put a value out of its range is tried in tests/running/test_blaming.py. What the
-    # simulators' checkers ask is in the kernel, and with its compiled form in tests/kernel.
+    # which line put a value out of its range, in tests/running/test_blaming.py, of frames too. The
+    # range that the simulators' checkers ask is in the kernel, and compiled in tests/kernel.
     others = {
         "kernel.records",
         "kernel.lowering",
@@ -284,5 +284,7 @@ def test_every_checker_of_ranges_has_a_row():
         "dialect.folder",
         "scenario.declared.shared",
         "running.blaming",
+        "running.sent",
+        "verify.frames",
     }
     assert found - others == set(WATCHES)

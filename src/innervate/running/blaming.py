@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 
 from innervate import folders
 from innervate.network import Network
+from innervate.running.sent import Sent
 from innervate.sim.driver import InvariantBroken, Simulation
 
 TRIAL_EVENTS = 5_000
@@ -53,9 +54,9 @@ class Watched:
                     setattr(state, name, _Row(getattr(state, name), name, number, self))
             state.__class__ = kind
         self._numbers = {id(state): number for number, state in enumerate(states)}
-        running.world = running.world._replace(
-            out=running.world.out._replace(overflow=_Flag([0], self))
-        )
+        self.sent = Sent(world, network, self.here)
+        out = world.out._replace(count=self.sent.count, overflow=_Flag([0], self))
+        running.world, self.sent.out = world._replace(out=out), out
 
     def _watching(self, made: type) -> type:
         """A state's class that notes what is set out of range."""
@@ -94,7 +95,7 @@ class Watched:
                     path, line = self.notes.get((number, name), ("", 0))
                     if path:
                         return f"{path}:{line}: {name} is {value}, declared {low} to {high}. {said}"
-        return said
+        return f"{self.sent.words}. {said}" if self.sent.words else said
 
 
 class _Row(list[int]):

@@ -29,6 +29,7 @@ from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import PORTS, Graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
+from innervate.verify.frames import Frames, layouts_of
 from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.states import Budget, Node, State, Step, is_still, most_frames, sent
 from innervate.verify.tally import Tally
@@ -72,6 +73,9 @@ class Net:
         frame = plain.make("Frame", fields.FRAME)
         self.out = plain.Outbox(frame, getattr(protocol, "OUTBOX", OUTBOX))
         self.frame = frame()
+        self.frames = Frames(fields.FRAME)
+        for one in self.out.frame:
+            self.frames.blank(one)
         self.all = [plain.make("Node", fields.STATE)() for _ in range(graph.cells)]
         self.given = getattr(fields, "GIVEN", ())
         self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
@@ -234,6 +238,8 @@ class Net:
         """The state after a handler of a node at its time `now`, and what it broke."""
         node, out = state.nodes[number], self.out
         put(self.node, self.fields.STATE, node.values)
+        for one in out.frame[: out.count[0]]:
+            self.frames.blank(one)
         out.count[0] = out.overflow[0] = 0
         try:
             handler(self.node, self.params, now, *what, out)
@@ -243,6 +249,7 @@ class Net:
         timers, down, late = dict(node.timers), list(node.down), list(node.late)
         airing = node.airing
         for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
+            broken = self.frames.wrong(frame, act.kind, handler.__name__, broken)
             if act.kind == SET_TIMER:
                 timers[act.a] = ahead(act.b)
                 broken = broken or ("" if 0 <= act.a < self.do.TIMERS else "there is no such timer")
@@ -366,6 +373,7 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
     net.has_carrier &= net.on_air
     net.is_slotted = network.medium == "channel"
     net.is_addressed = network.medium == "field" and hasattr(net.frame, "to")
+    net.frames = Frames(network.fields.FRAME, layouts_of(network))
     net.own = invariants_of(network, "node_")
     net.of_all = invariants_of(network, "network_")
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())

@@ -125,7 +125,7 @@ def test_handlers_are_told_the_time_of_their_nodes_clock():
     protocol.on_frame = lambda *what: said.append(("frame", *what[:5]))
     protocol.on_input = lambda *what: said.append(("input", *what[:5]))
     do, world = functions(protocol, Of(FRAME=FRAME)), world_of()
-    world.cells, world.params, world.out = ["a", "b"], ["p"], None
+    world.cells, world.params, world.out = ["a", "b"], ["p"], Of(count=[0])
     one = frame(7)
     do.on_frame(world, 1, MASK30, 3, one)
     do.on_input(world, 0, 50, 6)

@@ -125,7 +125,7 @@ def test_what_a_node_is_handed_is_the_oldest_that_waits(is_timed, at, made_at):
     protocol = Of(**dict.fromkeys(HANDLERS, print))
     protocol.on_input = lambda _node, _params, now, kind, item, _out: given.append(
         (now, kind, item.seq))  # fmt: skip
-    made_of = Of(**declared._entries(protocol, copy, is_timed))
+    made_of = Of(**declared._entries(protocol, print, copy, is_timed))
     world = world_of()
     world.above.items = [Of(seq=10 + k) for k in range(6)]
     world.above.kinds = [20 + k for k in range(6)]

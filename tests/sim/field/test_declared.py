@@ -161,7 +161,10 @@ def at_once(bare):
     frame.kind = NEWS
     frame.to = ALL
     frame.hops = 1
+    frame.origin = node.number
     frame.seq = item.value
+    frame.value = item.value
+    frame.made_at = item.made_at
 """,
     )
     return bare
@@ -213,9 +216,10 @@ def test_a_frame_whose_link_was_cut_in_the_middle_is_lost(at_once, event, arrive
 
 @pytest.mark.parametrize("times", [1, 2, 3])
 def test_an_urgent_frame_that_finds_the_radio_busy_is_counted(telling, times):
-    sent = "    frame = out.frame[send(out, 0, 0, 0)]\n"
-    more = "    out.frame[send(out, 0, 0, 1)].kind = NEWS\n" * (times - 1)
-    telling.change("protocol.py", sent, sent.replace("0)]", "1)]") + more)
+    text = (telling.folder / "protocol.py").read_text()
+    sent = text[text.index("    frame = out.frame[send(out, 0, 0, 0)]") :]
+    sent = sent[: (sent + "\n\n\n").index("\n\n\n") + 1]
+    telling.change("protocol.py", sent, sent.replace("0)]", "1)]") * times)
     frames = in_line(telling, **{"protocol.hops": 1}).summary["frames"]
     assert (frames["sent"], frames["arrived"]) == (times, 1)
     assert frames["lost_by"] == ({"busy": times - 1} if times > 1 else {})

@@ -305,7 +305,7 @@ def test_a_frame_for_another_node_is_not_handed_up(to, taken):
     said = []
     protocol = Of(**dict.fromkeys(("on_start", "on_timer", "on_input"), print))
     protocol.on_frame = lambda *what: said.append(what[2:5])
-    entries = {one.__name__: one for one in declared._entries(protocol, {"to"})}
+    entries = {one.__name__: one for one in declared._entries(protocol, {"to"}, print)}
     world = Of(stations=[None] * 2, params=[None], out=None)
     frame = Of(to=to)
     entries["on_frame"](world, 1, 90, frame)

@@ -27,6 +27,7 @@ from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
+from innervate.sim.sent import WORDS, kinds_of, look_of, parts_of
 from innervate.sim.tables import Tables, put
 
 OUTBOX = 16
@@ -37,13 +38,19 @@ class Unfit(ValueError):
 
 
 def functions(
-    protocol: ModuleType, fields: ModuleType, own: Mapping[str, Any] | None = None
-) -> ModuleType:
-    """What the medium calls (see `sim/cables`), of a protocol, its fields, its invariants."""
+    protocol: ModuleType, fields: ModuleType, own: Mapping[str, Any] | None = None,
+    kinds: tuple[int, ...] = (),
+) -> ModuleType:  # fmt: skip
+    """What the medium calls (see `sim/cables`), of a protocol, its fields, its invariants.
+
+    `kinds` are those that its frames can have; () = any.
+    """
     if SOURCE < protocol.TIMERS:
         raise Unfit(f"a node over cables has at most {SOURCE} timers, not {protocol.TIMERS}")
     do = ModuleType(f"{protocol.__name__} over cables")
-    vars(do).update(_entries(protocol))
+    look = look_of(fields.FRAME, kinds)
+    vars(do).update(parts_of(look))
+    vars(do).update(_entries(protocol, look))
     vars(do).update(frames_of(fields.FRAME))
     if hasattr(protocol, "copy_frame"):
         vars(do)["copy_frame"] = protocol.copy_frame
@@ -68,23 +75,27 @@ def _checks(own: Iterable[Callable[..., Any]]) -> dict[str, Callable[..., None]]
     return {"check": check, "check_own": check_own}
 
 
-def _entries(protocol: ModuleType) -> dict[str, Callable[..., Any]]:
+def _entries(protocol: ModuleType, look: Callable[..., None]) -> dict[str, Callable[..., Any]]:
     """The protocol's functions with the world as their first argument."""
     start, frame_in = protocol.on_start, protocol.on_frame
     timer_due, given = protocol.on_timer, protocol.on_input
 
     def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
         start(world.cells[node], world.params[0], now, cause, world.out)
+        look(world, node)
 
     def on_frame(world, node, time, port, frame):  # type: ignore[no-untyped-def]
         now = clocks.reading(world.clocks[node], time) & MASK30
         frame_in(world.cells[node], world.params[0], now, port, frame, world.out)
+        look(world, node)
 
     def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
         timer_due(world.cells[node], world.params[0], now, timer, world.out)
+        look(world, node)
 
     def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
         given(world.cells[node], world.params[0], now, kind, world.sample[0], world.out)
+        look(world, node)
 
     return {"on_start": on_start, "on_frame": on_frame, "on_timer": on_timer, "on_input": on_input}
 
@@ -151,11 +162,12 @@ class DeclaredCables(Cables):
     @cached_property
     def broken_words(self) -> dict[int, str]:  # type: ignore[override]
         """What is broken, by number."""
-        return {**Cables.broken_words, **words_of(self.plan.kind)}
+        return {**Cables.broken_words, **WORDS, **words_of(self.plan.kind)}
 
 
 def _functions(network: Network) -> ModuleType:
-    return functions(network.protocol, network.fields, invariants_of(network, "node_"))
+    rules = invariants_of(network, "node_")
+    return functions(network.protocol, network.fields, rules, kinds_of(network))
 
 
 def plain_loop(kind: str) -> Callable[..., None]:

@@ -29,6 +29,7 @@ from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
+from innervate.sim.sent import WORDS, kinds_of, look_of, parts_of
 from innervate.sim.tables import Tables, get, put, row_dtype
 
 DELIVERY = ("time", "node", "port", "kind", "latency")
@@ -67,13 +68,17 @@ def functions(network: Network) -> ModuleType:
     do = ModuleType(f"{protocol.__name__} on a channel")
     names = {name for name, length, *_ in fields.FRAME if not length}
     vars(do).update({name: frames[name] for name in ("copy_frame", "digest")})
-    vars(do).update(_entries(protocol, frames["copy_frame"], "made_at" in names))
+    look = look_of(fields.FRAME, kinds_of(network))
+    vars(do).update(parts_of(look))
+    vars(do).update(_entries(protocol, look, frames["copy_frame"], "made_at" in names))
     vars(do).update(_noted(frames["copy_frame"], frames["kind_of"], "made_at" in names))
     vars(do).update(_watching(list(invariants_of(network, "node_").values())))
     return do
 
 
-def _entries(protocol: ModuleType, copy: Any, is_timed: bool) -> dict[str, Callable[..., Any]]:
+def _entries(
+    protocol: ModuleType, look: Callable[..., None], copy: Any, is_timed: bool
+) -> dict[str, Callable[..., Any]]:
     """The protocol's functions with the world as their first argument."""
     given = protocol.on_input
 
@@ -95,9 +100,35 @@ def _entries(protocol: ModuleType, copy: Any, is_timed: bool) -> dict[str, Calla
         if kind == listening.PACKET:
             kind = world.above.kinds[down(world, node)]
             given(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
+            look(world, node)
 
-    made = {one.__name__: one for one in handlers(protocol)}
-    return {**made, "on_input": on_input, "hand_down": hand_down, "hand_down_timed": down}
+    return {**_looked(protocol, look),
+            "on_input": on_input, "hand_down": hand_down, "hand_down_timed": down}  # fmt: skip
+
+
+def _looked(protocol: ModuleType, look: Callable[..., None]) -> dict[str, Callable[..., Any]]:
+    """The handlers that are called as they are, each with a look at what it sends."""
+    start, frame_in, due, _, carrier = handlers(protocol)
+
+    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
+        start(world, node, now, cause)
+        look(world, node)
+
+    def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
+        frame_in(world, node, now, frame)
+        look(world, node)
+
+    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
+        due(world, node, now, timer)
+        look(world, node)
+
+    def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
+        carrier(world, node, now, cd, voc)
+        look(world, node)
+
+    return {"start": start, "frame_in": frame_in, "due": due, "carrier": carrier,
+            "on_start": on_start, "on_frame": on_frame, "on_timer": on_timer,
+            "on_carrier": on_carrier}  # fmt: skip
 
 
 def _noted(copy: Any, kind_of: Any, is_timed: bool) -> dict[str, Callable[..., Any]]:
@@ -168,7 +199,7 @@ class DeclaredChannel(Channel):
     @cached_property
     def broken_words(self) -> dict[int, str]:  # type: ignore[override]
         """What is broken, by number."""
-        return {**listening.WORDS, **words_of(self.plan.kind)}
+        return {**listening.WORDS, **WORDS, **words_of(self.plan.kind)}
 
     def take(self) -> dict[str, Any]:
         """The rows by table; packets that were handed up are deliveries."""

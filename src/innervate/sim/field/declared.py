@@ -32,6 +32,7 @@ from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import DEAD, OFF
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
+from innervate.sim.sent import WORDS, kinds_of, look_of, parts_of
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
 
@@ -51,10 +52,12 @@ def functions(network: Network) -> ModuleType:
     names = {name for name, length, *_ in fields.FRAME if not length}
     frames = frames_of([one for one in fields.FRAME if one[0] != "rssi"])
     whole = frames_of(fields.FRAME)["copy_frame"]
+    look = look_of(fields.FRAME, kinds_of(network))
     do = compilation.bound(
         f"{protocol.__name__} over a field",
         (whole, frames["digest"], frames["kind_of"], _frame_bytes(network.frames)),
-        _entries(protocol, names), _mac(network), _noted(whole, frames["kind_of"], names),
+        _entries(protocol, names, look), parts_of(look).values(), _mac(network),
+        _noted(whole, frames["kind_of"], names),
         _checks(list(invariants_of(network, "node_").values())), BELOW, KEPT,
     )  # fmt: skip
     return do
@@ -72,26 +75,33 @@ def _frame_bytes(frames: Any) -> Callable[..., int]:
     return found
 
 
-def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any], ...]:
+def _entries(
+    protocol: ModuleType, names: set[str], look: Callable[..., None]
+) -> tuple[Callable[..., Any], ...]:
     """The protocol's functions with the world as their first argument."""
     start, frame_in = protocol.on_start, protocol.on_frame
     timer_due, given = protocol.on_timer, protocol.on_input
 
     def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
         start(world.stations[node], world.params[0], now, cause, world.out)
+        look(world, node)
 
     def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
         frame_in(world.stations[node], world.params[0], now, 0, frame, world.out)
+        look(world, node)
 
     def on_own_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
         if frame.to == node or frame.to == ALL:
             frame_in(world.stations[node], world.params[0], now, 0, frame, world.out)
+            look(world, node)
 
     def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
         timer_due(world.stations[node], world.params[0], now, timer, world.out)
+        look(world, node)
 
     def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
         given(world.stations[node], world.params[0], now, kind, world.item[0], world.out)
+        look(world, node)
 
     def tell_end(world, do, node, time, ok):  # type: ignore[no-untyped-def]
         pass
@@ -102,7 +112,7 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
     on_own_frame.__name__ = "on_frame"
     made = (on_start, on_own_frame if "to" in names else on_frame, on_timer, on_input)
     if hasattr(protocol, "on_sent"):
-        return (*made, *_of_sent(protocol.on_sent), note_carriers)
+        return (*made, *_of_sent(protocol.on_sent, look), note_carriers)
     if not hasattr(protocol, "on_carrier"):
         return (*made, tell_end, note_carriers)
     carrier, tell_changes, tell_carrier = (
@@ -111,6 +121,7 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
 
     def on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
         carrier(world.stations[node], world.params[0], now, cd, voc, world.out)
+        look(world, node)
 
     def tell_own_end(world, do, node, time, ok):  # type: ignore[no-untyped-def]
         tell_carrier(world, do, node, time)
@@ -122,12 +133,13 @@ def _entries(protocol: ModuleType, names: set[str]) -> tuple[Callable[..., Any],
     return (*made, on_carrier, tell_own_end, note_changes)
 
 
-def _of_sent(sent: Callable[..., Any]) -> tuple[Callable[..., Any], ...]:
+def _of_sent(sent: Callable[..., Any], look: Callable[..., None]) -> tuple[Callable[..., Any], ...]:
     """A protocol above a medium access is told what became of its frames."""
     tell_gone = listening.tell_gone
 
     def on_sent(world, node, now, ok):  # type: ignore[no-untyped-def]
         sent(world.stations[node], world.params[0], now, ok, world.out)
+        look(world, node)
 
     def tell_end(world, do, node, time, ok):  # type: ignore[no-untyped-def]
         tell_gone(world, do, node, time, ok)
@@ -276,7 +288,7 @@ class DeclaredField(Field):
     @cached_property
     def broken_words(self) -> dict[int, str]:  # type: ignore[override]
         """What is broken, by number."""
-        return {**Field.broken_words, **words_of(self.plan.kind)}
+        return {**Field.broken_words, **WORDS, **words_of(self.plan.kind)}
 
     def grow(self, status: int) -> None:
         """Make room for more events."""

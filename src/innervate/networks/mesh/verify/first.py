@@ -26,7 +26,7 @@ class Begun(NamedTuple):
     Attributes:
         net: switched on; where something is offered, after the first round, its tables in force.
         broken: what that broke, a number of local.py; 0 nothing.
-        start: the state before `path`.
+        start: the state before `path`; if nothing broke, `net`.
         path: the events that broke it.
     """
 
@@ -60,7 +60,8 @@ def begin(nets: Nets) -> Begun:
             return Begun(net, step[2], start, path)
         if len(path) > EVENTS_MAX:
             return Begun(net, local.BROKEN_FIRST, path[-LAST - 1][1], path[-LAST:])
-    return Begun(_ready(nets, net), 0, start, [])
+    first = _ready(nets, net)
+    return Begun(first, 0, first, [])
 
 
 def _ready(nets: Nets, net: Net) -> Net:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from innervate.kernel.clock import wall_s
 from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import local as mesh_local
-from innervate.networks.mesh.verify.first import Begun, begin
+from innervate.networks.mesh.verify.first import begin
 from innervate.networks.mesh.verify.model import MeshModel
 from innervate.networks.mesh.verify.net import Net, Nets, Successor
 from innervate.verify.explore import EVERY_S, MEMORY, Tally
@@ -71,12 +71,10 @@ def explore(
         live: look at the calm future of every state, too.
         progress: called every EVERY_S at most; the search ends if it returns True.
     """
-    nets = nets or Nets(model)
-    begun = begin(nets)
-    if begun.broken:
-        return _broken_at_once(model, nets, begun)
-    search = _Search(nets, begun.net)
-    found = Found(model, nets, search.tally, start=search.first)
+    first, found = _begun(model, nets or Nets(model))
+    if found.broken:
+        return found
+    search = _Search(found.nets, first, found.tally)
     started = told = wall_s()
     while search.tally.ended == "interrupted":
         search.advance(states, memory)
@@ -92,15 +90,16 @@ def explore(
     elif live:
         _look_ahead(found, search, progress)
         search.tally.wall_s = wall_s() - started
-    found.calls = nets.locals.calls
+    found.calls = found.nets.locals.calls
     return found
 
 
-def _broken_at_once(model: MeshModel, nets: Nets, begun: Begun) -> Found:
-    """What is found where the first round breaks already."""
-    found = Found(model, nets, Tally(states=1, ended="broken"), broken=begun.broken)
-    found.start, found.path, found.calls = begun.start, begun.path, nets.locals.calls
-    return found
+def _begun(model: MeshModel, nets: Nets, depth: int = 0) -> tuple[Net, Found]:
+    """Where a search begins, and what is found so far: that the first round breaks, if it does."""
+    begun = begin(nets)
+    tally = Tally(states=1, ended="broken") if begun.broken else Tally(depth=depth)
+    found = Found(model, nets, tally, nets.locals.calls, begun.broken, begun.path, begun.start)
+    return begun.net, found
 
 
 def _look_ahead(found: Found, search: _Search, progress: Progress | None) -> None:
@@ -124,7 +123,7 @@ def _look_ahead(found: Found, search: _Search, progress: Progress | None) -> Non
 class _Search:
     """The states found so far, in the order in which they were."""
 
-    def __init__(self, nets: Nets, first: Net) -> None:
+    def __init__(self, nets: Nets, first: Net, tally: Tally) -> None:
         self.nets = nets
         self.first = first
         row = nets.pack(self.first)
@@ -135,7 +134,8 @@ class _Search:
         self.next = 0
         self.level_end = 1
         self.broken = self.broken_at = self.broken_which = 0
-        self.tally = Tally(states=1)
+        self.tally = tally
+        tally.states = 1
 
     def advance(self, states: int, memory: int) -> None:
         """Find the successors of some more states."""
@@ -210,11 +210,10 @@ def wander(
 ) -> Found:
     """So many random walks of at most `length` events, for budgets too large to exhaust."""
     nets = Nets(model)
-    begun = begin(nets)
-    if begun.broken:
-        return _broken_at_once(model, nets, begun)
-    chance, first, fair = random.Random(seed), begun.net, mesh_fair.Fair(nets)
-    found = Found(model, nets, Tally(depth=length), start=first)
+    first, found = _begun(model, nets, length)
+    if found.broken:
+        return found
+    chance, fair = random.Random(seed), mesh_fair.Fair(nets)
     started = wall_s()
     for walk in range(walks):
         net, order, broken = first, [], 0

@@ -1,0 +1,150 @@
+"""What a watched plain run sees of frames: who set what in them, and what nobody did."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from innervate.dialect import outbox
+from innervate.dialect.outbox import DELIVER, SEND
+from innervate.folders import NetworkError, shown
+from innervate.network import Network
+from innervate.sim.sent import FRAME_BROKEN, KIND_BROKEN
+from innervate.verify.frames import MEASURED, Frames, layouts_of
+
+Here = Callable[[], tuple[str, int]]
+
+
+class Sent:
+    """Watches the frames of an outbox.
+
+    Args:
+        world: of a plain run, not yet begun.
+        network: whose it is.
+        here: the innermost line of the network's files that is being run.
+
+    Attributes:
+        words: what is wrong with the frame that broke the run, and where it was set; "" nothing.
+        count: to be the outbox's, in place of its own.
+    """
+
+    def __init__(self, world: Any, network: Network, here: Here) -> None:
+        self.words, self.here, self.out = "", here, world.out
+        self.frames = Frames(network.fields.FRAME, layouts_of(network))
+        self.put_at: dict[int, tuple[str, int, str]] = {}  # by action: file, line, handler
+        # By frame and field, of this call: where a value was set that cannot be.
+        self.set_at: dict[tuple[int, str], tuple[str, int] | None] = {}
+        self.ranges = {name: (low, high) for name, _, low, high, *_ in self.frames.declared}
+        self.count = _Count([0], self)
+        kind = self._watching(type(world.out.frame[0]))
+        for place, frame in enumerate(world.out.frame):
+            for name, length, *_ in network.fields.FRAME:
+                if length:
+                    setattr(frame, name, _Row(getattr(frame, name), (place, name), self))
+            frame.__class__ = kind
+        self.place = {id(frame): place for place, frame in enumerate(world.out.frame)}
+        self._watch_run(world.run[0])
+
+    def _watching(self, made: type) -> type:
+        sent = self
+
+        def set_field(frame: Any, name: str, value: Any) -> None:
+            sent.note((sent.place[id(frame)], name), value)
+            object.__setattr__(frame, name, value)
+
+        return type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+
+    def _watch_run(self, run: Any) -> None:
+        """Have it say what was set where, at the moment that a frame breaks the run."""
+        sent, made = self, type(run)
+
+        def set_field(run: Any, name: str, value: Any) -> None:
+            if name == "broken" and value in (FRAME_BROKEN, KIND_BROKEN) and not sent.words:
+                sent.words = sent.first_wrong()
+            object.__setattr__(run, name, value)
+
+        run.__class__ = type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+
+    def note(self, what: tuple[int, str], value: Any) -> None:
+        """A field of a frame is set."""
+        name, laid = what[1], self.frames.laid
+        low, high = self.ranges.get(name, (value, value))
+        can_be = low <= value <= high and (name != "kind" or not laid or value in laid)
+        self.set_at[what] = None if can_be else self.here()
+
+    def first_wrong(self) -> str:
+        """The first value of what the present call sends and delivers that cannot be."""
+        for place in range(self.out.count[0]):
+            act, frame = self.out.action[place], self.out.frame[place]
+            if act.kind not in (SEND, DELIVER):
+                continue
+            for name, length, low, high, *_ in self.frames.declared:
+                value = getattr(frame, name)
+                for one in value if length else [value]:
+                    if name not in MEASURED and not low <= one <= high:
+                        return self._said(place, name, f"is {one}, declared {low} to {high}")
+            if act.kind == SEND and self.frames.laid and frame.kind not in self.frames.laid:
+                return self._said(place, "kind", f"is {frame.kind}, which has no layout")
+        return ""
+
+    def drained(self, count: int) -> None:
+        """So many actions of a call are carried out.
+
+        Raises:
+            NetworkError: a frame had a field that the call did not set.
+        """
+        for place in range(count):
+            act, frame = self.out.action[place], self.out.frame[place]
+            if act.kind in (SEND, DELIVER):
+                for name in self.frames.wanted(getattr(frame, "kind", None), act.kind):
+                    if (place, name) not in self.set_at:
+                        raise NetworkError(self._said(place, name, "is not set: it would be what "
+                                                      "an earlier frame had there"))  # fmt: skip
+        self.set_at.clear()
+
+    def _said(self, place: int, name: str, what: str) -> str:
+        file, line, handler = self.put_at[place]
+        path = shown(Path(file))
+        path, line = self.set_at.get((place, name)) or (path, line)
+        does = "sends" if self.out.action[place].kind == SEND else "delivers"
+        return f"{path}:{line}: {name} of a frame that {handler} {does} {what}"
+
+
+class _Count(list[int]):
+    """How many actions there are."""
+
+    def __init__(self, values: list[int], sent: Sent) -> None:
+        super().__init__(values)
+        self.sent = sent
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        if value:
+            self.sent.put_at[value - 1] = _putter()
+        elif self[0]:
+            self.sent.drained(self[0])
+        super().__setitem__(place, value)
+
+
+class _Row(list[int]):
+    """An array field of a frame."""
+
+    def __init__(self, values: Any, what: tuple[int, str], sent: Sent) -> None:
+        super().__init__(values)
+        self.what, self.sent = what, sent
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        self.sent.note(self.what, value)
+        super().__setitem__(place, value)
+
+
+def _putter() -> tuple[str, int, str]:
+    """File and line that put an action into the outbox, and the handler that it belongs to."""
+    frame: Any = sys._getframe(2)
+    while frame.f_code.co_filename == outbox.__file__:
+        frame = frame.f_back
+    place = frame.f_code.co_filename, frame.f_lineno
+    while frame.f_back is not None and not frame.f_code.co_name.startswith("on_"):
+        frame = frame.f_back
+    return (*place, frame.f_code.co_name)

@@ -1,0 +1,67 @@
+"""Frames that nodes of a declared network send and deliver, looked at before they leave a call.
+
+On a wire a value has the bits of its layout, and in C the width of its declared range: one beyond
+that would be another there, or none, and only a simulation would carry it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from innervate.dialect.outbox import DELIVER, SEND
+from innervate.kernel.records import Declaration
+
+FRAME_BROKEN, KIND_BROKEN = 62, 63  # `run.broken`, below what a network's own rules have
+WORDS = {
+    FRAME_BROKEN: "a frame of {node} has a value out of its declared range",
+    KIND_BROKEN: "a frame of {node} is of a kind that has no layout",
+}
+MEASURED = ("rssi",)  # by who receives it
+
+
+def kinds_of(network: Any) -> tuple[int, ...]:
+    """The kinds that a network's frames can have on a wire; () = its layouts do not say."""
+    if not network.has("frames") or network.has("packets"):
+        return ()
+    return tuple(kind for kind, *_ in getattr(network.frames, "LAYOUTS", ()))
+
+
+def look_of(declared: Declaration, kinds: Iterable[int] = ()) -> Callable[..., None]:
+    """`look(world, node)`: marks a run as broken by what a call has put into its outbox.
+
+    Args:
+        declared: the fields of a frame.
+        kinds: that a frame which is sent may have; () = any.
+    """
+    lines = []
+    for name, length, low, high, *_ in declared:
+        if name not in MEASURED:
+            lines += [f"    for k in range({length}):"] if length else []
+            place, by = (f"{name}[k]", "    ") if length else (name, "")
+            lines += [f"    {by}beyond |= (frame.{place} < {low}) | (frame.{place} > {high})"]
+    known = " or ".join(f"frame.kind == {kind}" for kind in kinds)
+    text = "\n".join([
+        "def is_declared(frame):", "    beyond = False", *lines, "    return not beyond",
+        "def has_layout(frame):", f"    return {known or True}",
+        "def look(world, node):",
+        "    run, out = world.run[0], world.out",
+        "    if run.checks and run.broken == 0:",
+        "        for i in range(out.count[0]):",
+        "            what = out.action[i].kind",
+        f"            if what == {SEND} or what == {DELIVER}:",
+        "                if not is_declared(out.frame[i]):",
+        f"                    run.broken, run.broken_node = {FRAME_BROKEN}, node",
+        f"                elif what == {SEND} and not has_layout(out.frame[i]):",
+        f"                    run.broken, run.broken_node = {KIND_BROKEN}, node",
+    ])  # fmt: skip
+    made: dict[str, Any] = {}
+    exec(compile(text, "what a protocol sends", "exec"), made)
+    look: Callable[..., None] = made["look"]
+    return look
+
+
+def parts_of(look: Callable[..., None]) -> dict[str, Callable[..., Any]]:
+    """What a look calls, and itself, by name: to be compiled with it."""
+    names = ("is_declared", "has_layout", "look")
+    return {name: look.__globals__[name] for name in names}

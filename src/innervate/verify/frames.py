@@ -1,0 +1,71 @@
+"""Frames that an explored call puts into its outbox: what of them is not set, or out of range."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from innervate.dialect.outbox import DELIVER, SEND
+
+MEDIUMS = ("to", "slots")  # what a medium looks at, whatever a layout says
+TIMED = "made_at"  # what latencies are measured by
+MEASURED = ("rssi",)  # by who receives it
+
+
+class Frames:
+    """Looks at frames, and makes them blank before a call.
+
+    Args:
+        declared: the fields of a frame.
+        layouts: of its kinds (see wire/layout.py); () = they do not say what is on a wire.
+
+    A protocol that does not set a field of a frame sends what an earlier one had there.
+    """
+
+    def __init__(self, declared: Any, layouts: Any = ()) -> None:
+        self.declared = declared
+        self.names = {name for name, *_ in declared}
+        self.laid = {kind: {one[0] for one in fields} for kind, _name, fields in layouts}
+
+    def blank(self, frame: Any) -> None:
+        """Let none of a frame's fields be set."""
+        for name, length, *_ in self.declared:
+            setattr(frame, name, [None] * length if length else None)
+
+    def wrong(self, frame: Any, action: int, handler: str, found: str = "") -> str:
+        """What is wrong with a frame that a handler sends or delivers; all of it is set then.
+
+        What was `found` before stays.
+        """
+        if action not in (SEND, DELIVER):
+            return found
+        does = "sends" if action == SEND else "delivers"
+        kind = getattr(frame, "kind", None)
+        wanted = self.wanted(kind, action)
+        for name, length, low, high, *_ in self.declared:
+            given = getattr(frame, name)
+            each = given if length else [given]
+            if None in each and name in wanted and not found:
+                found = f"{name} of a frame that {handler} {does} is not set"
+            each = [min(max(0, low), high) if one is None else one for one in each]
+            out = [one for one in each if not low <= one <= high]
+            if out and name not in MEASURED and not found:
+                found = (f"{name} of a frame that {handler} {does} is {out[0]}, "
+                         f"declared {low} to {high}")  # fmt: skip
+            setattr(frame, name, each if length else each[0])
+        if action == SEND and self.laid and kind not in self.laid and not found:
+            found = f"{handler} sends a frame of kind {kind}, which has no layout"
+        return found
+
+    def wanted(self, kind: int | None, action: int) -> set[str]:
+        """The fields that a frame of a kind must have, as it is sent or delivered."""
+        if action != SEND:
+            return {TIMED} & self.names
+        known = {"kind", TIMED, *self.laid.get(kind, ())} if self.laid else set()
+        return {*known, *MEDIUMS} & self.names
+
+
+def layouts_of(network: Any) -> Any:
+    """The layouts of a network's frames, if those are what goes over a wire."""
+    if not network.has("frames") or network.has("packets"):
+        return ()
+    return getattr(network.frames, "LAYOUTS", ())
