@@ -4,10 +4,14 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 from innervate.network import networks
 from innervate.networks.radio.protocol.constants import WIDE_MOST
 from innervate.networks.radio.prove import turns
+from tests.own import alone
+
+__all__ = ["alone"]
 
 
 def test_what_is_proved_is_told_lemma_by_lemma(sh):
@@ -44,7 +48,13 @@ def test_planted_mistakes_are_refuted(sh):
     assert all(refuted)
 
 
+def test_a_folder_is_named_by_its_path(sh, alone):
+    assert sh("prove", str(Path(__file__).parents[2] / "examples" / "aloha")) == 0
+    assert sh.out.splitlines()[-1].startswith("All as it should be: 13 lemmas in ")
+
+
 def test_an_unknown_network_is_named(sh):
+    assert sh("prove", "") == sh("verify", "") == 2
     assert sh("prove", "bus") == 2
     assert sh.err == 'innervate: prove knows skin, radio, mesh, babel, flooding or rpl, not "bus"\n'
 

@@ -1,6 +1,7 @@
 """What is proved of any network, by protocols of a few lines: what handlers may be told."""
 
 import ast
+import re
 import typing
 from types import SimpleNamespace as Of
 
@@ -10,10 +11,21 @@ from innervate.dialect.arith import MASK30
 from innervate.prove import declared, execute
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
+from innervate.prove.steps import SENT
+from innervate.prove.tell import changes
 from innervate.scenario.declared.shared import InputTable
 
 SOURCE = """
 def report(out, code, a, b):
+    pass
+
+def send(out, port, delay_us, flags):
+    pass
+
+def deliver(out, kind):
+    pass
+
+def set_timer(out, timer, at):
     pass
 
 def on_start(state, params, now, cause, out):
@@ -49,14 +61,36 @@ def at_any_time(state, params, now, cause, out):
 def of_a_frame(state, params, now, port, frame, out):
     state.x = frame.y
 
+def tell(state, params, now, kind, item, out):
+    out.frame[send(out, 0, 0, 0)].y = item.y + 1
+
+def hand_up(state, params, now, kind, item, out):
+    out.frame[deliver(out, 1)].y = 2
+
+def far(state, params, now, kind, item, out):
+    out.frame[send(out, kind, 0, 0)].y = 7
+
+def late(state, params, now, kind, item, out):
+    set_timer(out, 1, now + 1)
+
+def third(state, params, now, kind, item, out):
+    set_timer(out, 2, now)
+
+def on_carrier(state, params, now, cd, voc, out):
+    state.x = cd + voc
+
+def on_sent(state, params, now, ok, out):
+    state.x = ok
+
 def often(state, params, now, timer, out):
     for i in range(params.z):
         report(out, 1, 2, 3)
 """
+OUT = ("report", "send", "deliver", "set_timer")
 NODES = {node.name: node for node in ast.parse(SOURCE).body}
 KNOWN = {
     name: Of(name=name, node=node, path="m.py", constants={},
-             module=execute.OUTBOX if name == "report" else "m", calls={one: one for one in NODES})
+             module=execute.OUTBOX if name in OUT else "m", calls={one: one for one in NODES})
     for name, node in NODES.items()
 }  # fmt: skip
 
@@ -98,6 +132,20 @@ def test_what_a_handler_is_told_may_be_anything_up_to_its_most(handler, told, mo
 ])  # fmt: skip
 def test_what_a_handler_is_told_may_be_nothing(handler, told):
     assert refuted(network(MASK30, least=1), handler, *told) == [RANGE]
+
+
+@pytest.mark.parametrize(("handler", "words"), [
+    ("tell", "y of a frame that tell sends is 8, declared 3 to 7"),
+    ("hand_up", "y of a frame that hand_up delivers is 2, declared 3 to 7"),
+    ("far", r"far sends a frame on port ([4-9]|1\d)"),
+    ("late", "late sets timer 1 to 1073741824, which is no reading of a clock"),
+    ("third", "third sets timer 2, and there are 2"),
+])  # fmt: skip
+def test_what_is_sent_and_set_beyond_its_range_is_named(handler, words):
+    step = declared._step(network(), KNOWN, ("it happens", handler, ["kind", "frame"]))
+    (bad,) = check(step, changes, reach=False).refuted
+    assert bad.goal == SENT
+    assert re.fullmatch(f"This breaks: {SENT}: {words}.", bad.sentences[-1])
 
 
 def test_an_outbox_holds_what_its_protocol_says_or_sixteen():

@@ -177,7 +177,7 @@ def papers(
     from innervate.cli import papers as command
 
     how = {"quick": quick, "only": only or [], "redraw": redraw}
-    return command.papers(paper or first(), out, page, how)
+    return command.papers(first() if paper is None else paper, out, page, how)
 
 
 @app.command
@@ -202,7 +202,7 @@ def verify(
     """
     from innervate.cli import verifying as command
 
-    return command.verify(system or first(), options, json, out)
+    return command.verify(first() if system is None else system, options, json, out)
 
 
 @app.command
@@ -226,7 +226,7 @@ def prove(
     """
     from innervate.cli import proving as command
 
-    return command.prove(system or first(), faults, json)
+    return command.prove(first() if system is None else system, faults, json)
 
 
 @app.command

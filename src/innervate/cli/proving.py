@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from innervate.cli import errors
 from innervate.cli.progress import Display
-from innervate.network import Network, find, networks
+from innervate.cli.verifying import named
+from innervate.network import Network
 
 if TYPE_CHECKING:
     from innervate.prove.theory import Outcome
@@ -16,11 +16,7 @@ if TYPE_CHECKING:
 
 def prove(system: str, faults: bool, as_json: bool) -> int:
     """Prove a network's theories; 1 if one does not come out as it should."""
-    network = find(system, Path())
-    if network is None:
-        names = list(networks())
-        listed = f"{', '.join(names[:-1])} or {names[-1]}"
-        raise errors.UserError(f'prove knows {listed}, not "{system[:40]}"')
+    network = named(system, "prove knows")
     if faults:
         return _faults(network, as_json)
     return _theories(network, as_json)

@@ -29,7 +29,7 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
     return _explore(network, options, as_json, out)
 
 
-def named(system: str) -> Network:
+def named(system: str, knows: str = "verify explores") -> Network:
     """The network of a name, or of a folder: by its path, or of that name in the present one.
 
     Raises:
@@ -41,7 +41,7 @@ def named(system: str) -> Network:
     if found is None:
         names = list(networks())
         listed = f"{', '.join(names[:-1])} or {names[-1]}"
-        raise errors.UserError(f'verify explores {listed}, not "{system[:40]}"')
+        raise errors.UserError(f'{knows} {listed}, not "{system[:40]}"')
     return found
 
 

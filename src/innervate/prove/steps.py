@@ -40,6 +40,7 @@ class Step:
         result: what the function returned.
         others: machines that have a part in it, too.
         singly: goals are asked one by one: where each takes long, all at once take longer.
+        timers, ports: how many a node has, as `own_goals` was told.
     """
 
     name: str
@@ -52,6 +53,8 @@ class Step:
     result: Any = None
     others: Sequence[Machine] = ()
     singly: bool = False
+    timers: int = 0
+    ports: int = 0
 
     def all_ways(self) -> dict[tuple[str, int, bool], list[Term]]:
         """Where every way of a branch is taken, whichever of its machines comes there."""
@@ -130,6 +133,7 @@ def own_goals(step: Step, changed: tuple[str, ...], timers: int, ports: int) -> 
         ports: how many there are; 0 for frames that go out without one.
     """
     terms = step.terms
+    step.timers, step.ports = timers, ports
     by_name: dict[str, list[Term]] = {}
     for name in changed:
         for key, low, high in step.records[name].places():
