@@ -16,6 +16,7 @@ from boards.compile import mpy
 from boards.errors import BoardMissing
 from boards.parity.record import part, plan_of
 from boards.roles import kind_of, roles
+from innervate.folders import not_for_boards
 from innervate.live.board import Program, Role
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
@@ -43,6 +44,8 @@ def files_of(role: Role, params: dict[str, int]) -> dict[str, bytes]:
         LiveError: there is no driver for it.
     """
     program = program_of(role)
+    if why := not_for_boards(networks()[kind_of(role)]):
+        raise LiveError(why)
     sources = {
         "node": join.fixed(join.joined(role.entry, noted=role.noted), params),
         "records": records.module_source(

@@ -248,6 +248,17 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     return found
 
 
+def not_for_boards(network: Any) -> str:
+    """Why the driver of boards cannot do as a folder's protocol says, with file and line; or ""."""
+    if network.folder is None or network.medium in MEDIA_ON_AIR:
+        return ""
+    what = "boards send at once: give send a delay of 0, and send it from on_timer"
+    found = sends.of_delays(sources(network.folder, network), what)
+    for one in found:
+        one.path = shown(Path(one.path))
+    return str(found[0]) if found else ""
+
+
 def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Finding]:
     """What values and names there are that the declarations have no room for."""
     fields, place = network.fields, _file_of(folder, network, "fields")

@@ -26,8 +26,11 @@ def _names(node):
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
-def of_delays(paths):
-    """Frames that are to leave later, where only cables can do that."""
+LATER = "only over cables a frame leaves later; send it from on_timer"
+
+
+def of_delays(paths, what=LATER):
+    """Frames that are to leave later, where only cables can do that, or not even these."""
     found = []
     for path in paths:
         tree = ast.parse(path.read_text(encoding="utf-8"))
@@ -35,7 +38,6 @@ def of_delays(paths):
         for part in ast.walk(tree):
             is_sent = isinstance(part, ast.Call) and getattr(part.func, "id", "") == "send"
             if is_sent and len(part.args) > 2 and number(part.args[2], constants) != 0:
-                what = "only over cables a frame leaves later; send it from on_timer"
                 found.append(Finding(path, part.lineno, what))
     return found
 

@@ -11,6 +11,7 @@ from innervate import scenario
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.wire import Wire, coded_of
+from innervate.folders import not_for_boards
 from innervate.live.board import CABLES, Role, roles_of
 from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
@@ -150,6 +151,8 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
             f"{library.role.name}: frames of up to {coded.size_max + most} bytes; lines carry "
             f"{carried}: choose parameters with shorter ones"
         )
+    if driver and (why := not_for_boards(network)):
+        raise FirmwareError(why)
     wire = Wire(library, coded, most)
     texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
     having = _sections(library, sealed)
