@@ -166,6 +166,12 @@ def test_points_are_all_combinations_the_last_axis_fastest():
     ]  # fmt: skip
 
 
+def test_the_seed_of_a_run_is_not_derived():
+    """The table would say it, and the run would have another."""
+    with pytest.raises(SweepError, match="derive seed: every run has a seed of its own"):
+        plan(vary={"protocol.k": [2]}, derive={"seed": "protocol.k"})
+
+
 def test_a_formula_sees_the_scenario_and_its_defaults():
     made = plan(vary={"protocol.k": [2]}, derive={"protocol.m": "protocol.k + protocol.max_depth"})
     assert dict(made.points[0].settings)["protocol.m"] == 66

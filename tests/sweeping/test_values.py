@@ -6,6 +6,7 @@ from innervate.sweeping import SweepError
 from innervate.sweeping import vary as axes
 from innervate.sweeping.derive import LENGTH_MAX, Formula
 from innervate.sweeping.flat import LIST_MAX, TABLES_MAX, flat
+from innervate.sweeping.plan import _look_up
 from innervate.sweeping.vary import Named, axis, canonical, column, parse, shown, split, values_of
 
 
@@ -59,10 +60,17 @@ def test_marks_count_outside_of_brackets_and_quotes(text, parts):
     ("k,k=1:2", "a key stands there twice"), ("seed=1,2", "every run has a seed of its own"),
     ("k,m=1", '"1" has 1 values for 2 keys'), ("k,m=1:2:3", "has 3 values for 2 keys"),
     ("k..m=1", '"k..m" is no key'), ("k,m=1:2,1.0:2", "1 : 2 stands there twice"),
+    ('k=3,"3"', "3 stands there twice"), ("command=[]", '"command" is a column of the results'),
 ])  # fmt: skip
 def test_axes_that_are_none(text, message):
     with pytest.raises(SweepError, match=message.replace(".", r"\.")):
         parse(text)
+
+
+def test_two_values_of_one_name_would_be_one_in_tables_and_figures():
+    with pytest.raises(SweepError, match="k: a stands there twice"):
+        axis(("k",), [(Named("a", 3),), (Named("a", 4),)], "k")
+    assert len(axis(("k",), [(Named("a", 3),), (Named("b", 4),), ("c",)], "k").steps) == 3
 
 
 def test_values_as_tables_people_and_keys_have_them():
@@ -93,11 +101,12 @@ def test_each_part_of_a_formula(text, value):
     ("text", "message"),
     [("+k", "has more in it"), ("k < 2", "has more in it"), ("min(k, key=2)", "has more in it"),
      ("on + 1", "on is no number"), ("True + 1", "there is no True"), ("k ** 2", "has more in it"),
-     ("1e400", "comes to no number"), ("pow(k, 2)", "here: pow.k, 2. has more in it")],
+     ("1e400", "comes to no number"), ("9" * 400, "comes to no number"),
+     ("event.7.at_s", "there is no event.7.at_s"), ("pow(k, 2)", "here: pow.k, 2. has more in it")],
 )  # fmt: skip
 def test_what_is_no_formula(text, message):
     with pytest.raises(SweepError, match=message):
-        Formula(text, "here").value({"k": 3, "on": True}.__getitem__)
+        Formula(text, "here").value(lambda key: _look_up(key, {"k": 3, "on": True}, {"event": []}))
 
 
 def test_a_formula_has_a_length():

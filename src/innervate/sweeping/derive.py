@@ -75,13 +75,15 @@ class Formula:
         """
         try:
             result = self._of(self._tree, look_up)
+            fits = isinstance(result, int | float) and math.isfinite(result)
         except ZeroDivisionError:
             raise SweepError(f"{self.where}: {self.text} divides by zero") from None
         except (OverflowError, ValueError, TypeError, RecursionError):
             raise SweepError(f"{self.where}: {self.text} comes to no number") from None
-        if not isinstance(result, int | float) or not math.isfinite(result):
+        if not fits:
             raise SweepError(f"{self.where}: {self.text} comes to no number")
-        return result
+        found: float | int = result
+        return found
 
     def _of(self, node: ast.expr, look_up: Callable[[str], Any]) -> Any:
         if isinstance(node, ast.Constant) and type(node.value) in (int, float):
@@ -104,7 +106,7 @@ class Formula:
     def _number(self, key: str, look_up: Callable[[str], Any]) -> float | int:
         try:
             value = look_up(key)
-        except KeyError:
+        except LookupError:
             raise SweepError(
                 f"{self.where}: there is no {key} in the scenario nor among what is varied"
             ) from None

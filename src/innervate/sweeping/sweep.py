@@ -27,7 +27,7 @@ from innervate.sweeping.result import Sweep
 from innervate.sweeping.scheduler import Scheduler
 from innervate.sweeping.sources import files_named
 from innervate.sweeping.until import parse as parse_until
-from innervate.sweeping.vary import Axis, axis, parse, plain
+from innervate.sweeping.vary import Axis, axis, check_key, parse, plain
 from innervate.trace.provenance import checkout
 
 REPEAT_UNTIL = 1000  # repeats at most, with `until`, if nobody says
@@ -156,6 +156,8 @@ def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
         derived = {k: str(v) for k, v in planfile.leaves(file.derive) if k not in given} | derived
         rules = rules or _texts(file.until)
         pairs = pairs or _texts(file.paired)
+    for key in derived:
+        check_key(key, f"derive {key}")
     return SweepPlan(
         base=base,
         axes=axes,

@@ -18,6 +18,7 @@ from innervate.scenario.overrides import parse_value
 from innervate.sweeping.errors import SweepError
 
 STEPS_MAX = 1_000_000
+COLUMNS = ("point", "repeat", "seed", "status", "reason", "command")  # of every row, besides keys
 _NUMBER = r"[+-]?\d+(?:\.\d+)?"
 _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})(?:\.\.({_NUMBER}))?")
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
@@ -76,13 +77,7 @@ def axis(keys: tuple[str, ...], steps: Iterable[tuple[Any, ...]], where: str) ->
         SweepError: a key that is none, no steps, or two equal ones.
     """
     for key in keys:
-        if not _KEY.fullmatch(key):
-            raise SweepError(f'{where}: "{key}" is no key; keys are names with dots between')
-        if key == "seed":
-            raise SweepError(
-                f"{where}: every run has a seed of its own; say how many with --repeat, and "
-                "where they start with --seed"
-            )
+        check_key(key, where)
     if len(set(keys)) < len(keys):
         raise SweepError(f"{where}: a key stands there twice")
     made = Axis(keys, tuple(tuple(step) for step in steps))
@@ -90,13 +85,34 @@ def axis(keys: tuple[str, ...], steps: Iterable[tuple[Any, ...]], where: str) ->
         raise SweepError(f"{where}: there are no values")
     if len(made.steps) > STEPS_MAX:
         raise SweepError(f"{where}: more than {STEPS_MAX:,} values; a sweep takes no more")
-    seen = set()
-    for step in made.steps:
-        text = canonical([plain(value) for value in step])
-        if text in seen:
+    seen: set[str] = set()
+    for step in made.steps:  # by their values and by what tables and figures call them
+        called = [v if isinstance(v, str) else canonical(v) for v in map(column, step)]
+        texts = {canonical([plain(value) for value in step]), f"called {called}"}
+        if seen & texts:
             raise SweepError(f"{where}: {' : '.join(map(shown, step))} stands there twice")
-        seen.add(text)
+        seen |= texts
     return made
+
+
+def check_key(key: str, where: str) -> None:
+    """That a key can be varied or derived.
+
+    Raises:
+        SweepError: it is none, or has the name of another column of the results.
+    """
+    if not _KEY.fullmatch(key):
+        raise SweepError(f'{where}: "{key}" is no key; keys are names with dots between')
+    if key == "seed":
+        raise SweepError(
+            f"{where}: every run has a seed of its own; say how many with --repeat, and "
+            "where they start with --seed"
+        )
+    if key in COLUMNS:
+        raise SweepError(
+            f'{where}: "{key}" is a column of the results already; vary what is in it, like '
+            f"{key}.0.at_s"
+        )
 
 
 def values_of(text: str, where: str) -> list[Any]:
