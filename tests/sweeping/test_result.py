@@ -50,6 +50,9 @@ kind = "heat"
 """
 
 
+PLOT = '[[plot]]\nx = "a"\ny = "b"\nname = "p"\n'
+
+
 @pytest.fixture
 def both(four):
     Path("both.toml").write_text(PLAN)
@@ -164,6 +167,16 @@ def test_the_command_runs_a_plan_and_draws_its_figures(four, capsys):
     assert plan["repeat"] == 2
 
 
+def test_a_figure_of_what_no_run_has_is_said_and_all_else_is_there(four, capsys):
+    plot = '[[plot]]\nx = "protocol.k"\ny = "recoveries.routed_ms"\n'
+    Path("plan.toml").write_text(f'scenario = "four.toml"\n[set]\nevent = []\n[vary]\n'
+                                 f'protocol.k = [2, 3]\n{plot}')  # fmt: skip
+    assert main(["sweep", "plan.toml", "--workers", "1", "--out", "out"]) == 1
+    out, err = capsys.readouterr()
+    assert out.endswith("Written: out/results.parquet\n")
+    assert 'plot-0 is not drawn: there is no column "recoveries.routed_ms"' in err
+
+
 @pytest.mark.parametrize(("text", "error", "message"), [
     ('scenario = "four.toml"\nrepaet = 3', ScenarioError, 'plan.toml:2: .*did you mean "repeat"'),
     ('scenario = "four.toml"\nrepeat = 0', ScenarioError, "plan.toml:2: repeat must be"),
@@ -172,6 +185,11 @@ def test_the_command_runs_a_plan_and_draws_its_figures(four, capsys):
     ('scenario = "four.toml"\n[[zip]]\na = [1]\nb = [1, 2]', SweepError, "equally long"),
     ('scenario = "four.toml"\n[derive]\na = "1 +"', SweepError, "no arithmetic"),
     ('scenario = "four.toml"\n[vary]\na = "3..1"', SweepError, "leads nowhere"),
+    ('scenario = "four.toml"\n[[plot]]\nx = "a"\ny = "b"\nkind = "heat"', SweepError,
+     r"plan.toml: \[\[plot\]\] 0: a heat map has two axes, x and by"),
+    (f'scenario = "four.toml"\n{2 * PLOT}', SweepError, 'plot.. 1: another is called "p", too'),
+    ('scenario = "four.toml"\n[[plot]]\nx = "a"\ny = "b"\nname = "a\\n"', ScenarioError,
+     r"plot\.0\.name must be a file's name without its ending"),
 ])  # fmt: skip
 def test_mistakes_in_plan_files(four, text, error, message):
     Path("plan.toml").write_text(text)

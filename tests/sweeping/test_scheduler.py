@@ -2,6 +2,8 @@
 
 import json
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future
+from contextlib import nullcontext
+from dataclasses import replace
 
 import pytest
 
@@ -9,6 +11,7 @@ from innervate.kernel import cache, compilation
 from innervate.sweeping import SweepError, make_plan, scheduler
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.jobs import Jobs
+from innervate.sweeping.planfile import PlotTable
 from innervate.sweeping.scheduler import DEATHS_MAX, Scheduler
 from innervate.sweeping.work import Done, Job, Outcome
 from innervate.trace.sources import stamp
@@ -35,7 +38,7 @@ class Noting(Engine):
 
     def outcome(self, job):
         value = self.value(job.repeat)
-        row = None if value is None else json.dumps({"x": value, "word": "a"})
+        row = None if value is None else json.dumps({"x": value, "word": "a", "list": "[]"})
         return Outcome(job.point, job.repeat, job.seed, row, "" if row else "broke", self.wall_s, 1)
 
     def sizes(self):
@@ -163,8 +166,26 @@ def test_a_rule_about_no_figure_and_a_worker_of_another_version_are_told(conduct
         conducted(Noting(), repeat=4, until="y.ci=5%").run()
     with pytest.raises(SweepError, match='--show: runs have no figure "z"'):
         conducted(Noting(), repeat=4, show=("x", "z")).run()
+    with pytest.raises(SweepError, match='--until word.ci=5%: "word" is no number'):
+        conducted(Noting(), repeat=4, until="word.ci=5%").run()
     with pytest.raises(SweepError, match="the worker on here has other sources"):
         conducted(Noting(sources="others"), repeat=4).run()
+
+
+@pytest.mark.parametrize(
+    ("plot", "says"),
+    [({"x": "protocol.kk", "y": "x"}, 'runs have no figure "protocol.kk"'),
+     ({"x": "protocol.k", "y": "word"}, '"word" is no number'),
+     ({"x": "protocol.k", "y": "x", "by": "z"}, 'runs have no figure "z"'),
+     ({"x": "x", "y": "x", "by": "word"}, ""), ({"x": "protocol.k", "y": "list.routed_ms"}, "")],
+)  # fmt: skip
+def test_a_plot_of_what_runs_do_not_have_is_refused_by_the_first_run(conducted, plot, says):
+    """Hours later is too late; but a list that is empty in one run need not be in others."""
+    plan = replace(conducted(Noting(), repeat=4).plan, plots=(PlotTable(**plot),))
+    made = Scheduler(plan, Jobs(None), Noting())
+    with pytest.raises(SweepError, match=rf"\[\[plot\]\] 0: {says}") if says else nullcontext():
+        made.run()
+    assert made.ran < 4 if says else made.ran == 4
 
 
 def test_the_time_left_is_that_of_a_run_for_each_that_is_missing(conducted, monkeypatch):

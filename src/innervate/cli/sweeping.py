@@ -37,14 +37,16 @@ def sweep(file: str, options: SweepOptions) -> int:
             return errors.INTERRUPTED
     for line in result_lines(done, wanted):
         print(line)
-    for path in draw_plots(done, folder):
+    drawn = draw_plots(done, folder)
+    for path in drawn:
         print(f"Drawn: {path}")
     print(f"Written: {folder / 'results.parquet'}")
     if done.others:
         kept = f"{done.others:,} other run{'s' if done.others > 1 else ''}"
         errors.say(f"{folder} keeps {kept}, too, which these tables do not show; whoever asks for "
                    "them again has them at once (--out: another folder)")  # fmt: skip
-    return int(done.failed.height == done.results.height > 0)
+    undrawn = len(drawn) < len(done.plan.plots)
+    return int(undrawn or done.failed.height == done.results.height > 0)
 
 
 def draw_plots(done: Sweep, folder: Path) -> list[Path]:
@@ -52,18 +54,22 @@ def draw_plots(done: Sweep, folder: Path) -> list[Path]:
     if not done.plan.plots:
         return []
     from innervate.plot import style
+    from innervate.sweeping import SweepError
 
     paths = []
-    for number, plot in enumerate(done.plan.plots):
-        name = plot.name or f"plot-{number}"
+    for plot in done.plan.plots:
         with style.house():
-            drawn = done.plot(plot.x, plot.y, plot.by, plot.kind, plot.title)
+            try:
+                drawn = done.plot(plot.x, plot.y, plot.by, plot.kind, plot.title)
+            except SweepError as error:  # no run has what it shows; all else is there
+                errors.say(f"{plot.name} is not drawn: {error}")
+                continue
             over = done.averaged(plot.x, plot.by) if plot.x in done.plan.keys else {}
             if over:
                 keys = ", ".join(over)
-                errors.say(f"{name}: means over all values of {keys}; to tell them apart, name "
-                           "one as by, or fix the others with --set")  # fmt: skip
-            paths.append(style.save(drawn, folder, name)[0])
+                errors.say(f"{plot.name}: means over all values of {keys}; to tell them apart, "
+                           "name one as by, or fix the others with --set")  # fmt: skip
+            paths.append(style.save(drawn, folder, plot.name)[0])
     return paths
 
 

@@ -34,7 +34,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, Struct, to_builtins
+from msgspec import Meta, Struct, structs, to_builtins
 
 from innervate.scenario import ScenarioError
 from innervate.scenario.emit import to_toml
@@ -57,7 +57,7 @@ class PlotTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     by: Annotated[str, Meta(description='a column, like "protocol.rule"')] = ""
     kind: Annotated[Literal["band", "heat"], Meta(description='"band" or "heat"')] = "band"
     name: Annotated[
-        str, Meta(pattern=r"^[\w.+-]{0,80}$", description="a file's name without its ending")
+        str, Meta(pattern=r"^[\w.+-]{0,80}\Z", description="a file's name without its ending")
     ] = ""
     title: Annotated[str, Meta(max_length=200, description="a text")] = ""
 
@@ -125,6 +125,23 @@ def axes_of(plan: PlanFile, path: str) -> tuple[Axis, ...]:
         lists = {key: listed(value, f"{where}: {key}") for key, value in leaves(table)}
         made.append(together(lists, where))
     return tuple(made)
+
+
+def plots_of(plan: PlanFile, path: str) -> tuple[PlotTable, ...]:
+    """The figures that a plan file asks for, each with a name.
+
+    Raises:
+        SweepError: a heat map without its second axis, or two that would be one file.
+    """
+    made: dict[str, PlotTable] = {}
+    for number, plot in enumerate(plan.plot):
+        name = plot.name or f"plot-{number}"
+        if plot.kind == "heat" and not plot.by:
+            raise SweepError(f"{path}: [[plot]] {number}: a heat map has two axes, x and by")
+        if name in made:
+            raise SweepError(f'{path}: [[plot]] {number}: another is called "{name}", too')
+        made[name] = structs.replace(plot, name=name)
+    return tuple(made.values())
 
 
 def together(lists: dict[str, list[Any]], where: str) -> Axis:

@@ -10,6 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from typing import Any
 
+from innervate.analysis.summary import COUNTED
 from innervate.kernel import cache, compilation
 from innervate.scenario.explain import nearest
 from innervate.sweeping.engines import Engine
@@ -81,8 +82,11 @@ class Scheduler:
         self._engine = engine
         self._progress = progress or (lambda scheduler: None)
         rules = [(f"--until {rule}", rule.measure) for rule in plan.until]
-        self._named = [*rules, *(("--show", measure) for measure in show)]
-        self._measures = tuple(dict.fromkeys([*(name for _, name in self._named), *follow]))
+        self._numbers = [*rules, *(("--show", measure) for measure in show)]
+        self._measures = tuple(dict.fromkeys([*(name for _, name in self._numbers), *follow]))
+        drawn = [(f"[[plot]] {number}", plot) for number, plot in enumerate(plan.plots)]
+        self._numbers += [(where, plot.y) for where, plot in drawn]
+        self._named = [*self._numbers, *((w, n) for w, plot in drawn for n in (plot.x, plot.by))]
         self._by_digest = {state.point.digest: state for state in self.states}
         self._blocks = list(blocks(plan))
         self._ready: deque[tuple[State, int]] = deque()
@@ -155,10 +159,13 @@ class Scheduler:
     def _check_named(self, figures: dict[str, Any]) -> None:
         """That somebody speaks of figures that runs have; the first one shows which they are."""
         for option, measure in self._named:
-            if measure not in figures:
+            if measure and measure not in self.plan.keys and not _may_have(figures, measure):
                 close = nearest(measure, list(figures))
                 hint = close if "did you" in close else nearest("", sorted(figures)[:8])
                 raise SweepError(f'{option}: runs have no figure "{measure}"{hint}')
+        for option, measure in self._numbers:
+            if isinstance(figures.get(measure), str | bool):
+                raise SweepError(f'{option}: "{measure}" is no number')
 
     def _first_alone(self) -> None:
         """On a machine that has compiled nothing yet, one run goes first, and compiles for all."""
@@ -283,3 +290,12 @@ class Scheduler:
             return None
         took, count = time.perf_counter() - self._first_ran[0], self.ran - self._first_ran[1]
         return took / count * (self.total - self.done)
+
+
+def _may_have(figures: dict[str, Any], measure: str) -> bool:
+    """True if a run has a figure, or may have it where something happens that did not in this."""
+    parts = measure.split(".")
+    lists = (".".join(parts[:count]) for count in range(1, len(parts)))
+    return measure in figures or any(
+        figures.get(name) == "[]" or name in COUNTED for name in lists
+    )

@@ -166,7 +166,7 @@ def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
         root=_first(planned.get("seed"), file.seed if file else None, -1),
         paired=pairs,
         name=(file.name if file is not None else "") or Path(base.file).stem,
-        plots=tuple(file.plot) if file is not None else (),
+        plots=planfile.plots_of(file, str(scenario)) if file is not None else (),
         repeat=_count("repeat", planned, file, REPEAT_UNTIL if rules else 1),
         batch=_count("batch", planned, file, BATCH),
     )
