@@ -52,14 +52,15 @@ def test_settings_come_from_texts_and_from_tables():
         base_of(RADIO, ["a"])
 
 
-def test_a_scenario_that_is_called_as_plans_are_keeps_its_name(tmp_path):
-    path = tmp_path / "sweep.toml"
+@pytest.mark.parametrize("name", ["sweep", "jobs"])
+def test_a_scenario_that_is_called_as_what_a_sweep_writes_keeps_its_name(tmp_path, name):
+    path = tmp_path / {"sweep": "sweep.toml", "jobs": "jobs.sqlite"}[name]
     path.write_text('kind = "radio"\nstations = 3\n')
     base = base_of(path, {"stations": 4})
     assert base.file == "scenario.toml"
-    assert base.settings == (("name", "sweep"), ("stations", 4))
+    assert base.settings == (("name", name), ("stations", 4))
     assert base.folder == str(tmp_path)
-    assert base.scenario().name == "sweep"
+    assert base.scenario().name == name
     assert base.scenario([("stations", 5)], seed=6).seed == 6
 
 

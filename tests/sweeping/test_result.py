@@ -197,6 +197,15 @@ def test_mistakes_in_plan_files(four, text, error, message):
         assert make_plan("plan.toml").points
 
 
+@pytest.mark.parametrize(("name", "folder"), [
+    ("../evil", "evil"), ("/tmp/evil", "tmp-evil"), ("a\\u0000b\\n", "a-b"), ("..", "sweep"),
+])  # fmt: skip
+def test_a_plans_name_leads_to_no_other_folder(four, name, folder, capsys):
+    Path("plan.toml").write_text(f'scenario = "four.toml"\nname = "{name}"\n')
+    assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
+    assert capsys.readouterr().out.endswith(f"Written: sweeps/{folder}/results.parquet\n")
+
+
 def test_the_command_tells_mistakes_in_one_line(four, capsys):
     for tokens in (
         ("four.toml", "--vary", "protocol.k"),

@@ -166,7 +166,7 @@ def test_a_rule_about_no_figure_and_a_worker_of_another_version_are_told(conduct
         conducted(Noting(), repeat=4, until="y.ci=5%").run()
     with pytest.raises(SweepError, match='--show: runs have no figure "z"'):
         conducted(Noting(), repeat=4, show=("x", "z")).run()
-    with pytest.raises(SweepError, match='--until word.ci=5%: "word" is no number'):
+    with pytest.raises(SweepError, match=r'--until word\.ci=5%: "word" is no number'):
         conducted(Noting(), repeat=4, until="word.ci=5%").run()
     with pytest.raises(SweepError, match="the worker on here has other sources"):
         conducted(Noting(sources="others"), repeat=4).run()

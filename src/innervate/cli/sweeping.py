@@ -20,10 +20,11 @@ REASONS_MAX = 5
 def sweep(file: str, options: SweepOptions) -> int:
     """Run a sweep behind a live table; say what came of it."""
     from innervate import sweeping as room
+    from innervate.running.folder import plain_name
     from innervate.sweeping.result import SHOWN
 
     plan: SweepPlan = room.make_plan(file, **options.planned)
-    folder = options.out or Path("sweeps") / (plan.name or "sweep")
+    folder = options.out or Path("sweeps") / (plain_name(plan.name) or "sweep")
     wanted = tuple(dict.fromkeys([*(options.show or ()), *(rule.measure for rule in plan.until)]))
     with LiveTable(plan.name, wanted or SHOWN) as table:
         try:

@@ -38,8 +38,12 @@ def table_files() -> tuple[str, ...]:
 
 def default_folder(name: str, seed: int) -> Path:
     """Where a run goes if nobody says: runs/<name>-<seed>."""
-    plain = _UNSUITABLE.sub("-", name).strip("-.")[:80] or first()
-    return Path("runs") / f"{plain}-{seed}"
+    return Path("runs") / f"{plain_name(name) or first()}-{seed}"
+
+
+def plain_name(name: str) -> str:
+    """A name as a folder can have it, without a way to other folders; perhaps nothing is left."""
+    return _UNSUITABLE.sub("-", name).strip("-.")[:80]
 
 
 def free_folder(scenario: Scenario) -> Path:

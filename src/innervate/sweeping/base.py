@@ -20,6 +20,9 @@ from innervate.scenario.overrides import parse_value
 Settings = tuple[tuple[str, Any], ...]
 Source = given.Given
 PLAN_FILE = "sweep.toml"
+# What a sweep's folder holds besides the scenario, which is called otherwise there if need be.
+TAKEN = (PLAN_FILE, "jobs.sqlite", "results.parquet", "points.parquet", "timings.parquet",
+         "provenance.json")  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +96,8 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
     settings = tuple(_setting(c) for c in changes) if not isinstance(changes, Mapping) else ()
     if isinstance(changes, Mapping):
         settings = tuple(changes.items())
-    if file == PLAN_FILE:  # that name is taken in the results; the scenario keeps its own
-        file, settings = "scenario.toml", (("name", Path(PLAN_FILE).stem), *settings)
+    if file in TAKEN:
+        file, settings = "scenario.toml", (("name", Path(file).stem), *settings)
     kind = dict(settings).get("kind") or _kind(text)
     return Base(text, file, os.path.abspath(folder or "."), settings, str(kind))
 
