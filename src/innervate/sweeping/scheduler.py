@@ -296,6 +296,4 @@ def _may_have(figures: dict[str, Any], measure: str) -> bool:
     """True if a run has a figure, or may have it where something happens that did not in this."""
     parts = measure.split(".")
     lists = (".".join(parts[:count]) for count in range(1, len(parts)))
-    return measure in figures or any(
-        figures.get(name) == "[]" or name in COUNTED for name in lists
-    )
+    return measure in figures or any(figures.get(name) == "[]" or name in COUNTED for name in lists)
