@@ -15,7 +15,9 @@ from innervate.cli.app import HELP, app
 from innervate.cli.examples import BELOW
 
 PAGE = Path(__file__).resolve().parent / "innervate.1"
-CODES = (("0", "Done."), ("1", "A mistake of ours; or what was looked for is found, or differs."),
+CODES = (("0", "Done."),
+         ("1", "Done, and the answer is no: a check fails, something is broken, runs differ, "
+               "nothing that was tried is enough; or a mistake of ours."),
          ("2", "A mistake in what was given; one line says what to change."),
          ("130", "Interrupted; what was done is kept."))  # fmt: skip
 VARIABLES = (

@@ -73,7 +73,7 @@ def test_a_run_is_repeated_from_its_folder(sh):
 def test_compare_names_what_differs(sh):
     sh("run", "four.toml", "--out", "one")
     sh("run", "four.toml", "--out", "two", "--set", "protocol.k=3")
-    assert sh("compare", "one", "two") == 0
+    assert sh("compare", "one", "two") == 1  # as diff does, for scripts
     for name in ("one", "two"):
         headline = json.loads(Path(name, "summary.json").read_text())["headline"]
         assert f"{name}: {headline['level']}: {headline['text']}\n" in sh.out

@@ -15,8 +15,8 @@ from innervate import scenario
 from innervate.cli import main
 
 
-def said(capsys, *words):
-    assert main(list(words)) == 0
+def said(capsys, *words, code=0):
+    assert main(list(words)) == code
     return json.loads(capsys.readouterr().out)
 
 
@@ -43,7 +43,7 @@ def test_compare(capsys, tmp_path, monkeypatch):
         assert main(["run", "line", "--seed", seed, "--out", seed, "--no-report"]) == 0
     capsys.readouterr()
     assert said(capsys, "compare", "1", "1", "--json")["same"]
-    found = said(capsys, "compare", "1", "2", "--json")
+    found = said(capsys, "compare", "1", "2", "--json", code=1)
     assert not found["same"]
     assert found["scenario"] == [{"key": "seed", "a": 1, "b": 2}]
     assert found["first_event_that_differs"]

@@ -133,6 +133,7 @@ def test_a_size_is_of_the_seed_that_was_given_or_of_the_first(tmp_path, monkeypa
         sweep=Of(failed=polars.DataFrame({"reason": []})),
         lines=lambda: ["two are enough"],
         draw=lambda folder: folder / "a.svg",
+        needed={250.0: 2},
     )
     monkeypatch.setattr(room, "size", lambda question, **how: asked.append(how) or answer)
     options = SizeOptions(links="*", ports="1..2", seed=given, repeat=5, out=tmp_path / "o")

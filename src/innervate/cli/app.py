@@ -119,7 +119,7 @@ def sweep(
     """Run a scenario for every combination of some settings, many times each.
 
     Give the same command again after an interrupt, a crash or with more values: what is done is
-    not done twice.
+    not done twice. The exit code is 1 if no run succeeded, or a figure could not be drawn.
 
     Parameters
     ----------
@@ -134,6 +134,8 @@ def sweep(
 @app.command
 def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")]) -> int:
     """Say how many interface ports a robot's skin needs, and where, by simulation.
+
+    The exit code is 1 if at some rate none of the numbers of ports that were tried is enough.
 
     Parameters
     ----------
@@ -311,7 +313,7 @@ examples.add_to(app)
 
 
 def main(tokens: Sequence[str] | None = None) -> int:
-    """Carry out a command line; its exit code: 0, 1 our mistake, 2 the user's, 130 interrupted."""
+    """Carry out a command line; its exit code, see docs/commands.md."""
     for stream in (sys.stdout, sys.stderr):  # a terminal that is not UTF-8 gets escapes
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -1,4 +1,4 @@
-"""`innervate compare`: what two runs or sweeps have in common, and where they part."""
+"""`innervate compare`: what two runs have in common, and where they part."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ DIFFERENCES_MAX = 40
 
 
 def compare(first: Path, second: Path, as_json: bool) -> int:
-    """Say what differs between two runs."""
+    """Say what differs between two runs; 1 if anything happened otherwise."""
     from innervate.plot.words import headline_line
     from innervate.running import compare as room
 
     found = room(first, second)
     if as_json:
         print(json.dumps(_record(found, (first, second)), indent=2, ensure_ascii=False))
-        return 0
+        return int(not found.same)
     for name, headline in zip((first, second), found.headlines, strict=True):
         if headline is not None:
             print(f"{name}: {headline_line(headline)}")
@@ -34,7 +34,7 @@ def compare(first: Path, second: Path, as_json: bool) -> int:
         print("No event differs.")
     for note in found.notes:
         print(f"Note: {note}")
-    return 0
+    return int(not found.same)
 
 
 def _record(found: Comparison, runs: tuple[Path, Path]) -> dict[str, Any]:

@@ -119,6 +119,8 @@ def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Json = Fa
 def compare(first: Path, second: Path, /, *, json: Json = False) -> int:
     """Compare two run folders: scenario, summary, first event that differs.
 
+    The exit code is 0 if both were the same, event by event, and 1 if not.
+
     Parameters
     ----------
     first

@@ -134,6 +134,8 @@ class SizeOptions:
         How many runs at the same time; one for every core if left out.
     dask
         Address of a Dask scheduler to run on.
+    json
+        Print the answer as JSON and nothing else.
     """
 
     links: str
@@ -148,6 +150,7 @@ class SizeOptions:
     out: Path | None = None
     workers: Whole | None = None
     dask: str = ""
+    json: Flag = False
 
 
 @dataclass(frozen=True)

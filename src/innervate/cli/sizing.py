@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def size(robot: str, options: SizeOptions) -> int:
-    """Answer how many ports a robot needs, with a table and a picture."""
+    """Answer how many ports a robot needs, with a table and a picture; 1 if none is enough."""
     sizing = next(one.sizing for one in networks().values() if one.has("sizing"))
     question = {
         "urdf": robot, "links": options.links, "rates_hz": tuple(options.rate or [250.0]),
@@ -36,10 +37,15 @@ def size(robot: str, options: SizeOptions) -> int:
             table.close()
             errors.say(f"interrupted; {table.kept(folder)}")
             return errors.INTERRUPTED
-    for line in [*answer.lines(), *failed_lines(answer.sweep)]:
-        print(line)
-    print(f"Drawn: {answer.draw(folder)}")
-    return 0
+    picture = answer.draw(folder)
+    if options.json:
+        told = answer.record() | {"picture": str(picture)}
+        print(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        for line in [*answer.lines(), *failed_lines(answer.sweep)]:
+            print(line)
+        print(f"Drawn: {picture}")
+    return int(None in answer.needed.values())
 
 
 # What options of the command set in scenarios, each with its least and greatest value.

@@ -113,11 +113,12 @@ def headline_lines(done: Sweep) -> list[str]:
 
 def failed_lines(done: Sweep) -> list[str]:
     """How many runs failed, and why."""
-    reasons = done.failed["reason"].to_list()
-    if not reasons:
+    from innervate.sweeping.tables import reasons
+
+    if not done.failed.height:
         return []
-    counts = sorted({r: reasons.count(r) for r in reasons}.items(), key=lambda pair: -pair[1])
-    lines = [f"{len(reasons)} of {done.results.height} runs failed:"]
+    counts = list(reasons(done.failed).items())
+    lines = [f"{done.failed.height} of {done.results.height} runs failed:"]
     lines += [f"  {count} x {reason}" for reason, count in counts[:REASONS_MAX]]
     if len(counts) > REASONS_MAX:
         lines.append(f"  ... and {len(counts) - REASONS_MAX} other reasons, see results.parquet")

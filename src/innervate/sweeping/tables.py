@@ -184,6 +184,12 @@ def _figures(values: list[float], level: float) -> dict[str, float | None]:
     return dict(zip(names, (*map(float, found), *map(float, quantiles)), strict=True))
 
 
+def reasons(failed: polars.DataFrame) -> dict[str, int]:
+    """Why runs failed, and how often, most often first."""
+    counts = Counter(failed["reason"].to_list())
+    return dict(sorted(counts.items(), key=lambda pair: -pair[1]))
+
+
 def write(table: polars.DataFrame, path: Path) -> None:
     """Write a table as Parquet, whole or not at all.
 

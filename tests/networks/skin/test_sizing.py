@@ -1,5 +1,6 @@
 """How many interface ports a robot's skin needs: the iCub, and one arm of another maker."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,7 +67,7 @@ def test_ports_of_the_variants_are_compared_on_the_same_seeds():
 def test_an_arm_without_skin_gets_cells_on_its_surface(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     tokens = ("--links", "*arm_link", "--pitch", "60", "--rate", "250", "--ports", "1,3",
-              "--repeat", "2", "--workers", "1", "--out", "out")  # fmt: skip
+              "--repeat", "2", "--recovery", "500", "--workers", "1", "--out", "out")  # fmt: skip
     assert main(["size", UR5, *tokens]) == 0
     out = capsys.readouterr().out
     assert "cells 60 mm apart" in out
@@ -74,6 +75,13 @@ def test_an_arm_without_skin_gets_cells_on_its_surface(tmp_path, monkeypatch, ca
     assert Path("out/size.png").stat().st_size > 10_000
     assert main(["size", UR5, *tokens]) == 0  # nothing is run twice
     assert capsys.readouterr().out == out
+    assert main(["size", UR5, *tokens, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    (rate,) = found["rates"]
+    assert f"250 Hz: {rate['ports']} port" in out
+    assert len(rate["on"]) == rate["ports"]
+    assert found["enough"] is True
+    assert found["picture"] == "out/size.png"
     tables = scenario.loads(Path("out/scenario.toml").read_text()).model
     assert tables.body.pitch_mm == 60
 
@@ -104,12 +112,19 @@ def test_runs_that_fail_and_cells_that_stay_without_a_way_are_named(tmp_path, ca
     """A rod of 74 cells in a row: one port is too far away, and of two each without the other."""
     tokens = ("--links", "arm", "--pitch", "20", "--ports", "1,2", "--repeat", "1",
               "--workers", "1", "--out", str(tmp_path / "out"))  # fmt: skip
-    assert main(["size", rod(tmp_path), *tokens]) == 0
+    assert main(["size", rod(tmp_path), *tokens]) == 1  # for a script: none of them is enough
     lines = capsys.readouterr().out.splitlines()
     assert "250 Hz: none of up to 2 ports is enough for 1 % lost, ways back in 50 ms." in lines
     (wayless,) = (line for line in lines if line.startswith("250 Hz, 2 ports: in 1 run cells"))
     assert "protocol.max_depth" in wayless
     assert lines[lines.index("2 of 4 runs failed:") + 1].startswith("  2 x scenario.toml: arm_")
+    assert main(["size", rod(tmp_path), *tokens, "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert (found["enough"], found["cells"], list(found["failed"].values())) == (False, 74, [2])
+    assert found["rates"] == [{"rate_hz": 250.0, "ports": None, "on": [],
+                               "ports_but_for_single_failures": None}]  # fmt: skip
+    assert [(row["ports"], row["failed"], row["unhealed"]) for row in found["tried"]] == [
+        (1, 2, 0), (2, 0, 1)]  # fmt: skip
 
 
 def test_what_fails_in_some_runs_is_not_enough(tmp_path):

@@ -110,6 +110,12 @@ class Answer:
 
         return answer_lines(self)
 
+    def record(self) -> dict[str, Any]:
+        """It for programs, as `innervate size --json` prints it."""
+        from innervate.networks.skin.plot.answer import answer_record
+
+        return answer_record(self)
+
     def draw(self, folder: Path) -> Path:
         """Its picture, written into a folder, with the ports that the hardest rate needs."""
         from innervate.networks.skin.plot import sizing as figure

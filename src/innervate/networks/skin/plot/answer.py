@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate.networks.skin.plot.words import end_words
 from innervate.plot.words import number_of
+from innervate.sweeping.tables import reasons
 from innervate.topology.weak import Weak
 
 if TYPE_CHECKING:
@@ -19,6 +20,33 @@ NAMED_MAX = 4
 def answer_lines(answer: Answer) -> list[str]:
     """The answer for people: a table, then how many ports, where, and what does not heal."""
     return [*_table(answer), "", *_verdicts(answer), *_wayless(answer), *_unhealed(answer)]
+
+
+def answer_record(answer: Answer) -> dict[str, Any]:
+    """The answer for programs; null where no number of ports that was tried is enough."""
+    asked = answer.question
+    return {
+        "robot": asked.urdf,
+        "links": asked.links,
+        "cells": answer.cells,
+        "pitch_mm": asked.pitch_mm,
+        "reach_mm": asked.reach_mm,
+        "loss_ratio_max": asked.loss_max,
+        "recovery_ms_max": asked.recovery_ms_max,
+        "enough": all(ports is not None for ports in answer.needed.values()),
+        "rates": [
+            {"rate_hz": rate, "ports": ports, "on": answer.where.get(ports, []) if ports else [],
+             "ports_but_for_single_failures": answer.carries[rate]}
+            for rate, ports in answer.needed.items()
+        ],
+        "tried": answer.table.to_dicts(),
+        "single_failures": {
+            str(ports): [{"what": _what(answer.graphs[ports], one), "cells": one.isolated}
+                         for one in weak]
+            for ports, weak in answer.weak.items()
+        },
+        "failed": reasons(answer.sweep.failed),
+    }  # fmt: skip
 
 
 def _table(answer: Answer) -> list[str]:
@@ -109,8 +137,11 @@ def _unhealed(answer: Answer) -> list[str]:
 
 def _named(graph: Graph, weak: Weak) -> str:
     """A weak point: "cable n1 E - n2 W (44 cells)", "cell n1 (3 cells)"."""
-    what = f"cell {graph.label(weak.node)}" if weak.node >= 0 else end_words(graph, weak.end)
-    return f"{what} ({number_of(weak.isolated, 'cell')})"
+    return f"{_what(graph, weak)} ({number_of(weak.isolated, 'cell')})"
+
+
+def _what(graph: Graph, weak: Weak) -> str:
+    return f"cell {graph.label(weak.node)}" if weak.node >= 0 else end_words(graph, weak.end)
 
 
 def _share(row: dict[str, Any], name: str) -> str:
