@@ -19,13 +19,14 @@ def axes(*shown, over=None):
 
 
 def test_means_stand_over_their_settings():
-    """One line for each value, named in the order they come; what has no value is left out."""
+    """A line for each value, named in the order they come; broken where runs have no value."""
     b, a = axes("k", "x_ms", "rule", over={}).lines
     assert (b.get_label(), a.get_label()) == ("b", "a")
     assert (b.get_xdata().tolist(), b.get_ydata().tolist()) == ([1, 3], [4.0, 3.0])
     assert (a.get_xdata().tolist(), a.get_ydata().tolist()) == ([1], [6.0])
     (every,) = axes("k", "x_ms", over={}).lines
-    assert (every.get_xdata().tolist(), every.get_ydata().tolist()) == ([1, 3], [5.0, 3.0])
+    assert every.get_xdata().tolist() == [1, 2, 3]
+    assert str(every.get_ydata().tolist()) == "[5.0, nan, 3.0]"
 
 
 def test_what_means_are_over_is_told():
@@ -34,6 +35,14 @@ def test_what_means_are_over_is_told():
         " ".join(told.split()) == "k means over 2 values of rule, 3 values of m, all varied alike"
     )
     assert axes("k", "x_ms", over={}).get_xlabel() == "k"
+
+
+def test_means_by_how_often_points_were_run_are_told():
+    columns = COLUMNS | {"point": [0, 0, 1, 1, 2, 2]}
+    for last, told in ((2, "all varied alike"), (1, "by how often each of them was run")):
+        columns["point"][-1] = last
+        drawn = draw(columns, Shown("k", "x_ms"), {"rule": 2}).axes[0]
+        assert told in " ".join(drawn.get_xlabel().split())
 
 
 def test_every_run_is_a_dot():
@@ -69,7 +78,36 @@ def test_a_column_in_words(name, words):
 def test_so_many_lines_are_drawn():
     columns = {"x": list(range(12)), "y": [1.0] * 12, "by": list(range(12))}
     for over in ({}, None):
-        assert len(draw(columns, Shown("x", "y", "by"), over).axes[0].lines) == sweeps.LINES_MAX
+        (ax,) = draw(columns, Shown("x", "y", "by"), over).axes
+        assert len(ax.lines) == sweeps.LINES_MAX
+        assert "the first 8 of 12 values of by" in ax.get_xlabel()
+        looks = {(line.get_color(), line.get_marker()) for line in ax.lines}
+        assert len(looks) == sweeps.LINES_MAX
+
+
+def test_names_stand_beside_lines_and_not_over_each_other():
+    long = [f"csma-cd-{'x' * 30}-{i}" for i in range(6)]
+    columns = {"x": long, "y": [1.0] * 6, "by": list(range(6)), "on": [True, False] * 3}
+    made = draw(columns, Shown("x", "y", "by", title="word " * 20), {})
+    (ax,) = made.axes
+    made.get_layout_engine().execute(made)
+    to_draw = made.canvas.get_renderer()
+    assert ax.get_legend().get_window_extent(to_draw).x0 > ax.get_window_extent(to_draw).x1
+    assert ax.get_title(loc="left").count("\n") == 2
+    names = [text for text in ax.get_xticklabels() if text.get_text()]
+    assert [text.get_text() for text in names] == [f"csma-cd-xx...xxxxxxxxx-{i}" for i in range(6)]
+    assert {text.get_rotation() for text in names} == {35}
+    assert axes_names(draw(columns, Shown("on", "y"), {})) == ["false", "true"]
+
+
+def axes_names(made):
+    return [text.get_text() for text in made.axes[0].get_xticklabels()]
+
+
+def test_a_heat_map_names_as_many_of_its_squares_as_there_is_room_for():
+    columns = {"x": list(range(40)), "y": [1.0] * 40, "by": [1] * 40}
+    names = axes_names(draw(columns, Shown("x", "y", "by", "heat"), {}))
+    assert names == [str(3 * i) for i in range(14)]
 
 
 def test_numbers_stand_at_themselves_and_words_one_after_another():

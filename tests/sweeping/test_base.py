@@ -291,6 +291,16 @@ def test_over_what_a_figure_takes_means():
     assert made.averaged("protocol.k") == {"seedless": 2}
     assert made.averaged("seedless") == {"protocol.k": 3, "data.queue": 3}
     assert made.averaged("protocol.k", "seedless") == {}
+    assert made.averaged("protocol.k", "data.loss_ratio") == {"seedless": 2}  # a measure, by which
+
+
+def test_a_figure_by_a_measure_is_drawn_and_one_of_what_no_run_has_is_told():
+    made = table((0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0))
+    (ax,) = made.plot("protocol.k", "data.loss_ratio", by="x").axes
+    assert len(ax.lines) == 3
+    made.results = made.results.with_columns(polars.lit(None, polars.String).alias("never"))
+    with pytest.raises(SweepError, match='no run has a value of "never"'):
+        made.plot("protocol.k", "never")
 
 
 def test_a_plan_is_checked_by_its_first_points_and_goes_on_past_those_that_cannot_be(tmp_path):

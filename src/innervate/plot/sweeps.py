@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any, NamedTuple
@@ -11,13 +13,19 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from innervate.analysis.intervals import mean_interval
+from innervate.analysis.intervals import Interval, mean_interval
 from innervate.plot import style
 
 KINDS = ("band", "heat")
 LINES_MAX = 8
+LEGEND_INSIDE = 4  # lines; the names of more stand beside the figure, not over its lines
 LETTERS = 48  # of a line below a figure with a colour bar beside it
+TITLE_LETTERS = 44  # of a line of the title
+NAME_LETTERS = 24  # of a value; of longer ones the middle is left out
+TICK_LETTERS = 44  # of all names along an axis; more of them stand aslant
+TICKS_MAX = 16  # names of squares along an axis
 WRITTEN_MAX = 60  # squares of a heat map that have their number written in them
+GAP = Interval(math.nan, math.nan, math.nan)
 Columns = Mapping[str, Sequence[Any]]
 # What a measure's ending means, for axes.
 UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": "slots"}
@@ -59,12 +67,24 @@ def draw(columns: Columns, shown: Shown, over: Mapping[str, int] | None) -> Figu
             _bands(ax, columns, x, y, by)
         else:
             _dots(ax, columns, x, y, by)
-        ax.set_title(title)
-        if over:
-            several = ", ".join(f"{count} values of {key}" for key, count in over.items())
-            said = wrap(f"means over {several}, all varied alike", LETTERS)
-            ax.set_xlabel("\n".join([ax.get_xlabel(), *said]))
+        ax.set_title("\n".join(wrap(title, TITLE_LETTERS)))
+        notes = _notes(columns, shown, over or {})
+        ax.set_xlabel("\n".join([ax.get_xlabel(), *(w for n in notes for w in wrap(n, LETTERS))]))
         return made
+
+
+def _notes(columns: Columns, shown: Shown, over: Mapping[str, int]) -> list[str]:
+    """What a figure does not show by itself: over what means are taken, lines that are left out."""
+    notes = []
+    if over:
+        several = ", ".join(f"{count} values of {key}" for key, count in over.items())
+        often = set(Counter(columns.get("point", ())).values())
+        alike = "all varied alike" if len(often) < 2 else "by how often each of them was run"
+        notes.append(f"means over {several}, {alike}")
+    count = len(_values(columns, shown.by))
+    if shown.kind != "heat" and count > LINES_MAX:
+        notes.append(f"the first {LINES_MAX} of {count} values of {shown.by}")
+    return notes
 
 
 def label(name: str) -> str:
@@ -83,8 +103,8 @@ def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
     places, numbers = _scale(columns[x])
     for number, value in enumerate(_values(columns, by)[:LINES_MAX]):
         groups = _groups(columns, (x, by), y, value)
-        there = [place for place in places if groups.get(place)]
-        found = [mean_interval(groups[place]) for place in there]
+        there = _from_first_to_last([place for place in places if place in groups], groups)
+        found = [mean_interval(groups[place]) if groups[place] else GAP for place in there]
         across = [numbers[place] for place in there]
         look = _look(number, "" if value is None else _text(value))
         ax.plot(across, [one.value for one in found], **look)
@@ -96,6 +116,12 @@ def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
     ax.set_xlabel(label(x))
     ax.set_ylabel(f"{label(y)}\nmean, 95 % interval")
     _legend(ax, by)
+
+
+def _from_first_to_last(places: list[Any], groups: Mapping[Any, list[float]]) -> list[Any]:
+    """Places from the first to the last with a value: what has none between them breaks a line."""
+    with_value = [i for i, place in enumerate(places) if groups[place]]
+    return places[with_value[0] : with_value[-1] + 1] if with_value else []
 
 
 def _dots(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
@@ -130,8 +156,10 @@ def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> 
             words = f"{value:.3g}" if np.isfinite(value) else "none"
             ink = "#ffffff" if dark else style.INK
             ax.text(i, row, words, ha="center", va="center", fontsize=6.5, color=ink)
-    ax.set_xticks(range(len(rights)), [_text(value) for value in rights])
-    ax.set_yticks(range(len(ups)), [_text(value) for value in ups])
+    for axis, values in ((ax.xaxis, rights), (ax.yaxis, ups)):
+        step = -(-len(values) // TICKS_MAX)
+        axis.set_ticks(range(0, len(values), step), [_text(value) for value in values[::step]])
+    _slant(ax)
     ax.grid(visible=False)
     ax.set_xlabel(label(x))
     ax.set_ylabel(label(by))
@@ -162,8 +190,8 @@ def _groups(columns: Columns, keys: tuple[str, str], y: str, value: Any) -> dict
     side = columns[by] if by else [None] * len(columns[x])
     groups: dict[Any, list[float]] = {}
     for place, number, other in zip(columns[x], columns[y], side, strict=True):
-        if other == value and number is not None:
-            groups.setdefault(place, []).append(number)
+        if other == value and place is not None:
+            groups.setdefault(place, []).extend([] if number is None else [number])
     return groups
 
 
@@ -171,7 +199,7 @@ def _look(number: int, name: str) -> dict[str, Any]:
     i = number % len(style.SERIES)
     return {
         "color": style.SERIES[i],
-        "marker": style.MARKERS[i],
+        "marker": style.MARKERS[(i + number // len(style.SERIES)) % len(style.MARKERS)],
         "ls": style.DASHES[number % len(style.DASHES)],
         "label": name or None,
     }
@@ -185,12 +213,33 @@ def _name_places(ax: Axes, places: list[Any], numbers: dict[Any, float]) -> None
         ax.minorticks_off()
     if not plain or len(places) <= 10:
         ax.set_xticks([numbers[place] for place in places], [_text(place) for place in places])
+        if not plain:
+            _slant(ax)
+
+
+def _slant(ax: Axes) -> None:
+    """Put names aslant that would stand over each other."""
+    if sum(len(text.get_text()) + 1 for text in ax.get_xticklabels()) > TICK_LETTERS:
+        ax.tick_params(axis="x", rotation=35)
+        for text in ax.get_xticklabels():
+            text.set_horizontalalignment("right")
+            text.set_rotation_mode("anchor")
 
 
 def _legend(ax: Axes, by: str) -> None:
-    if by:
-        ax.legend(loc="best", title=label(by), title_fontsize=6.8, alignment="left")
+    if not by:
+        return
+    looks: dict[str, Any] = {"title": label(by), "title_fontsize": 6.8, "alignment": "left"}
+    if len(ax.get_legend_handles_labels()[1]) > LEGEND_INSIDE:
+        ax.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), **looks)
+    else:
+        ax.legend(loc="best", **looks)
 
 
 def _text(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    """A value as it stands in a scenario file, short."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    half = NAME_LETTERS // 2
+    return text if len(text) <= NAME_LETTERS else f"{text[: half - 2]}...{text[1 - half :]}"

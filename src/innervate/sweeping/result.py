@@ -202,6 +202,8 @@ class Sweep:
         room: Any = import_module("innervate.plot.sweeps")
         for name in filter(None, (x, y, by)):
             self._check(name)
+        if self.results[y].null_count() == self.results.height:
+            raise SweepError(f'no run has a value of "{y}"')
         numbers = [*self.measures, *self.plan.keys]
         if y not in numbers or kind not in room.KINDS or (kind == "heat" and not by):
             raise SweepError(
@@ -213,7 +215,7 @@ class Sweep:
 
     def averaged(self, x: str, by: str = "") -> dict[str, int]:
         """Over what else a figure of x and by takes its means: varied keys, how many values."""
-        shown = [key for key in (x, by) if key]
+        shown = [key for key in (x, by) if key in self.plan.keys]
         found: dict[str, int] = {}
         for key in self.plan.keys:
             values: dict[tuple[Any, ...], set[str]] = {}
