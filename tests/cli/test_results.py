@@ -12,13 +12,19 @@ from innervate.sweeping.result import Sweep
 
 
 @pytest.mark.parametrize(
-    ("runs", "low", "high", "words"),
-    [(0, None, None, "-"), (1, 17.2, 17.2, "17.2"), (2, 16.6, 17.8, "17.2 +- 0.6"),
-     (9, 17.1999, 17.2001, "17.2 +- 0.0001")],
+    ("runs", "count", "low", "high", "words"),
+    [(0, 9, None, None, "-"), (1, 1, 17.2, 17.2, "17.2"), (2, 2, 16.6, 17.8, "17.2 +- 0.6"),
+     (9, 9, 17.1999, 17.2001, "17.2 +- 0.0001"), (2, 9, 16.6, 17.8, "17.2 +- 0.6 of 2"),
+     (1, 9, 17.2, 17.2, "17.2 of 1")],
 )  # fmt: skip
-def test_a_mean_in_words(runs, low, high, words):
+def test_a_mean_in_words_and_of_how_many_runs_if_not_of_all(runs, count, low, high, words):
     row = {"runs": runs, "mean": 17.2, "low": low, "high": high}
-    assert sweeping.mean_words(row) == words
+    assert sweeping.mean_words(row, count) == words
+
+
+def test_settings_stand_in_the_table_as_in_a_file_and_long_ones_without_their_middle():
+    cells = [sweeping._cell(value) for value in (True, 2, 0.5, "a" * 40, "a" * 30 + "b" * 30)]
+    assert cells == ["true", "2", "0.5", "a" * 40, f"{'a' * 18}...{'b' * 19}"]
 
 
 def swept(points, *rows):

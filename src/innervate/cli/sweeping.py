@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from innervate.sweeping import Sweep, SweepPlan
 
 POINTS_MAX = 40
+CELL_MAX = 40  # letters of a setting
 REASONS_MAX = 5
 
 
@@ -84,8 +85,9 @@ def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     counts = dict(done.results.group_by("point").len().iter_rows())
     for point in done.plan.points[:POINTS_MAX]:
         cells = [_cell(value) for value in point.columns.values()]
-        cells.append(str(counts.get(point.index, 0)))
-        rows.append(cells + [mean_words(figures[point.index, name]) for name in shown])
+        count = counts.get(point.index, 0)
+        means = [mean_words(figures[point.index, name], count) for name in shown]
+        rows.append([*cells, str(count), *means])
     widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
     lines = ["  ".join(f"{c:>{w}}" for c, w in zip(row, widths, strict=True)) for row in rows]
     more = len(done.plan.points) - POINTS_MAX
@@ -125,13 +127,19 @@ def failed_lines(done: Sweep) -> list[str]:
     return lines
 
 
-def mean_words(row: dict[str, Any]) -> str:
-    """Mean and half the interval's width: "17.2 +- 0.6"."""
+def mean_words(row: dict[str, Any], count: int) -> str:
+    """Mean and half the interval's width, and of how many if not of all: "17.2 +- 0.6 of 3"."""
     if not row["runs"]:
         return "-"
     half = (row["high"] - row["low"]) / 2
-    return f"{row['mean']:.4g}" + (f" +- {half:.2g}" if row["runs"] > 1 else "")
+    width = f" +- {half:.2g}" if row["runs"] > 1 else ""
+    return f"{row['mean']:.4g}{width}" + (f" of {row['runs']}" if row["runs"] < count else "")
 
 
 def _cell(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    """A setting as in a file; a long one without its middle."""
+    from innervate.sweeping.vary import shown
+
+    text = shown(value)
+    half = CELL_MAX // 2
+    return text if len(text) <= CELL_MAX else f"{text[: half - 2]}...{text[1 - half :]}"
