@@ -1,6 +1,7 @@
 """What runs of a sweep have in common, what goes before a plan file, and how each run ends."""
 
 import json
+import math
 import shlex
 from pathlib import Path
 from types import SimpleNamespace
@@ -154,7 +155,8 @@ def ran(monkeypatch):
         error = comes.get(scenario.seed)
         if error is not None:
             raise error
-        return SimpleNamespace(interrupted=scenario.seed == 99, summary={"x": scenario.seed})
+        x = math.nan if scenario.seed == 98 else scenario.seed
+        return SimpleNamespace(interrupted=scenario.seed == 99, summary={"x": x})
 
     monkeypatch.setattr(work.runs, "run", run)
     monkeypatch.setattr(work, "_kept", work.OrderedDict())
@@ -183,6 +185,12 @@ def test_every_run_has_its_points_settings_and_its_own_seed(ran):
     other = work.run_batch(base_of(SKIN, {"duration_s": 0.1}), [job(0, 20)])
     assert other.outcomes[0].seed == 20
     assert len(work._kept) == 3, "of another base it is another scenario"
+
+
+def test_a_run_with_a_figure_that_is_no_number_fails_and_names_it(ran):
+    fine, strange = work.run_batch(base_of(SKIN, ()), [job(0, 97), job(1, 98)]).outcomes
+    assert (json.loads(fine.row), fine.reason) == ({"x": 97}, "")
+    assert (strange.row, strange.reason) == (None, "its x is nan, no finite number")
 
 
 def test_scenarios_of_the_newest_points_are_kept(ran, monkeypatch):

@@ -208,6 +208,16 @@ def test_equal_values_have_one_text(value):
     assert canonical([value]) != canonical([value, math.pi])
 
 
+def test_so_many_runs_and_no_more():
+    """What memory cannot hold is refused before anything runs; a rule may end points early."""
+    ten = {"vary": {"protocol.k": list(range(2, 12))}, "repeat": 1_000_000}
+    assert len(plan(**ten).points) == 10
+    ten["vary"]["protocol.k"].append(12)
+    with pytest.raises(SweepError, match="11,000,000 runs; a sweep takes at most 10,000,000"):
+        assert plan(**ten).points
+    assert len(plan(**ten, until="data.loss_ratio.ci=5%").points) == 11
+
+
 def test_what_a_sweep_does_not_take_is_said():
     with pytest.raises(TypeError, match="a sweep takes no vry"):
         make_plan(SKIN, vry={"protocol.k": [2, 3]})

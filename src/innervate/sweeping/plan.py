@@ -28,6 +28,7 @@ from innervate.trace.streams import stream
 
 POINTS_MAX = 1_000_000
 REPEAT_MAX = 1_000_000
+RUNS_MAX = 10_000_000  # tables of so many take 30 GB of memory
 SEED_BITS = 48  # two of a million repeats of a point agree with a chance of 0.2 %
 ALL = "all"
 
@@ -103,6 +104,9 @@ class SweepPlan:
         count = prod(len(axis.steps) for axis in self.axes)
         if count > POINTS_MAX:
             raise SweepError(f"{count:,} points; a sweep takes at most {POINTS_MAX:,}")
+        runs = count * self.first_block
+        if runs > RUNS_MAX:
+            raise SweepError(f"{runs:,} runs; a sweep takes at most {RUNS_MAX:,}")
         strange = [key for key in self.paired if key != ALL and key not in keys]
         if strange:
             raise SweepError(f"paired: {strange[0]} is not varied; it can pair nothing")

@@ -6,6 +6,7 @@ Nothing here loads polars, whose threads do not outlive the fork that worker pro
 from __future__ import annotations
 
 import json
+import math
 import os
 import platform
 import socket
@@ -126,7 +127,11 @@ def _row(scenario: Scenario) -> str:
     _loaded.add(words)
     if run.interrupted:
         raise KeyboardInterrupt
-    return json.dumps(flat(run.summary), ensure_ascii=False, allow_nan=False)
+    figures = flat(run.summary)
+    for name, value in figures.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise RunError(f"its {name} is {value}, no finite number")
+    return json.dumps(figures, ensure_ascii=False, allow_nan=False)
 
 
 def _words(value: Any) -> Iterator[str]:
