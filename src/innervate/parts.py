@@ -7,6 +7,8 @@ PARTS = {
     "plan": "(scenario) -> the plan of its run, whole numbers only; `plan.kind` is the name",
     "describe": "(plan) -> str: the scenario in a few lines, without running it",
     "fault_words": '(plan, fault) -> str: "at 2 s cut pc.1 - p0 r16 c7 down"',
+    "foreseen": "(plan) -> list of str: what of it cannot work, besides what any network's `check` "
+    "finds; a sentence each",
     "actions": "tuple of str: what can be done to it while it runs, in the order of their numbers",
     "harm": "tuple of str: those of the actions that make it worse",
     "template": "str: a commented scenario to start from; if absent, all keys as they are by "
@@ -89,7 +91,7 @@ DEFAULTS = {
     "engine": "innervate.web.engine:Engine",
     "view": "innervate.web.declared_view:DeclaredView",
     "anchor": "innervate.network:nothing_to_anchor",
-    "describe": "innervate.scenario.cables:describe",
+    "describe": "innervate.scenario.declared.cables:describe",
     "fault_words": "innervate.scenario.cables:fault_words",
     "actions": "innervate.scenario.actions.cables:ACTIONS",
     "harm": "innervate.scenario.actions.cables:HARM",

@@ -57,6 +57,8 @@ CASES = [
      TIGHT + "[data]\nrate_hz = 5472"),
     ("skin", "nobody learns of it", patch(0) + "[touch]\n", patch(1) + "[touch]\n"),
     ("skin", "the run may end before", patch(0, "duration_s = 0.01"), patch(0, "duration_s = 1")),
+    ("skin", "nobody gets any frame", patch(0) + "[timing]\nloss = 1.0\n",
+     patch(0) + "[timing]\nloss = 0.99\n"),
     ("radio", "One station alone", "stations = 1", "stations = 2"),
     ("radio", "Stations that do not hear each other (0 and 1)",
      "stations = 3\n[channel]\nhidden = [[0, 1]]", "stations = 3"),

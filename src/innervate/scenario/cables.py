@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -85,7 +86,7 @@ class CablesPlan:
     inputs: list[Input] = field(default_factory=list)
 
 
-def describe(plan: Any) -> str:
+def describe(plan: Any, warnings: Iterable[str] = ()) -> str:
     """A plan in words, several lines, without a newline at the end."""
     graph = plan.graph
     params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
@@ -94,7 +95,7 @@ def describe(plan: Any) -> str:
         f"  nodes      {graph.cells:,}, {sum(1 for _ in graph.links()):,} cables",
         f"  protocol   {params}",
     ]
-    return "\n".join([*lines, *told(plan, fault_words, ())])
+    return "\n".join([*lines, *told(plan, fault_words, warnings)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:

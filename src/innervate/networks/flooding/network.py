@@ -15,4 +15,5 @@ NETWORK = Network(
     frames="frames",
     invariants="invariants",
     comparison="comparison",
+    foreseen="foreseen:foreseen",
 )

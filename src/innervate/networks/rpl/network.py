@@ -16,4 +16,5 @@ NETWORK = Network(
     invariants="invariants",
     comparison="comparison",
     shows="shows:SHOWS",
+    foreseen="foreseen:foreseen",
 )

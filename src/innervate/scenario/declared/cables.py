@@ -12,8 +12,10 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from innervate.network import networks
+from innervate.scenario import cables
 from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TABLE
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
+from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.declared.shared import (
     InputTable,
     check_happening,
@@ -216,6 +218,14 @@ def _fault(source: Source, graph: Graph, place: int, event: EventTable) -> Fault
         frames=event.frames if action == LOSE else 0,
         index=place,
     )
+
+
+def describe(plan: Any) -> str:
+    """A plan in words, several lines, and what of it cannot work."""
+    graph: Graph = plan.graph
+    near = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
+    found = ["nobody gets any frame: links.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
+    return cables.describe(plan, [*found, *warnings(plan, near, plan.start_us)])
 
 
 def template(network: Any) -> str:

@@ -14,6 +14,7 @@ from innervate.folders import CHANNEL_OWN
 from innervate.network import networks
 from innervate.scenario.actions.channel import ACTIONS, FADE, GARBLE, WORDS
 from innervate.scenario.cables import LOSS_ONE, Input
+from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.declared.shared import (
     InputTable,
     check_happening,
@@ -204,7 +205,14 @@ def describe(plan: Any) -> str:
         f"  nodes      {plan.stations:,} on a channel, {plan.params['slot_us']} us a slot{apart}",
         f"  protocol   {params}",
     ]
-    return "\n".join([*lines, *told(plan, fault_words, ())])
+    found = ["nobody can read any frame: air.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
+    found += warnings(plan, _near(plan))
+    return "\n".join([*lines, *told(plan, fault_words, found)])
+
+
+def _near(plan: ChannelPlan) -> list[tuple[int, int]]:
+    """Pairs that hear each other."""
+    return [(a, b) for a, row in enumerate(plan.delays_us) for b in range(a) if row[b] >= 0]
 
 
 def fault_words(plan: Any, fault: Any) -> str:

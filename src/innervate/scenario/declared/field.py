@@ -14,6 +14,7 @@ from msgspec import Meta
 from innervate.network import networks
 from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
+from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.declared.shared import (
     InputTable,
     check_happening,
@@ -334,7 +335,8 @@ def describe(plan: Any) -> str:
         f"  nodes      {plan.nodes:,} in a field, {len(plan.good):,} pairs hear each other",
         f"  protocol   {params}",
     ]
-    return "\n".join([*lines, *told(plan, fault_words, ())])
+    found = warnings(plan, plan.good, plan.scenario.model.start_us)
+    return "\n".join([*lines, *told(plan, fault_words, found)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:

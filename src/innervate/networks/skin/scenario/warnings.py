@@ -6,6 +6,7 @@ from math import ceil
 
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.rules import ONE
+from innervate.scenario.cables import LOSS_ONE
 from innervate.topology.weak import weak_points
 
 SETTLE_PERIODS = 3  # beyond the beacons that have to be heard: measured on lines and patches
@@ -15,6 +16,8 @@ def warnings(made: Plan) -> list[str]:
     """A sentence for each; none if all is well."""
     if made.script:
         return []
+    if made.loss_q15 == LOSS_ONE:
+        return ["nobody gets any frame: timing.loss is 1"]
     return [*_touch(made), *_start_up(made), *_load(made)]
 
 
