@@ -29,6 +29,15 @@ def test_names_with_a_signature_on_the_site_say_where_their_help_is(sh):
     assert ":::" not in sh.out
 
 
+def test_the_page_of_commands_has_each_with_its_arguments(sh):
+    assert sh("docs", "commands") == 0
+    assert ":::" not in sh.out
+    for words in manpage.commands():
+        assert f"# innervate {words}\n" in sh.out
+    assert "--min-tq" in sh.out
+    assert "Worst quality of a link that counts" in sh.out
+
+
 def test_there_is_no_such_page(sh):
     assert sh("docs", "sweps") == 2
     assert sh.err == 'innervate: there is no page "sweps"; did you mean "sweeps"?\n'

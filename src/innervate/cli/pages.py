@@ -13,7 +13,7 @@ from innervate.scenario.explain import nearest
 FOLDERS = (Path(__file__).parent / "pages", Path(__file__).parents[3] / "docs")
 
 NAMED = re.compile(r"^::: \S+\.(\w+)$", re.MULTILINE)  # where the site has a name's signature
-ON_SITE = {"commands"}  # pages that are made for the site; here every command has its help
+COMMANDS = re.compile(r"^::: cyclopts\n(?: +.*\n?)*", re.MULTILINE)  # likewise their arguments
 
 
 def show(page: str) -> int:
@@ -29,8 +29,18 @@ def show(page: str) -> int:
     if name not in there:
         hint = nearest(name, list(there)).replace("it knows", "there are")
         raise errors.UserError(f'there is no page "{name[:60]}"{hint}')
-    _print(NAMED.sub(r"- `innervate.\1`: `help(innervate.\1)`", there[name].read_text("utf-8")))
+    text = there[name].read_text("utf-8")
+    if COMMANDS.search(text):
+        text = COMMANDS.sub(lambda _: _of_commands(), text)
+    _print(NAMED.sub(r"- `innervate.\1`: `help(innervate.\1)`", text))
     return 0
+
+
+def _of_commands() -> str:
+    """Every command with its arguments, as Markdown."""
+    from innervate.cli.app import app
+
+    return f"{app.generate_docs(recursive=True, heading_level=2)}\n"
 
 
 def pages() -> dict[str, Path]:
@@ -41,8 +51,7 @@ def pages() -> dict[str, Path]:
     """
     for folder in FOLDERS:
         if (folder / "index.md").is_file():
-            return {path.stem: path for path in sorted(folder.glob("*.md"))
-                    if path.stem not in ON_SITE}  # fmt: skip
+            return {path.stem: path for path in sorted(folder.glob("*.md"))}
     raise errors.UserError("no pages came with this installation; they are in docs/ of the sources")
 
 
