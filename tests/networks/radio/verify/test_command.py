@@ -90,3 +90,21 @@ def test_the_lines_say_what_was_looked_at_and_what_broke():
     code = next(iter(WORDS))
     grown.broken[code] = 3
     assert command._tree_line(grown) == f"{begun} (limit) in 2.0 s; BROKEN: {WORDS[code]} (3 runs)"
+
+
+@pytest.mark.parametrize("which", [0, 1], ids=["grid", "tree"])
+def test_what_breaks_is_a_story_that_can_be_written(which, monkeypatch):
+    """As published, stations that draw the same begin together."""
+    small = Grid(2, "paper", offers_us=(0,), delays_us=(104,), draws=1, parts=1)
+    monkeypatch.setattr(command, "_grids", lambda *_: [small])
+    monkeypatch.setattr(command, "_tree", lambda grid: Tree(grid, 6))
+    options = SimpleNamespace(cells=2, rule="paper", states=0 if which == 0 else 1)
+    case = list(command.explorations(None, options))[which](lambda *_: False)
+    assert case.is_broken
+    *told, last = case.story.lines()
+    assert last == f"So: {case.story.title}"
+    assert case.story.title in WORDS.values()
+    assert not [line for line in told if "So: " in line]
+    assert sum("Station 0 is offered a packet at 0 us." in line for line in told) == 1
+    assert sum("sends its packet, 0 to 1040 us." in line for line in told) == 2
+    assert ("What stations draw, in the order of their asking: 0 of" in told[0]) == (which == 1)

@@ -12,7 +12,7 @@ from innervate.networks.radio.verify import tree as trees
 from innervate.networks.radio.verify.grid import MODES, STATIONS, WORDS, Found, Grid, story
 from innervate.networks.radio.verify.mutants import MUTANTS, hunt
 from innervate.networks.radio.verify.tree import Grown, Tree
-from innervate.verify.cases import Case, Explore, Tell
+from innervate.verify.cases import Case, Explore, Story, Tell
 from innervate.verify.errors import VerifyError
 
 __all__ = ["MUTANTS", "hunt"]
@@ -37,7 +37,9 @@ def _search(grid: Grid, limit: int, tell: Tell) -> Case:
         return tell(what, found.done, found.grid.points)
 
     found = grids.search(grid, progress, limit)
-    return _case(found, _lines(found))
+    code = next(iter(found.broken), None)
+    told = None if code is None else _told(code, story(grid, found.first[code]))
+    return _case(found, _lines(found), told)
 
 
 def _grow(grid: Grid, limit: int, tell: Tell) -> Case:
@@ -46,12 +48,19 @@ def _grow(grid: Grid, limit: int, tell: Tell) -> Case:
         return tell(what, 0, 0)
 
     grown = trees.search(_tree(grid), limit=limit, progress=progress)
-    return _case(grown, [_tree_line(grown)])
+    code = next(iter(grown.broken), None)
+    told = None if code is None else _told(code, trees.story(grown, code))
+    return _case(grown, [_tree_line(grown)], told)
 
 
-def _case(found: Found | Grown, lines: list[str]) -> Case:
+def _told(code: int, sentences: list[str]) -> Story:
+    """What is written of the first thing that broke: the last of its sentences is the title."""
+    return Story(WORDS[code], [one for one in sentences if not one.startswith("So: ")])
+
+
+def _case(found: Found | Grown, lines: list[str], told: Story | None) -> Case:
     is_all = found.ended == "complete"
-    return Case(lines, found.as_dict(), bool(found.broken), is_complete=is_all, sums_up=False)
+    return Case(lines, found.as_dict(), bool(found.broken), is_all, sums_up=False, story=told)
 
 
 def _grids(stations: int, mode: str) -> list[Grid]:

@@ -237,7 +237,12 @@ def story(grid: Grid, point: Point) -> list[str]:
     shared = base_plan(grid)
     plan = plan_of(shared, grid, point)
     broken, sent = run_point(plan, point, seeds_of(grid))
-    begin = plan.arrivals[0][0]
+    told = sentences(grid, point, sent, plan.arrivals[0][0])
+    return [*told, f"So: {WORDS[broken]}."] if broken else told
+
+
+def sentences(grid: Grid, point: Point, sent: Any, begin: int) -> list[str]:
+    """How stations stand and what they are offered, and the first frames of `sent`."""
     pairs = itertools.combinations(range(grid.stations), 2)
     far = ", ".join(f"{i}-{j} {d} us" for (i, j), d in zip(pairs, point.delays_us, strict=True))
     told = [f"The stations are this far apart: {far}."]
@@ -246,7 +251,7 @@ def story(grid: Grid, point: Point) -> list[str]:
         what = FRAMES.get(int(row["kind"]), "a frame")
         span = f"{int(row['time']) - begin} to {int(row['end']) - begin} us"
         told.append(f"Station {int(row['node'])} sends {what}, {span}.")
-    return [*told, f"So: {WORDS[broken]}."] if broken else told
+    return told
 
 
 def search(

@@ -149,6 +149,19 @@ def search(
     return grown
 
 
+def story(grown: Grown, code: int) -> list[str]:
+    """How the first run went in which this was broken, in sentences."""
+    made, (point, script) = grown.tree.grid, grown.first[code]
+    shared = grid.base_plan(made)
+    advance = loop.bind(stacks.bind(stacks.PROTOCOLS[shared.protocol].entry, recorder))
+    plan, asked = grid.plan_of(shared, made, point), Asked(grown.tree.depth)
+    _, sent = _played(plan, advance, asked, script)
+    told = grid.sentences(made, point, sent, plan.arrivals[0][0])
+    whole = script + (0,) * (len(asked.ranges) - len(script))
+    drawn = [f"{values(of)[which]} of {of}" for which, of in zip(whole, asked.ranges, strict=True)]
+    return [f"What stations draw, in the order of their asking: {', '.join(drawn)}.", *told]
+
+
 def _points(made: grid.Grid) -> Iterator[grid.Point]:
     """Every combination of offers and delays of a grid; the first offer is at 0."""
     pairs = made.stations * (made.stations - 1) // 2
@@ -168,6 +181,13 @@ def _branches(script: tuple[int, ...], ranges: list[int]) -> list[tuple[int, ...
 
 def _run(plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[int, ...]) -> int:
     """One run; what is broken, 0 nothing."""
+    return _played(plan, advance, asked, script)[0]
+
+
+def _played(
+    plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[int, ...]
+) -> tuple[int, Any]:
+    """One run: what is broken, 0 nothing; and the frames that were sent."""
     world = builder.build(plan, plain=True, room=ROOM)
     for station in world.stations:
         scripted(station, asked)
@@ -176,8 +196,8 @@ def _run(plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[in
     try:
         advance(world, plan.duration_us, grid.EVENTS)
     except (ArithmeticError, IndexError, ValueError):
-        return grid.INVARIANT  # a mutant's value that fits nowhere
+        return grid.INVARIANT, []  # a mutant's value that fits nowhere
     rows = world.sent[: int(get(world.run, 0, "sent"))]
     sent = np.array([tuple(getattr(row, f) for f in w.SENT) for row in rows],
                     row_dtype(w.SENT, w.WIDE))  # fmt: skip
-    return grid.judge(world, plan, sent)
+    return grid.judge(world, plan, sent), sent
