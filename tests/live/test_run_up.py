@@ -154,6 +154,24 @@ def test_only_a_folder_that_was_made_for_it_is_removed(plan, tmp_path):
         assert network.folder.exists() == (folder is not None)
 
 
+@pytest.mark.parametrize(("nodes", "absent", "keys", "words"), [
+    (50, 0, None, ""), (51, 1, None, ""),
+    (51, 0, None, "starting 51 processes, one a node, which hold about 1.4 GB; Ctrl-C ends them. "),
+    (206, 1, {"use": 1}, "starting 205 processes, one a node, which hold about 7.0 GB"),
+])  # fmt: skip
+def test_many_processes_are_foretold_with_a_smaller_network_to_try(
+    nodes, absent, keys, words, capsys
+):
+    names = [f"c{k}" for k in range(nodes)]
+    run_up._foretell(SimpleNamespace(names=names, absent=set(names[:absent]), keys=keys))
+    out, err = capsys.readouterr()
+    assert out == "", "what programs read stays as it is"
+    assert err.startswith(words)
+    assert bool(err) == bool(words)
+    if err:
+        assert err.endswith("A smaller one to try: innervate live up line\n")
+
+
 def test_what_is_up_is_said_to_people_and_to_programs(capsys):
     pids = {f"n{k}": SimpleNamespace(pid=70 + k) for k in range(2)}
     network = SimpleNamespace(

@@ -21,6 +21,8 @@ from innervate.live.up import Processes
 
 SCENARIO = "scenario.toml"
 OURS = "# As `innervate live up` brought it up; the next one in this folder replaces it."
+MANY = 50  # nodes
+NODE_MB, KEYED_MB = 27, 34  # that a node's process holds, in the clear and with keys
 MARK = "made-by-live-up"  # among keys that may be replaced
 
 
@@ -46,6 +48,7 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
     """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
     network = prepared(plan, way)
     player = _player(network, as_json)
+    _foretell(network)
     ending = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGTERM, signal.SIGINT):
@@ -157,6 +160,20 @@ def _player(network: Processes, as_json: bool) -> play.Player:
         print(json.dumps(told) if as_json else f"{event.at_s:g} s: {event.text}", flush=True)
 
     return play.Player(network, events, tell)
+
+
+def _foretell(network: Processes) -> None:
+    """Say what many processes will take, before the first is started."""
+    count = len(network.names) - len(network.absent)
+    if count <= MANY:
+        return
+    need_gb = count * (KEYED_MB if network.keys else NODE_MB) / 1000
+    print(
+        f"starting {count} processes, one a node, which hold about {need_gb:.1f} GB; Ctrl-C ends "
+        "them. A smaller one to try: innervate live up line",
+        file=sys.stderr,
+        flush=True,
+    )
 
 
 def _announce(network: Processes, took_s: float, as_json: bool) -> None:
