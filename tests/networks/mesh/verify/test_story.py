@@ -127,6 +127,22 @@ def test_a_story_says_what_is_broken_and_between_whom_a_packet_goes():
     assert told(local.BROKEN_RANGE).scenes == []
 
 
+@pytest.mark.parametrize(("dest", "shown"), [(1, 1), (2, 2), (3, 0), (254, 0)])
+def test_a_packet_that_goes_round_is_shown_on_its_way_to_its_recipient(dest, shown):
+    """Or to node 0 where that is who leads, whoever it is."""
+    gone = SimpleNamespace(path=[0, 1, 0, 1], path_len=4, dest=dest)
+
+    def handed(number):
+        return 0 if number == 12 else story.NONE
+
+    found = SimpleNamespace(
+        broken=local.BROKEN_ROUND, path=[(move(nets.AIR), net(DEAD, 11, 12), 0)],
+        nets=SimpleNamespace(locals=SimpleNamespace(handed=handed, packets=[gone])),
+        model=SimpleNamespace(nodes=3, offers=((0, 1),)),
+    )  # fmt: skip
+    assert story._dest(found) == shown
+
+
 def losses(*moves):
     found = SimpleNamespace(nets=NETS, path=[(one, None, 0) for one in moves])
     return replay._losses(SimpleNamespace(found=found))

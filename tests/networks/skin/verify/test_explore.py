@@ -45,6 +45,27 @@ def test_a_search_grows_its_table_and_loses_nothing(monkeypatch):
     assert (grown.rows == roomy.rows).all()
 
 
+def test_a_small_table_grows_as_often_as_it_must(monkeypatch):
+    """It is doubled before the states and one's successors fill seven tenths of it."""
+    made = CASES["two in a line"]
+    roomy = explore.explore(made, plain=True)
+    monkeypatch.setattr(explore, "SLOTS", 256)
+    monkeypatch.setattr(search, "MARGIN", 64)
+    driver = explore._Driver(made, made.system(), True, 1 << 24, 0)
+    slots = []
+    while (status := driver.advance()) in (search.GOING, search.GROW):
+        if status == search.GROW:
+            driver.grow()
+            slots.append((int(driver.search.run[search.SLOTS]), len(driver.search.table)))
+    count = int(driver.search.run[search.COUNT])
+    assert (status, count) == (search.DONE, roomy.tally.states)
+    doubled = [256 << k for k in range(1, 12) if (256 << k - 1) * 7 < 10 * (count + 64)]
+    assert slots == [(places, places) for places in doubled]
+    assert len(slots) > 1
+    words = count * made.layout().width // 8
+    assert bytes(driver.search.rows[:words]) == bytes(roomy.rows)
+
+
 @pytest.mark.parametrize("rule", ["feasible", "strict"])
 def test_merging_beacons_into_ticks_reaches_the_same_routes(rule):
     # Who has whom as parent, over all states: the same with every order of every delivery.

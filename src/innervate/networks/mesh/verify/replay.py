@@ -61,8 +61,7 @@ def loop_of(text: str, dest: int) -> list[int]:
     hops = []
     for node in range(result.plan.nodes):
         table, bank = get(result.world.nodes, node, "next"), get(result.world.nodes, node, "bank")
-        hop = int(table[int(bank) * width + dest])
-        hops.append(-1 if hop == const.ALL else hop)
+        hops.append(int(table[int(bank) * width + dest]))
     return sorted(ring(hops))
 
 
