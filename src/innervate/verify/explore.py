@@ -222,7 +222,6 @@ class _Driver:
         self.search = self.search._replace(table=empty)
         self.seen_search = self.search if self.plain else tables.borrowed(self.search)
         self.refill(self.seen_search)
-        run[s.STATUS] = s.GOING
 
     def count(self, tally: Tally, took_s: float) -> None:
         """Bring a tally up to date."""

@@ -1,0 +1,62 @@
+"""The time of a node that is explored: it passes until what is due next, and not between."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from innervate.dialect.arith import MASK30
+from innervate.dialect.outbox import send, set_timer
+from innervate.verify import declared
+from innervate.verify.graphs import graph_of
+
+STATE = (("at", 0, 0, MASK30, "us", "a moment"), ("left", 0, 0, 99, "us", "until it"))
+FIELDS = SimpleNamespace(STATE=STATE, FRAME=(), PARAMS=())
+MOMENT = 50
+
+
+def started(*timers, delays=()):
+    """A node that keeps a moment, sets timers to so long from now, and sends frames so late."""
+
+    def on_start(node, params, now, cause, out):
+        node.at = (now + MOMENT) & MASK30
+        for timer, wait in enumerate(timers):
+            set_timer(out, timer, (now + wait) & MASK30)
+        for delay in delays:
+            send(out, 0, delay, 0)
+
+    def on_timer(node, params, now, timer, out):
+        node.left = (node.at - now) & MASK30
+
+    protocol = SimpleNamespace(
+        on_start=on_start, on_timer=on_timer, on_frame=lambda *_: None, TIMERS=2, OUTBOX=4
+    )
+    net = declared.Net(protocol, FIELDS, graph_of("pair"), {})
+    return net, net.begin(declared.Budget()).state
+
+
+@pytest.mark.parametrize("waits", [(0,), (1,), (7, 9), (9, 7), (0, 0), (5, 5)])
+def test_a_timer_fires_when_it_is_due_and_time_has_passed_so_far(waits):
+    net, state = started(*waits)
+    first = min(waits)
+    step = net.fire(state, 0)
+    assert step.words == f"Timer {waits.index(first)} of n0 fires"
+    at, left = step.state.nodes[0].values
+    assert (at, left) == (MOMENT - first, MOMENT - first)
+    assert step.state.nodes[0].timers == tuple(
+        (timer, wait - first) for timer, wait in enumerate(waits) if timer != waits.index(first)
+    )
+    assert step.state.nodes[1] == state.nodes[1]
+
+
+@pytest.mark.parametrize(("wait", "delays", "words"), [
+    (5, (3, 8), ["A delayed frame of n0 leaves"]), (3, (5,), ["Timer 0 of n0 fires"]),
+    (4, (4,), ["Timer 0 of n0 fires", "A delayed frame of n0 leaves"]),
+])  # fmt: skip
+def test_what_is_due_first_comes_first_and_at_once_in_either_order(wait, delays, words):
+    net, state = started(wait, delays=delays)
+    steps = list(net.due(state, 0))
+    assert [step.words for step in steps] == words
+    for step in steps:
+        passed = min(wait, *delays)
+        assert step.state.nodes[0].values[0] == MOMENT - passed
+        assert step.state.nodes[1] == state.nodes[1]
