@@ -195,3 +195,15 @@ def test_what_the_page_names_is_there(name):
     words = {word.split(" = ")[0] for word in QUOTED.findall(page_of(name))}
     plain = {word for word in words if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*|\w+\.py", word)}
     assert sorted(plain - known) == []
+
+
+@pytest.mark.parametrize("name", ["babel", "flooding", "rpl"])
+def test_settings_are_by_themselves_as_the_page_has_them(name):
+    fields = importlib.import_module(f"innervate.networks.{name}.protocol.fields")
+    table = page_of(name).partition("| setting ")[2].partition("\n\n")[0]
+    said = {}
+    for line in table.splitlines()[2:]:
+        words, value = line.split("|")[1:3]
+        said[words.strip().strip("`")] = value.strip().replace(",", "")
+    assert set(said) == {field[0] for field in fields.PARAMS}
+    assert {key: int(value) for key, value in said.items() if value} == fields.DEFAULTS

@@ -4,6 +4,7 @@ import pytest
 
 from innervate.network import networks
 from innervate.networks.flooding.protocol import node as p
+from innervate.prove.theory import prove
 from tests.networks.one import One
 
 FLOODING = networks()["flooding"]
@@ -36,6 +37,28 @@ def test_the_hop_limit_is_decremented(node):
     """Layer 3: "sees a packet with a HopLimit other than zero, it will decrement that HopLimit" """
     node.hear(**packet(hops=2))
     assert node.fire(PLACE)[0].hops == 1
+
+
+def test_what_is_handed_up_is_what_came(node):
+    came = packet(hops=2, start=6, want=1, body=[1, 2, 3, 4, 5, 6, 7, 8], made_at=77, dest=5)
+    node.hear(**came)
+    (told,) = node.delivered
+    assert {name: getattr(told, name) for name in came} == came
+
+
+def test_what_is_passed_on_is_what_came_with_one_hop_less(node):
+    came = packet(hops=2, start=6, want=1, body=[1, 2, 3, 4, 5, 6, 7, 8], made_at=77, dest=9)
+    node.hear(**came)
+    (sent,) = node.fire(PLACE)
+    expected = {**came, "hops": 1, "rssi": 0}
+    assert {name: getattr(sent, name) for name in came} == expected
+
+
+@pytest.mark.parametrize(("hops", "start", "back"), [(3, 3, 2), (1, 3, 3), (2, 3, 3), (7, 0, 2)])
+def test_an_answer_may_go_two_hops_more_than_the_question_went(node, hops, start, back):
+    """Whatever a frame says of itself: as far as it can go, and never less than nothing."""
+    (ack,) = node.hear(**packet(dest=5, want=1, hops=hops, start=start))
+    assert (ack.hops, ack.start) == (back, back)
 
 
 def test_a_hop_limit_of_zero_is_not_rebroadcast(node):
@@ -93,6 +116,18 @@ def test_the_fainter_a_packet_the_sooner_it_is_rebroadcast(node):
     assert faint < 1 << node.params.cw_min
     assert faint < middle < loud < 1 << node.params.cw_max
     assert loud > 128
+
+
+@pytest.mark.parametrize(("rssi", "bits"), [(FAINT, 3), (-98, 3), (-80, 5), (LOUD, 8), (-3, 8)])
+def test_a_wait_is_so_many_slots_and_some_of_a_window(node, rssi, bits):
+    """Firmware, RadioInterface::getTxDelayMsecWeighted: 2 CWmax slots, and a draw of 2^CW."""
+    waits = []
+    for drawn in (0, (1 << bits) - 1, 1 << bits):
+        node.node.choice = drawn
+        node.hear(**packet(number=drawn, rssi=rssi))
+        waits.append(node.left(PLACE) // node.params.slot_us - 2 * node.params.cw_max)
+        node.fire(PLACE)
+    assert waits == [0, (1 << bits) - 1, (1 << bits) - 1]
 
 
 def test_a_wait_is_a_random_multiple_of_slot_times(node):
@@ -203,3 +238,39 @@ def test_what_was_met_long_ago_is_forgotten(node):
         node.fire(p.FORGET)
     node.hear(**packet(hops=0))
     assert len(node.delivered) == 2
+
+
+def test_the_oldest_is_forgotten_first(node):
+    for number in (1, 2, 3):
+        node.hear(**packet(number=number, hops=0))
+    known = [{1, 2, 3}]
+    while known[-1]:
+        node.fire(p.FORGET)
+        left = {number for number in known[-1] if p.is_known(node.node, 1, number)}
+        if left != known[-1]:
+            known.append(left)
+    assert known == [{1, 2, 3}, {2, 3}, {3}, set()]
+
+
+def test_so_many_are_remembered(node):
+    for number in range(p.SEEN + 1):
+        node.hear(**packet(number=number, hops=0))
+    assert [p.is_known(node.node, 1, number) for number in (0, 1, p.SEEN)] == [False, True, True]
+
+
+def test_all_stays_in_range_whatever_comes_in_and_every_branch_is_taken():
+    """Of any state and any frame; the ranges of what waits are those of what is sent."""
+    (theory,) = FLOODING.prove.theories(FLOODING)
+    came = prove(theory)
+    assert [(one.name, bad.goal) for one in came.checked for bad in one.refuted] == []
+    assert came.is_as_expected
+    frame = {name: (low, high) for name, _, low, high, *_ in FLOODING.fields.FRAME}
+    state = {name: (low, high) for name, _, low, high, *_ in FLOODING.fields.STATE}
+    waits = {"packet": "id", "made": "made_at"} | {
+        name: name for name in ("kind", "origin", "dest", "hops", "start", "want", "ack", "body")
+    }
+    assert {name: state[name] for name in waits} == {name: frame[of] for name, of in waits.items()}
+
+
+def test_the_explorer_hands_in_a_message_for_all_and_one_for_a_node():
+    assert FLOODING.fields.GIVEN == ((p.MESSAGE, {"dest": ALL}), (p.MESSAGE, {"dest": 1}))

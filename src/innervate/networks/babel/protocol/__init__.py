@@ -93,9 +93,23 @@ Any input is data for the PC. Reports: `REPORT_ROUTE = 1` (port, neighbour; -1 n
 Constants and settings
 ======================
 `PORTS = 4`; a request is sent `TRIES = 3` times more; a call puts at most `OUTBOX = 34` actions.
-Settings: `pc`; `hello_us`, `update_hellos`; `etx`, `up_least` (k), `up_of` (j), `nominal` (C);
-`margin`; `urgent_us`, `copies`; `request_us`; `gc_us`. By themselves they are those of appendix B
-with a Hello every 4 ms instead of 4 s, all other times in proportion.
+Settings, by themselves those of appendix B with a Hello every 4 ms instead of 4 s, all other times
+in proportion:
+
+| setting         | by itself | is                                                                 |
+|-----------------|-----------|--------------------------------------------------------------------|
+| `pc`            |           | the source                                                         |
+| `hello_us`      | 4,000     | between two Hellos                                                 |
+| `update_hellos` | 4         | Hellos between two updates                                         |
+| `etx`           |           | 1: links are judged by ETX                                         |
+| `up_least`      | 2         | k: so many Hellos ...                                              |
+| `up_of`         | 3         | j: ... of the last so many make a link up                          |
+| `nominal`       | 96        | C: the cost of a link that is up                                   |
+| `margin`        |           | by which another route must be better                              |
+| `urgent_us`     | 200       | until a triggered update                                           |
+| `copies`        | 2         | of a retraction                                                    |
+| `request_us`    | 2,000     | until a request is sent again, doubled each time                   |
+| `gc_us`         | 180,000   | until a feasibility distance is forgotten                          |
 
 What holds, and under what assumption
 =====================================

@@ -66,8 +66,19 @@ by its recipient or 0 as it was heard again), `REPORT_GAVE_UP = 2` (id, tries), 
 Constants and settings
 ======================
 An answer may go `ANSWER_MORE = 2` hops more than the question went. A call puts at most
-`OUTBOX = 12` actions; times are at most `CLOCK = 1073741823`. Settings: `hops`; `slot_us`,
-`cw_min`, `cw_max`, `faint_dbm`, `loud_dbm`; `retry_us`, `retries`; `forget_us`.
+`OUTBOX = 12` actions; times are at most `CLOCK = 1073741823`.
+
+| setting     | by itself  | is                                                                    |
+|-------------|------------|-----------------------------------------------------------------------|
+| `hops`      | 3          | that packets may be passed on                                         |
+| `slot_us`   | 320        | of the wait before a packet is passed on                              |
+| `cw_min`    | 3          | bits of the window of the faintest                                    |
+| `cw_max`    | 8          | of that of the loudest                                                |
+| `faint_dbm` | -95        | and fainter counts as faintest                                        |
+| `loud_dbm`  | -65        | and louder counts as loudest                                          |
+| `retry_us`  | 100,000    | until an own packet is sent again                                     |
+| `retries`   | 3          | that it is, at most                                                   |
+| `forget_us` | 10,000,000 | from forgetting one packet to the next                                |
 
 What holds, and under what assumption
 =====================================

@@ -48,7 +48,7 @@ FRAME = (
 )
 PARAMS = (
     ("hops", 0, 0, 7, "hops", "that packets may be passed on"),
-    ("slot_us", 0, 1, 10_000_000, "us", "of the wait before a packet is passed on"),
+    ("slot_us", 0, 1, 500_000, "us", "of the wait before a packet is passed on"),
     ("cw_min", 0, 0, 10, "bits", "the wait of the faintest is one of 2^cw_min slots"),
     ("cw_max", 0, 0, 10, "bits", "that of the loudest one of 2^cw_max"),
     ("faint_dbm", 0, -128, 127, "dBm", "as faint, or fainter, counts as faintest"),

@@ -146,7 +146,7 @@ def answer(node, params, now, frame, out):
     """Acknowledge a packet that is for us; it may go little further than the packet came."""
     node.id = (node.id + 1) & MASK16
     remember(node, node.number, node.id)
-    went = frame.start - frame.hops
+    went = max(frame.start - frame.hops, 0)
     copy = out.frame[send(out, 0, 0, 0)]
     copy.kind = ACK
     copy.origin = node.number
