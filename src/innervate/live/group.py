@@ -88,7 +88,6 @@ class GroupContact(Contact):
         self._key = chance.randbytes(KEY_BYTES)
         self._cipher = ChaCha20Poly1305(self._key)
         self._counter = 0
-        self._made_at = clock_us()
 
     def greeting(self, kind: int) -> bytes:
         """Our key, and how far we are with it, go with "are you there" and "I am"."""

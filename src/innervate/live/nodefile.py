@@ -17,7 +17,7 @@ from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.network import find, networks
 
-PYTHON, C, AUTO = "python", "c", "auto"  # what runs a node's protocol
+PYTHON, C = "python", "c"  # what runs a node's protocol
 HOST = re.compile(r"\w[\w-]*(\.\w[\w-]*)*\.?")
 HOST_MAX = 253  # characters
 

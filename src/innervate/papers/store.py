@@ -27,7 +27,6 @@ class Store:
         self.stamp = stamp
         self.any_stamp = any_stamp
         self.values: dict[str, Any] = {}
-        self.stamps: dict[str, str] = {}
         self._lock = threading.Lock()
         self._whole = True
         if path.exists():
@@ -44,7 +43,6 @@ class Store:
                 continue  # a line that was cut off when the last run was killed
             if isinstance(key, str) and (self.any_stamp or mark == self.stamp):
                 self.values[key] = value
-                self.stamps[key] = mark
 
     def put(self, key: str, value: Any) -> None:
         """Keep a result; safe to call from several threads.
@@ -66,7 +64,6 @@ class Store:
             self._whole = True
             # As it will be read back: lists for tuples, texts for keys.
             self.values[key] = json.loads(line)["value"]
-            self.stamps[key] = self.stamp
 
     def missing(self, keys: list[str]) -> list[str]:
         """Which of these have no result yet."""

@@ -193,16 +193,6 @@ def test_what_a_node_sends_to_itself_is_delivered_at_once_and_to_nobody_else():
     assert found.state.tolist() == [DELIVERED, UNASKED]
 
 
-def test_a_detour_is_of_the_copy_that_came_first():
-    first, second = given(11 * S, 4, 1, 500, looped=1), given(12 * S, 4, 1, 500)
-    for came, looped in (([first, second], True), ([second, given(13 * S, 4, 1, 500, looped=1)],
-                                                   False)):  # fmt: skip
-        found = messages.messages(
-            made(rows=[accepted(10 * S)], offers=[offer(10 * S)], delivered=came)
-        )
-        assert found.detoured.tolist() == [looped]
-
-
 def test_broadcasts_are_no_part_of_ratios_and_latencies():
     rows = [accepted(10 * S), accepted(11 * S, 1, 1, 501)]
     offers = [offer(10 * S), offer(11 * S, 1, ALL)]

@@ -5,6 +5,7 @@ from math import comb, e, exp, factorial, isclose, log
 import pytest
 
 from innervate.networks.radio.analysis import formulas as forms
+from tests.networks.radio import forms as infinite
 
 
 def test_reserved_round_of_five():
@@ -68,14 +69,14 @@ def test_pair_duration_the_long_way(linear):
 
 
 def test_aloha():
-    assert forms.aloha_throughput(1) == pytest.approx(1 / e)
+    assert infinite.aloha_throughput(1) == pytest.approx(1 / e)
     assert forms.finite_aloha_throughput(1000, 1 / 1000) == pytest.approx(1 / e, rel=1e-3)
     assert forms.finite_csma_throughput(1, 5, 1.0) == 5 / 6
 
 
 def test_nonpersistent_reaches_aloha_where_packets_are_slots():
     # a = 1: a collision is noticed only after it is over, at twice the cost of ALOHA's slot.
-    assert forms.nonpersistent_throughput(1, 1) == pytest.approx(exp(-1) / (2 - exp(-1)))
+    assert infinite.nonpersistent_throughput(1, 1) == pytest.approx(exp(-1) / (2 - exp(-1)))
 
 
 def test_p_persistent_of_probability_one():
@@ -85,8 +86,8 @@ def test_p_persistent_of_probability_one():
         return load * b * (1 + a - g) / ((1 + a) * (1 - g) + a * b)
 
     for load in (0.2, 1, 3):
-        assert forms.p_persistent_throughput(load, 100, 1.0) == pytest.approx(exact(load, 0.01))
-    capacity = max(forms.p_persistent_throughput(g / 50, 100, 1.0) for g in range(30, 70))
+        assert infinite.p_persistent_throughput(load, 100, 1.0) == pytest.approx(exact(load, 0.01))
+    capacity = max(infinite.p_persistent_throughput(g / 50, 100, 1.0) for g in range(30, 70))
     assert round(capacity, 3) == 0.531
 
 
@@ -94,7 +95,7 @@ def test_p_persistent_waits_are_those_of_the_paper():
     # P{t_n > k} = (1-p)^((k+1)n) exp(g (q (1 - q^k) / p - k)), summed here over all k.
     g, p = 0.3, 0.2
     joining = [exp(-g) * g**k / factorial(k) for k in range(60)]
-    waits, hits = forms._waits(joining, p, 59)
+    waits, hits = infinite._waits(joining, p, 59)
     q = 1 - p
     for n in (1, 2, 5):
         tail = [q ** ((k + 1) * n) * exp(g * (q * (1 - q**k) / p - k)) for k in range(200)]
@@ -136,8 +137,8 @@ def test_tree_by_hand():
 
 
 def test_tree_needs_2_885_slots_per_station():
-    assert round(forms.TREE_SLOTS_PER_STATION, 3) == 2.885
-    assert isclose(forms.TREE_SLOTS_PER_STATION, 2 / log(2))
+    assert round(infinite.TREE_SLOTS_PER_STATION, 3) == 2.885
+    assert isclose(infinite.TREE_SLOTS_PER_STATION, 2 / log(2))
     slope = (forms.tree_slots(200) - forms.tree_slots(100)) / 100
-    assert slope == pytest.approx(forms.TREE_SLOTS_PER_STATION, abs=2e-3)
+    assert slope == pytest.approx(infinite.TREE_SLOTS_PER_STATION, abs=2e-3)
     assert forms.tree_throughput(1) == 1

@@ -14,6 +14,7 @@ from innervate.networks.radio.sim.simulate import simulate
 from innervate.networks.radio.slotted.model import slotted
 from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.tables import uniform
+from tests.networks.radio import forms as infinite
 from tests.networks.radio.baseline_runs import (
     SLOT_US,
     TAU_US,
@@ -144,7 +145,7 @@ def test_slotted_aloha_in_saturation(load):
     n = 60
     found_load, found = aloha(saturate("slotted-aloha", n, 5, 6000, p=load / n))
     assert close(found_load, load)
-    assert close(found, forms.aloha_throughput(found_load))
+    assert close(found, infinite.aloha_throughput(found_load))
 
 
 @pytest.mark.parametrize("carried", [0.1, 0.2, 0.3])
@@ -160,7 +161,7 @@ def test_slotted_aloha_with_poisson_offers(carried):
     result = simulate(plan, checks=False)
     load, found = aloha(result)
     assert close(found, carried, 0.03)
-    assert close(found, forms.aloha_throughput(load))
+    assert close(found, infinite.aloha_throughput(load))
 
 
 @pytest.mark.parametrize(("mac", "packet_slots"), [
@@ -175,7 +176,7 @@ def test_csma(mac, packet_slots):
         p = result.plan.params["p_q15"] / 32768
         assert close(found, forms.finite_csma_throughput(n, packet_slots, p))
         # Who tries by chance in each slot makes Poisson traffic of load a G = n p.
-        exact = forms.nonpersistent_throughput(n * p * packet_slots, packet_slots)
+        exact = infinite.nonpersistent_throughput(n * p * packet_slots, packet_slots)
         assert close(found, exact)
 
 
@@ -185,7 +186,7 @@ def test_splitting(n):
     steps = result.ended_us / result.plan.params["period_us"] / result.counts["completed"]
     assert close(steps, forms.tree_slots(n) / n)
     if n == 40:
-        assert close(steps, forms.TREE_SLOTS_PER_STATION)
+        assert close(steps, infinite.TREE_SLOTS_PER_STATION)
 
 
 @pytest.mark.parametrize("packet_slots", [5, 25])

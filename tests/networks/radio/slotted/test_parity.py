@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from innervate.kernel import compilation
 from innervate.networks.radio.slotted import draws as draws
-from innervate.networks.radio.slotted.drive import BIANCHI_BASIC, BY_CHANCE, MACS, loop
+from innervate.networks.radio.slotted.drive import BY_CHANCE, MACS, loop
 from innervate.networks.radio.slotted.model import slotted
+from tests.networks.radio.forms import BIANCHI_BASIC
 
 OPTIONS = {
     "csma-cd-r": [{}, {"reading": "B"}, {"window": 2}, {"turnaround_slots": 2000 / 208}],

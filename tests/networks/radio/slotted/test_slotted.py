@@ -6,7 +6,7 @@ import pytest
 from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.slotted import chance
 from innervate.networks.radio.slotted import draws as draws
-from innervate.networks.radio.slotted.drive import BIANCHI_BASIC, BIANCHI_RTS, MACS, dcf_here
+from innervate.networks.radio.slotted.drive import MACS, dcf_here
 from innervate.networks.radio.slotted.model import jain, slotted
 from innervate.networks.radio.slotted.recorder import (
     COLLISIONS,
@@ -14,6 +14,8 @@ from innervate.networks.radio.slotted.recorder import (
     POISSON,
     new_recorder,
 )
+from tests.networks.radio import forms as infinite
+from tests.networks.radio.forms import BIANCHI_BASIC, BIANCHI_RTS
 
 WITHIN = 0.02
 
@@ -59,7 +61,7 @@ def test_reservation_with_a_shorter_window_or_a_turnaround():
 @pytest.mark.parametrize("load", [0.5, 1.0, 2.0])
 def test_slotted_aloha(load):
     found = slotted("slotted-aloha", 0, 5, "poisson", packets=40_000, load=load).throughput
-    assert found == pytest.approx(forms.aloha_throughput(load), rel=WITHIN)
+    assert found == pytest.approx(infinite.aloha_throughput(load), rel=WITHIN)
 
 
 @pytest.mark.parametrize("stations", [2, 10, 50])
@@ -78,11 +80,11 @@ def test_finite_populations_that_send_by_chance(stations):
 def test_csma_of_infinite_populations(packet_slots):
     for load in (0.5, 2, 8):
         run = slotted("nonpersistent", 0, packet_slots, "poisson", packets=30_000, load=load)
-        exact = forms.nonpersistent_throughput(load, packet_slots)
+        exact = infinite.nonpersistent_throughput(load, packet_slots)
         assert run.throughput == pytest.approx(exact, rel=WITHIN)
     for load, p in ((0.5, 0.1), (2, 0.1), (1, 1.0), (5, 0.03)):
         run = slotted("p-persistent", 0, packet_slots, "poisson", packets=30_000, load=load, p=p)
-        exact = forms.p_persistent_throughput(load, packet_slots, p)
+        exact = infinite.p_persistent_throughput(load, packet_slots, p)
         assert run.throughput == pytest.approx(exact, rel=WITHIN)
 
 

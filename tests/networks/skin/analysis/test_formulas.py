@@ -3,26 +3,14 @@ import pytest
 from innervate.networks.skin.analysis import formulas
 
 
-def test_eq_3():
-    assert formulas.balancing_hz(250, 10, 2) == 250 / 400
-
-
 def test_eq_4_and_5():
     assert formulas.convergence_s(250, 3) == pytest.approx(0.040)
     assert formulas.convergence_error_s(250) == pytest.approx(0.012)
     assert formulas.convergence_s(20, 8) == pytest.approx(0.750)  # E30
 
 
-def test_eq_6_and_7_agree_with_4_on_setup_1():
-    assert formulas.convergence_by_distance_s(13, 5) == formulas.convergence_s(250, 5)
+def test_eq_7_agrees_with_4_on_setup_1():
     assert formulas.convergence_by_depth_s(7, 5, 100) == formulas.convergence_s(100, 5)
-    assert formulas.convergence_by_distance_error_s() == pytest.approx(0.008)
-
-
-def test_detection_and_lines():
-    assert formulas.detection_s(250, 5) == pytest.approx((0.016, 0.024))
-    assert formulas.line_convergence_s(7, 5, 250) == pytest.approx(11 / 250)
-    assert formulas.line_convergence_s(7, 5, 250, lock_step=True) == pytest.approx(17 / 250)
 
 
 @pytest.mark.parametrize(("hz", "share"), [(10, 0.0006), (100, 0.006), (250, 0.015)])

@@ -3,7 +3,22 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.skin.analysis.touch import felt_image, read_sensors, received_image
+from innervate.networks.skin.analysis.touch import Image, received_image
+from innervate.networks.skin.sim.touch import read_sensors
+
+
+def felt_image(run, time_s):
+    """What the cells felt at a time, lost or not; zero without a touch."""
+    result = getattr(run, "result", run)
+    cells, world = result.plan.graph.cells, result.world
+    sample = Of(force=[0, 0, 0], accel=[0, 0, 0])
+    carrier = Of(**{name: list(t) for name, t in world.carrier._asdict().items()})
+    sensors = Of(sample=[sample], carrier=carrier)
+    force, proximity = np.zeros(cells, np.int64), np.zeros(cells, np.int64)
+    for cell in range(cells):
+        read_sensors(sensors, cell, round(1e6 * time_s))
+        force[cell], proximity[cell] = sum(sample.force) // 3, sample.proximity
+    return Image(force, proximity, np.zeros(cells, np.int64))
 
 
 @pytest.fixture(scope="module")

@@ -51,7 +51,6 @@ class Messages(NamedTuple):
         delivered_us: when it first came to its recipient's user, NEVER if it did not.
         receiver: who that was.
         hops: transmissions on the way of the copy that came first.
-        detoured: that copy met a node twice on its way.
         state: DELIVERED, IN_FLIGHT (nobody gave it up when the run ended), LOST, REFUSED (the
             node had no room or nobody to send it to), UNASKED (the node was switched off).
         broadcast: to all.
@@ -67,7 +66,6 @@ class Messages(NamedTuple):
     delivered_us: Numbers
     receiver: Numbers
     hops: Numbers
-    detoured: Flags
     state: Numbers
     broadcast: Flags
     partial: Flags
@@ -113,7 +111,6 @@ def messages(result: Any) -> Messages:
         delivered_us=of_first("time"),
         receiver=of_first("node"),
         hops=of_first("path_len"),
-        detoured=of_first("looped") == 1,
         state=state,
         broadcast=broadcast,
         partial=partial,

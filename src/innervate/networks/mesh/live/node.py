@@ -41,7 +41,6 @@ from innervate.networks.mesh.protocol.constants import (
 if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
 
-HANDLES = 65_536
 NUMBERS = 4111  # of packets that are kept for a while; 16 restarts unheard lead round to no old one
 
 

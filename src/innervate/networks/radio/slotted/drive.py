@@ -59,11 +59,6 @@ class Dcf:
         )
 
 
-# Bianchi 2000: T_s and T_c of his Table II (1 Mbit/s, 8184 bits of payload, FHSS).
-BIANCHI_BASIC = Dcf(50, 8184, 8982, 8713, window=32, stages=5)
-BIANCHI_RTS = Dcf(50, 8184, 9568, 417, window=32, stages=5)
-
-
 def dcf_here(packet_slots: int) -> Dcf:
     """DCF on the paper's channel: behind a packet an idle slot, a one-byte answer, an idle slot.
 

@@ -6,18 +6,8 @@ Times in s, frequencies in Hz, `k` in missed beacons, `h` in cells between the i
 
 from __future__ import annotations
 
-from math import ceil
-
 FRAME_BITS = 240  # packet, framing and gap [skin 2]
 LINK_BIT_S = 4_000_000
-
-
-def balancing_hz(beacon_hz: float, depth_max: int, interfaces: int) -> float:
-    """Eq. 3: greatest balancing frequency at which only one cell balances at a time.
-
-    A worst case; one attempt every 8 * depth_max periods settles as well (E14).
-    """
-    return beacon_hz / (2 * depth_max**2 * interfaces)
 
 
 def convergence_s(beacon_hz: float, k: float) -> float:
@@ -30,35 +20,12 @@ def convergence_error_s(beacon_hz: float) -> float:
     return 3 / beacon_hz
 
 
-def convergence_by_distance_s(h: int, k: float, beacon_hz: float = 250.0) -> float:
-    """Eq. 6, C_2: the same, by the distance between the interface ports."""
-    return (ceil(h / 2) + k) / beacon_hz
-
-
-def convergence_by_distance_error_s(beacon_hz: float = 250.0) -> float:
-    """Half the width of Eq. 6's band."""
-    return 2 / beacon_hz
-
-
 def convergence_by_depth_s(depth: int, k: float, beacon_hz: float) -> float:
     """Eq. 7: convergence by the depth of the subnetwork that was cut off.
 
     Printed as a bound, but a mean with the error bar of Eq. 5 (E21).
     """
     return (depth + k) / beacon_hz
-
-
-def detection_s(beacon_hz: float, k: int) -> tuple[float, float]:
-    """Least and greatest time until the end of a cut link is found broken, free running (E21)."""
-    return (k - 1) / beacon_hz, (k + 1) / beacon_hz
-
-
-def line_convergence_s(depth: int, k: int, beacon_hz: float, lock_step: bool = False) -> float:
-    """Mean convergence of a line cut off `depth` cells deep, latency neglected (E20, E21).
-
-    Free running: detection (mean k) and d - 1 periods. Lock-step: out AND back, k + 2 (d - 1).
-    """
-    return (k + (2 if lock_step else 1) * (depth - 1)) / beacon_hz
 
 
 def beacon_share(beacon_hz: float) -> float:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from innervate.networks.skin.analysis.rows import NEVER, Numbers
-from innervate.networks.skin.sim.touch import read_sensors
 
 WINDOW_S = 0.05
 
@@ -57,17 +55,3 @@ def received_image(run: Any, time_s: float, window_s: float = WINDOW_S) -> Image
     proximity[part["cell"]] = part["proximity"]
     age[part["cell"]] = now - part["time"]
     return Image(force, proximity, age)
-
-
-def felt_image(run: Any, time_s: float) -> Image:
-    """What the cells felt at a time, lost or not; zero without a touch."""
-    result = getattr(run, "result", run)
-    cells, world = result.plan.graph.cells, result.world
-    sample = SimpleNamespace(force=[0, 0, 0], accel=[0, 0, 0])
-    carrier = SimpleNamespace(**{name: list(t) for name, t in world.carrier._asdict().items()})
-    sensors = SimpleNamespace(sample=[sample], carrier=carrier)
-    force, proximity = np.zeros(cells, np.int64), np.zeros(cells, np.int64)
-    for cell in range(cells):
-        read_sensors(sensors, cell, round(1e6 * time_s))  # type: ignore[no-untyped-call]
-        force[cell], proximity[cell] = sum(sample.force) // 3, sample.proximity
-    return Image(force, proximity, np.zeros(cells, np.int64))

@@ -17,7 +17,6 @@ RULES = system.RULES
 UPDATES = system.UPDATES
 CELLS_MAX = 4
 PLAYED = ("complete", "memory", "limit")  # ends of a search that a fair schedule goes on from
-PROPERTIES = "no closed loop, feasible distances in order, no value out of range"
 
 
 @dataclass(slots=True)

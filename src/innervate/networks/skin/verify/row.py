@@ -18,7 +18,6 @@ from innervate.networks.skin.verify.world import (
     FD_SQ,
     FLAGS,
     FRAME_BYTES,
-    HEAD_BYTES,
     HOLD,
     KEEP,
     LINK_AT,
@@ -30,7 +29,6 @@ from innervate.networks.skin.verify.world import (
     PC_LISTEN,
     PC_PERIODS,
     PC_SQ,
-    PORT_BYTES,
     RESTART,
     SAYS,
     SENT_DIST,
@@ -302,8 +300,3 @@ def is_same(row, frame, port):
         and row[frame + SQ] == row[port + SQ]
         and row[frame + SAYS] == (row[port + SAYS] & 3)
     )
-
-
-def cell_bytes(ports):
-    """Room a cell with so many cables takes in a row."""
-    return HEAD_BYTES + PORT_BYTES * ports
