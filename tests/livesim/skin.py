@@ -137,7 +137,7 @@ class Skin(Stage):
         if life is None or life.node.engine is None:
             return -1
         value = sum(map(len, self.commands.values()))
-        number = (life.node.stack.pc.own[0].command + 1) & 65_535
+        number = (life.node.stack.node.own[0].command + 1) & 65_535
         self.commands.setdefault(number, set()).add((7, value))
         sent = inside(life, life.node.send_command, 7, value)
         assert sent.number == number

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from msgspec import Meta
 
@@ -17,18 +17,15 @@ from innervate.dialect import plain
 from innervate.dialect.rng import seeded
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
-from innervate.live.links import Link, Path
+from innervate.live.links import Path
 from innervate.live.machine import machine
-from innervate.live.node import LiveNode
+from innervate.live.node import Answerer, LiveNode
 from innervate.live.nodefile import Loaded, NodeFile
 from innervate.live.parameters import check_parameters
-from innervate.live.state import State
+from innervate.live.stack import CabledStack, filled
 from innervate.live.streams import Stream
 from innervate.network import Network, networks
 from innervate.wire.frames import REASONS, Codec
-
-if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
-    from innervate.live.keys import Sealer
 
 FOR_EVER_US = 1 << 62  # protocols that do not say when a path is broken never call one so
 OUTBOX = 16
@@ -71,7 +68,7 @@ def coder_of(network: Network, number: int, params: Any) -> Any:
     return OneFrame(Codec(frames.LAYOUTS, frames.KIND_BITS), REASONS)
 
 
-class DeclaredStack:
+class DeclaredStack(CabledStack):
     """One node of a network, as an engine runs it.
 
     Args:
@@ -86,50 +83,21 @@ class DeclaredStack:
     def __init__(
         self, network: Network, number: int, params: dict[str, int], seed: int, ports: list[int]
     ) -> None:
-        self.network = network
-        self.number = number
-        fields = network.fields
-        self.do: Any = network.protocol
-        self.timers: int = self.do.TIMERS
-        self.params = plain.make("Params", fields.PARAMS)()
-        for name, value in params.items():
-            setattr(self.params, name, value)
-        self.coder = coder_of(network, number, self.params)
-        self._rest: Iterator[int] = iter(())
-        self.reasons: tuple[str, ...] = self.coder.reasons
-        self.silent_us = getattr(self.params, "silent_us", FOR_EVER_US)
-        self.node = plain.make("Node", fields.STATE)()
+        protocol, fields = network.protocol, network.fields
+        node = plain.make("Node", fields.STATE)()
         for name, value in zip(DRIVERS, (number, seeded(seed), -1), strict=True):
-            if hasattr(self.node, name):
-                setattr(self.node, name, value)
-        frame = plain.make("Frame", fields.FRAME)
-        self.out = plain.Outbox(frame, getattr(self.do, "OUTBOX", OUTBOX))
-        self.inbox = frame()
+            if hasattr(node, name):
+                setattr(node, name, value)
+        given = filled(plain.make("Params", fields.PARAMS)(), params)
+        frame, room = plain.make("Frame", fields.FRAME), getattr(protocol, "OUTBOX", OUTBOX)
+        super().__init__(protocol, node, given, frame, room, ports)
+        self.network, self.number = network, number
+        self.timers: int = protocol.TIMERS
+        self.coder = coder_of(network, number, self.params)
+        self.reasons: tuple[str, ...] = self.coder.reasons
+        self._rest: Iterator[int] = iter(())
+        self.silent_us = getattr(self.params, "silent_us", FOR_EVER_US)
         self.item = frame()
-        self.port_of_path = ports
-        self.path_of_port = {port: path for path, port in enumerate(ports)}
-
-    def on_start(self, now: int, cause: int) -> None:
-        """Switch the node on at `now`, us; `cause` 0 is the first time."""
-        self.do.on_start(self.node, self.params, now, cause, self.out)
-
-    def on_frame(self, now: int, port: int) -> None:
-        """The frame in the inbox was received on a path."""
-        own = self.port_of_path[port]
-        self.do.on_frame(self.node, self.params, now, own, self.inbox, self.out)
-
-    def on_timer(self, now: int, timer: int) -> None:
-        """A timer of the node's protocol fires at `now`, us."""
-        self.do.on_timer(self.node, self.params, now, timer, self.out)
-
-    def on_input(self, now: int, kind: int, item: Any) -> None:
-        """The node's own user hands something down."""
-        self.do.on_input(self.node, self.params, now, kind, item, self.out)
-
-    def encode(self, frame: Any) -> bytes:
-        """The bytes of a frame."""
-        data: bytes = self.coder.encode(frame)
-        return data
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
@@ -139,15 +107,6 @@ class DeclaredStack:
     def more(self) -> bool:
         """Read the next frame that was in the same bytes into the inbox; False = there is none."""
         return next(self._rest, None) == 0
-
-    def objection(self, sender: int | None) -> str:
-        """Frames are taken as they are."""
-        return ""
-
-    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
-        """The path of a port; a free one has none."""
-        path = self.path_of_port.get(port)
-        return [] if path is None else [path]
 
     def status(self, now: int) -> dict[str, Any]:
         """All declared fields of the node's state."""
@@ -160,28 +119,13 @@ class DeclaredStack:
 
 
 class DeclaredNode(LiveNode):
-    """A node: tells what its protocol delivers, hands down what it is asked to.
-
-    Args:
-        name: as shown to people.
-        stack: the node.
-        links: its cables.
-        sealer: seals and opens frames.
-        state: what is kept over a restart.
-    """
+    """A node: tells what its protocol delivers, hands down what it is asked to."""
 
     stack: DeclaredStack
 
-    def __init__(
-        self,
-        name: str,
-        stack: DeclaredStack,
-        links: list[Link],
-        sealer: Sealer | None = None,
-        state: State | None = None,
-    ) -> None:
-        super().__init__(name, stack, links, sealer, state)
-        self.requests["input"] = self._asked_for_input
+    def own_requests(self) -> dict[str, Answerer]:
+        """Its user may hand something down."""
+        return {"input": self._asked_for_input}
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
         if attempt <= 0:

@@ -75,12 +75,16 @@ class LiveNode:
         self.arrivals: Arrivals[Any] = Arrivals()
         self.taps: list[Tap] = []
         self.callers: Counter[str] = Counter()
-        self.requests: dict[str, Answerer] = {}
+        self.requests = self.own_requests()
         self.not_in_c = "not asked for"
         self.engine_of: Callable[..., Engine] = Engine
         self.engine: Engine | None = None
         self.ended: Callable[[str], None] = lambda why: machine().say(f"{name}: {why}")
         self.started_at = clock_us()
+
+    def own_requests(self) -> dict[str, Answerer]:
+        """What nodes of this kind may be asked, and who answers."""
+        return {}
 
     async def start(self) -> None:
         """Open the links and switch the protocol on; where that fails all is closed again.

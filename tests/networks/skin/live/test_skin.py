@@ -123,7 +123,7 @@ def test_a_command_of_the_pc_comes_to_its_cell_once_or_to_all():
                 heard[number] = []
                 cell.receive_commands(heard[number].append)
             await until(skin.fresh())
-            await until(lambda: sum(skin.pc.stack.pc.size) == 6)
+            await until(lambda: sum(skin.pc.stack.node.size) == 6)
             first = skin.pc.send_command(7, 500, cell=4)
             await until(lambda: heard[4])
             second = skin.pc.send_command(8)

@@ -80,8 +80,8 @@ def pc(ports=2):
 @pytest.mark.parametrize(("cell", "to"), [(None, EVERYBODY), (0, 0), (EVERYBODY - 1,) * 2])
 def test_a_command_goes_to_a_cell_or_to_all_by_the_ports_that_have_some(cell, to):
     one = pc(3)
-    one.stack.pc.size[:] = [2, 0, 1]
-    one.stack.pc.own[0].command = 41
+    one.stack.node.size[:] = [2, 0, 1]
+    one.stack.node.own[0].command = 41
     assert one.send_command(255, 65_535, cell) == (41, 2)
     ((_, item),) = one.engine.told
     assert (item.dist, item.proximity, item.cell) == (255, 65_535, to)

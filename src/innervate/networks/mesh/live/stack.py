@@ -8,6 +8,7 @@ from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.rng import seeded
+from innervate.live.stack import filled
 from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
@@ -78,9 +79,7 @@ class MeshStack:
     def __init__(
         self, number: int, rank: int, params: dict[str, Any], seed: int, robot: bool = False
     ) -> None:
-        self.params = Params()
-        for name, value in params.items():
-            setattr(self.params, name, value)
+        self.params = filled(Params(), params)
         width = self.params.width
         # Every node sends in every round: three without a word are no accident.
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us

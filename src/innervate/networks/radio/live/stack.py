@@ -6,6 +6,7 @@ from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.rng import seeded
+from innervate.live.stack import filled
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.protocol import fields as fields
 from innervate.networks.radio.protocol import practical as radio_practical
@@ -33,9 +34,7 @@ class StationStack:
     reasons: tuple[str, ...] = wire.REASONS
 
     def __init__(self, number: int, params: dict[str, int], seed: int) -> None:
-        self.params = Params()
-        for name, value in params.items():
-            setattr(self.params, name, value)
+        self.params = filled(Params(), params)
         self.silent_us = 1 << 62  # a channel may be silent for as long as it likes
         self.station = Station()
         self.station.number, self.station.rng, self.station.choice = number, seeded(seed), -1

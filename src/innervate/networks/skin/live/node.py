@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from innervate.live.links import Link
 from innervate.live.machine import machine
-from innervate.live.node import LiveNode
+from innervate.live.node import Answerer, LiveNode
 from innervate.live.state import State
 from innervate.live.streams import Stream
 from innervate.networks.skin.live.items import Command, Frame, Sent, Touch, put
@@ -118,26 +118,14 @@ class CellNode(LiveNode):
 class SinkNode(LiveNode):
     """The PC end of a skin: gives tactile frames, sends commands down.
 
-    Args:
-        name: as shown to people.
-        stack: the PC.
-        links: its interface ports, in order.
-        sealer: seals and opens frames.
-        state: what is kept over a restart.
+    Its links are the interface ports, in order.
     """
 
     stack: SinkStack
 
-    def __init__(
-        self,
-        name: str,
-        stack: SinkStack,
-        links: list[Link],
-        sealer: Sealer | None = None,
-        state: State | None = None,
-    ) -> None:
-        super().__init__(name, stack, links, sealer, state)
-        self.requests["command"] = self._asked_for_command
+    def own_requests(self) -> dict[str, Answerer]:
+        """It may be asked to send a command."""
+        return {"command": self._asked_for_command}
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Samples of all cells, for those who follow them by the status socket."""
@@ -165,7 +153,7 @@ class SinkNode(LiveNode):
             ("dist", "code", code), ("proximity", "value", value), ("cell", "cell", whom),
         ):  # fmt: skip
             put(item, name, (given,), called)
-        pc = self.stack.pc
+        pc = self.stack.node
         engine.input(GIVE, item)
         self.outcomes["commands sent"] += 1
         return Sent(pc.own[0].command, sum(size > 0 for size in pc.size))

@@ -6,6 +6,7 @@ from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.rng import seeded
+from innervate.live.stack import CabledStack, filled
 from innervate.networks.skin import frames as wire
 from innervate.networks.skin.live.items import Frame
 from innervate.networks.skin.protocol import cell as skin
@@ -18,44 +19,26 @@ OUTBOX = 16
 Params = plain.make("Params", fields.PARAMS)
 
 
-class SkinStack:
+class SkinStack(CabledStack):
     """What cells and the PC have in common.
 
     Args:
+        do: the module with its handlers.
+        node: its record.
         params: the protocol's parameters by name (`skin_fields.PARAMS`).
         room: actions that an outbox must hold.
+        ports: the port of each path, in order of the paths.
     """
 
     timers = TIMERS
     reasons: tuple[str, ...] = wire.REASONS
+    coder: Any = wire
 
-    def __init__(self, params: dict[str, int], room: int) -> None:
-        self.params = Params()
-        for name, value in params.items():
-            setattr(self.params, name, value)
+    def __init__(
+        self, do: Any, node: Any, params: dict[str, int], room: int, ports: list[int]
+    ) -> None:
+        super().__init__(do, node, filled(Params(), params), Frame, room, ports)
         self.silent_us = self.params.k * self.params.beacon_us
-        self.out = plain.Outbox(Frame, room)
-        self.inbox = Frame()
-        self.coder: Any = wire
-        self.port = 0  # on which the frame in the inbox came
-
-    def encode(self, frame: Any) -> bytes:
-        """The bytes of a frame."""
-        data: bytes = self.coder.encode(frame)
-        return data
-
-    def decode(self, data: bytes) -> int:
-        """Read bytes into the inbox; 0, or why not."""
-        reason: int = self.coder.decode(data, self.inbox)
-        return reason
-
-    def objection(self, sender: int | None) -> str:
-        """A beacon names nobody: it speaks for the far end of its cable, whoever that is."""
-        return ""
-
-    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
-        """A port is a path."""
-        return [port]
 
 
 class CellStack(SkinStack):
@@ -69,34 +52,9 @@ class CellStack(SkinStack):
     """
 
     def __init__(self, number: int, params: dict[str, int], seed: int, ports: list[int]) -> None:
-        super().__init__(params, OUTBOX)
-        self.do: Any = skin
-        self.node = plain.make("Cell", fields.CELL)()
-        self.node.number, self.node.rng, self.node.choice = number, seeded(seed), -1
-        self.port_of_path = ports
-        self.path_of_port = {port: path for path, port in enumerate(ports)}
-        self.moves = 0
-
-    def on_start(self, now: int, cause: int) -> None:
-        """Switch the cell on at `now`, us; `cause` 0 is the first time."""
-        self.do.on_start(self.node, self.params, now, cause, self.out)
-
-    def on_frame(self, now: int, port: int) -> None:
-        """The frame in the inbox was received on a path."""
-        self.do.on_frame(self.node, self.params, now, self.port_of_path[port], self.inbox, self.out)
-
-    def on_timer(self, now: int, timer: int) -> None:
-        """A timer of the cell's protocol fires at `now`, us."""
-        self.do.on_timer(self.node, self.params, now, timer, self.out)
-
-    def on_input(self, now: int, kind: int, item: Any) -> None:
-        """What the cell's sensors say."""
-        self.do.on_input(self.node, self.params, now, kind, item, self.out)
-
-    def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
-        """The path of a port; a free socket has none."""
-        path = self.path_of_port.get(port)
-        return [] if path is None else [path]
+        node = plain.make("Cell", fields.CELL)()
+        node.number, node.rng, node.choice = number, seeded(seed), -1
+        super().__init__(skin, node, params, OUTBOX, ports)
 
     def status(self, now: int) -> dict[str, Any]:
         """The way to the PC, and which ports are broken."""
@@ -130,33 +88,25 @@ class SinkStack(SkinStack):
     Args:
         params: see SkinStack.
         ports: how many interface ports it has.
+
+    Attributes:
+        port: on which the frame in the inbox came.
     """
 
-    def __init__(self, params: dict[str, int], ports: int) -> None:
-        super().__init__(params, ports + OUTBOX)
-        self.do: Any = skin_sink
-        self.pc = plain.make("Pc", (("own", 1, 0, 0, "", ""),), fields.SINK_PORT, ports=ports)()
-        self.pc.own = [plain.make("Sink", fields.SINK)()]
-        self.pc.own[0].ports = ports
+    port = 0
 
-    def on_start(self, now: int, cause: int) -> None:
-        """Switch the PC on at `now`, us; `cause` 0 is the first time."""
-        self.do.on_start(self.pc, self.params, now, cause, self.out)
+    def __init__(self, params: dict[str, int], ports: int) -> None:
+        pc = plain.make("Pc", (("own", 1, 0, 0, "", ""),), fields.SINK_PORT, ports=ports)()
+        pc.own = [plain.make("Sink", fields.SINK)()]
+        pc.own[0].ports = ports
+        super().__init__(skin_sink, pc, params, ports + OUTBOX, list(range(ports)))
 
     def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received on an interface port."""
         self.port = port
-        self.do.on_frame(self.pc, self.params, now, port, self.inbox, self.out)
-
-    def on_timer(self, now: int, timer: int) -> None:
-        """A timer of the PC's protocol fires at `now`, us."""
-        self.do.on_timer(self.pc, self.params, now, timer, self.out)
-
-    def on_input(self, now: int, kind: int, item: Any) -> None:
-        """A command, to be sent down."""
-        self.do.on_input(self.pc, self.params, now, kind, item, self.out)
+        super().on_frame(now, port)
 
     def status(self, now: int) -> dict[str, Any]:
         """How many cells each interface port serves."""
-        own = self.pc.own[0]
-        return {"kind": "skin", "role": "sink", "sq": own.sq, "cells": list(self.pc.size)}
+        own = self.node.own[0]
+        return {"kind": "skin", "role": "sink", "sq": own.sq, "cells": list(self.node.size)}
