@@ -6,13 +6,14 @@ import json
 import os
 import platform
 import shutil
-from importlib import metadata, util
+from importlib import util
 from pathlib import Path
 from typing import Any
 
 import innervate
 from innervate.cli import errors
 from innervate.network import networks
+from innervate.trace.provenance import version_of
 
 # What each extra is for; which modules it brings is in errors.EXTRA_OF.
 EXTRAS = {
@@ -58,7 +59,7 @@ def look() -> dict[str, Any]:
         "python": platform.python_version(),
         "machine": f"{platform.system()} {platform.machine()}",
         "cores": os.cpu_count(),
-        "numba": _version("numba"),
+        "numba": version_of("numba"),
         "extras": extras,
         "programs": {name: shutil.which(name) for name in PROGRAMS},
         "networks": sorted(networks()),
@@ -69,13 +70,6 @@ def look() -> dict[str, Any]:
 def brought_by(extra: str) -> list[str]:
     """The modules that an extra is installed for."""
     return [module for module, of in errors.EXTRA_OF.items() if of == extra]
-
-
-def _version(package: str) -> str | None:
-    try:
-        return metadata.version(package)
-    except metadata.PackageNotFoundError:
-        return None
 
 
 def _cache() -> dict[str, Any]:

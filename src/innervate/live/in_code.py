@@ -9,7 +9,6 @@ import threading
 from collections.abc import Coroutine
 from html import escape
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Literal, Self, TypeVar
 
 from innervate import scenario as scenarios
@@ -60,12 +59,7 @@ class Nodes:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.down()
 
     def status(self) -> dict[str, dict[str, Any]]:

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from html import escape
 from importlib import import_module
-from types import TracebackType
 from typing import Any, Self
 
 EVERY_S = 0.1
@@ -32,12 +31,7 @@ class Bar:
             self._handle = room.display(_html(self._what, 0, 0), display_id=True)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if self._handle is not None:
             self._handle.update({"text/plain": "", "text/html": ""}, raw=True)
 

@@ -102,7 +102,7 @@ def simulate(
     network = networks()[plan.kind]
     if network.folder is None:
         running = simulation(plan, plain=plain, **kept)
-        return _result(plan, running, running.finish(progress, tap))
+        return _result(running, running.finish(progress, tap))
     if not plain:
         if network.in_plain:
             raise folders.NetworkError(network.in_plain)
@@ -115,20 +115,15 @@ def simulate(
     except InvariantBroken as error:
         handled = int(get(running.world.run, 0, "handled"))
         blaming.again(network, plan, handled, error, checks=checks)
-    return _result(plan, running, ended)
+    return _result(running, ended)
 
 
-def _result(plan: Any, running: Simulation, ended: Ended) -> Result:
+def _result(running: Simulation, ended: Ended) -> Result:
     return Result(
-        plan=plan,
-        world=running.world,
         rows=ended.rows,
         counts=running.counts(),
-        ended_us=ended.ended_us,
-        wall_s=ended.wall_s,
-        fingerprint=running.fingerprint,
         handled=int(get(running.world.run, 0, "handled")),
-        interrupted=ended.interrupted,
+        **running.left(ended),
     )
 
 

@@ -119,6 +119,14 @@ class Simulation(ABC):
         ended_us = self.clock_us() if early else duration_us
         return Ended(ended_us, wall_s() - started, status != DONE, self.take())
 
+    def left(self, ended: Ended) -> dict[str, Any]:
+        """What every result has, by name."""
+        return {
+            "plan": self.plan, "world": self.world, "ended_us": ended.ended_us,
+            "wall_s": ended.wall_s, "fingerprint": self.fingerprint,
+            "interrupted": ended.interrupted,
+        }  # fmt: skip
+
     def pieces(self, table: str, until_us: int) -> Iterator[Any]:
         """The rows of one table up to a time, in pieces, as they come."""
         status = -1

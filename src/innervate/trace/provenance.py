@@ -44,7 +44,7 @@ def provenance(
         "wall_s": wall_s,
         "python": platform.python_version(),
         "implementation": platform.python_implementation(),
-        "packages": {name: _version(name) for name in PACKAGES},
+        "packages": {name: version_of(name) for name in PACKAGES},
         "system": platform.system(),
         "machine": platform.machine(),
     }
@@ -66,7 +66,8 @@ def checkout(root: Path | None = None) -> tuple[str | None, bool | None]:
     return commit, dirty == "dirty"
 
 
-def _version(package: str) -> str | None:
+def version_of(package: str) -> str | None:
+    """The version of an installed package; None = it is not installed."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

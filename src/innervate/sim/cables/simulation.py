@@ -66,16 +66,11 @@ class Cables(Simulation):
         """What it leaves; `kept`: deliveries were."""
         world = self.world
         return Result(
-            plan=self.plan,
-            world=world,
             counters=[int(count) for count in world.counters],
-            ended_us=ended.ended_us,
-            wall_s=ended.wall_s,
-            fingerprint=self.fingerprint,
             handled=int(get(world.run, 0, "handled")),
             arrived=sum(int(world.counters[ARRIVED + block]) for block in BLOCKS),
-            interrupted=ended.interrupted,
             has_deliveries=kept,
+            **self.left(ended),
             **ended.rows,
         )
 

@@ -93,13 +93,8 @@ def simulate(
     running = simulation(plan, plain=plain, tap=tap is not None, **kept)
     ended = running.finish(progress, tap)
     return RadioResult(
-        plan=plan,
-        world=running.world,
         counts={name: int(get(running.world.run, 0, name)) for name in COUNTS},
-        ended_us=ended.ended_us,
-        wall_s=ended.wall_s,
-        fingerprint=running.fingerprint,
-        interrupted=ended.interrupted,
+        **running.left(ended),
         **ended.rows,
     )
 
