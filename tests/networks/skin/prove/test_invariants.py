@@ -193,8 +193,8 @@ MOVES = [  # (known, number, hops, old) before and after
     ("_rises", (0, 0, 0, 0), (1, 3, 0, 0), True), ("_rises", (0, 0, 0, 0), (1, 3, 0, 1), False),
     ("_rises", (0, 0, 0, 1), (1, 3, 0, 1), False), ("_rises", (0, 0, 0, 1), (1, 3, 0, 0), False),
     ("_rises", (1, 5, 0, 0), (1, 6, 0, 1), False),
-    ("_forgets", (1, 5, 0, 0), (0, 0, 0, 1), True), ("_forgets", (1, 5, 0, 0), (0, 0, 0, 0), False),
-    ("_forgets", (1, 5, 0, 0), (1, 5, 0, 1), False),
+    ("forgets", (1, 5, 0, 0), (0, 0, 0, 1), True), ("forgets", (1, 5, 0, 0), (0, 0, 0, 0), False),
+    ("forgets", (1, 5, 0, 0), (1, 5, 0, 1), False),
 ]  # fmt: skip
 
 
@@ -212,7 +212,7 @@ def test_how_a_neighbour_may_move(move, old, new, may):
 def test_who_forgot_has_a_route_again_when_nothing_is_left_of_it(port, new, may):
     view = view_of()
     old, after = ghost_of(view.t, 0, 0, 0, 1), ghost_of(view.t, *new)
-    assert is_so(strict._again(view, old, after, port)) == may
+    assert is_so(strict.again(view, old, after, port)) == may
 
 
 def left(cell, actions=()):

@@ -26,6 +26,7 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.prove.feasible import ENTRY, forgotten
 from innervate.networks.skin.prove.neighbours import ROOM, Cell, View, ghosts_after, true_ghosts
+from innervate.networks.skin.prove.system import again, forgets
 from innervate.prove.steps import Goal, Stage, Step, own_goals, sent
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
@@ -34,8 +35,8 @@ from innervate.prove.theory import source
 def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """All that can happen to a cell, and to what it knows of its neighbours."""
     known = source(ENTRY, change)
-    moves = (("a neighbour's number rises", _rises), ("a neighbour loses its memory", _forgets),
-             ("a neighbour has a route again, after all gave it up", _again))  # fmt: skip
+    moves = (("a neighbour's number rises", _rises), ("a neighbour loses its memory", forgets),
+             ("a neighbour has a route again, after all gave it up", again))  # fmt: skip
     return (
         partial(_play, known, "a cell is switched on", "on_start", ["cause"]),
         partial(_play, known, "a cell hears a beacon", "on_frame", ["port", "frame"]),
@@ -181,13 +182,3 @@ def _rises(view: View, old: Any, new: Any, p: int) -> Term:
     had = t.all(old.known, view.no_newer(old.sq, new.sq), t.same(old.old, new.old))
     had_none = t.all(t.negated(t.any(old.known, old.old)), t.negated(new.old))
     return t.all(new.known, t.any(had, had_none))
-
-
-def _forgets(view: View, old: Any, new: Any, p: int) -> Term:
-    """A restart, or F1: it has none any more, and what is kept of it may be older."""
-    return view.t.all(view.t.negated(new.known), new.old)
-
-
-def _again(view: View, old: Any, new: Any, p: int) -> Term:
-    """The timing assumptions: nothing is left here of what it said before it forgot."""
-    return view.t.all(view.is_settled(p), new.known, view.t.negated(new.old))
