@@ -28,10 +28,6 @@ class Channel(Simulation):
         """When it broke, as it was noted, us."""
         return max(int(get(self.world.run, 0, "broken_at")), 0)
 
-    def clock_us(self) -> int:
-        """Time of the newest event, us."""
-        return int(get(self.world.run, 0, "now"))
-
     def next_us(self) -> int | None:
         """When something happens next; None = never."""
         return self.clock_us() if self.world.told[0] else first_of(self.world.heap)

@@ -10,7 +10,6 @@ import numpy as np
 from innervate.sim.driver import Simulation
 from innervate.sim.field import medium, queue
 from innervate.sim.queue import first_of, with_command
-from innervate.sim.tables import get
 
 
 class Field(Simulation):
@@ -23,10 +22,6 @@ class Field(Simulation):
         medium.BROKEN_HELD: "{node} handed down a frame while another was under way",
         medium.BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
     }
-
-    def clock_us(self) -> int:
-        """Time of the newest event, us."""
-        return int(get(self.world.run, 0, "now"))
 
     def next_us(self) -> int | None:
         """When something happens next; None = never."""

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from innervate.export import links
+from innervate.export.cabled import stations as numbers
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.protocol.constants import MTU_MAX
 from innervate.networks.mesh.sim.simulate import simulate
@@ -25,11 +26,6 @@ def refusal(plan: Any) -> str:
 def interfaces(plan: Any) -> list[tuple[str, str]]:
     """(name, description) of every interface, in order."""
     return [(name, links.describe("node", i)) for i, name in enumerate(plan.names)]
-
-
-def numbers(plan: Any) -> Any:
-    """Which interface a tap's row is of, by its column `at`."""
-    return np.arange(plan.nodes)
 
 
 class _Record:
