@@ -23,3 +23,8 @@ def share_words(ratio: float) -> str:
         shown = f"{100 * ratio:.{decimals}f}"
         decimals += 1
     return f"{shown} %"
+
+
+def number_of(count: int, thing: str) -> str:
+    """A count with its noun: "1 cell", "12 cells"."""
+    return f"{count:,} {thing}{'' if count == 1 else 's'}"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from math import inf
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -167,8 +167,9 @@ class Experiment:
     warm_up: Callable[[], None] | None = None
 
     @classmethod
-    def of(cls, module: ModuleType) -> Experiment:
-        """The experiment that a module is."""
+    def of(cls, book: str, name: str) -> Experiment:
+        """The experiment that a module of a book is, loaded when it is asked for."""
+        module = import_module(f"{book}.{name}")
 
         def draw(results: Results, quick: bool) -> Figure:
             made: Figure = module.draw(Measured(results, quick))
@@ -180,7 +181,7 @@ class Experiment:
         def sheets(results: Results, quick: bool) -> list[Sheet]:
             return list(module.sheets(Measured(results, quick))) if has_sheets else []
 
-        name, has_sheets = module.__name__.rpartition(".")[2], hasattr(module, "sheets")
+        has_sheets = hasattr(module, "sheets")
         return cls(name, module.TITLE, module.CAPTION, module.points, draw, judge, sheets)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from innervate.analysis.words import figure_words as figure_words
+from innervate.analysis.words import number_of as number_of
 from innervate.analysis.words import share_words as share_words
 
 
@@ -30,8 +31,3 @@ def count_words(value: float) -> str:
     if abs(value) >= 1e6:
         return f"{value / 1e6:.4g} M"
     return f"{round(value):,}" if abs(value) >= 10 else f"{value:g}"
-
-
-def number_of(count: int, thing: str) -> str:
-    """A count with its noun: "1 cell", "12 cells"."""
-    return f"{count:,} {thing}{'' if count == 1 else 's'}"

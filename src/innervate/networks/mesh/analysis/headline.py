@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
+from innervate.analysis.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import (
     DELIVERED,
@@ -93,12 +94,14 @@ def _undelivered(traffic: Traffic) -> list[str]:
     crossings, decided = traffic.crossings, traffic.decided
     unheard, lost = crossings - traffic.learned, decided - traffic.delivered
     if unheard == crossings > 1:
-        found.append(f"the monitor learned of none of {_count(crossings, 'crossing')} of the fence")
+        found.append(
+            f"the monitor learned of none of {number_of(crossings, 'crossing')} of the fence"
+        )
     elif unheard:
         which = _part(unheard, crossings, "crossing")
         found.append(f"the monitor never learned of {which} of the fence")
     if lost == decided > 1:
-        found.append(f"none of {_count(decided, 'message')} was delivered")
+        found.append(f"none of {number_of(decided, 'message')} was delivered")
     elif lost:
         found.append(f"{_part(lost, decided, 'message')} {_was(lost)} not delivered")
     if traffic.partial:
@@ -133,9 +136,9 @@ def _apart(ways: Ways, absent: str) -> list[str]:
 def _twice(traffic: Traffic) -> list[str]:
     found = []
     if traffic.doubled:
-        found.append(f"{_count(traffic.doubled, 'message')} came twice")
+        found.append(f"{number_of(traffic.doubled, 'message')} came twice")
     if traffic.looped:
-        found.append(f"{_count(traffic.looped, 'packet')} met a node twice on the way")
+        found.append(f"{number_of(traffic.looped, 'packet')} met a node twice on the way")
     return found
 
 
@@ -204,14 +207,10 @@ def _sentence(parts: list[str]) -> str:
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _count(count: int, what: str) -> str:
-    return f"{count:,} {what}{'' if count == 1 else 's'}"
-
-
 def _part(part: int, whole: int, what: str) -> str:
     """'1 of 91 messages', 'the only crossing', 'both robots', 'all 30 nodes'."""
     if part < whole:
-        return f"{part:,} of {_count(whole, what)}"
+        return f"{part:,} of {number_of(whole, what)}"
     return every(whole, what)
 
 

@@ -1,6 +1,6 @@
 """The mesh's document: centrally computed routing tables, and a virtual fence on top of them."""
 
-from importlib import import_module
+from functools import partial
 
 from innervate.networks.mesh.papers.readings import READINGS as READINGS
 from innervate.papers.experiment import Experiment
@@ -19,11 +19,7 @@ FIGURES = (
     "scale",
     "versions",
 )
-
-
-def experiment(name: str) -> Experiment:
-    """The experiment of a figure, loaded when it is asked for."""
-    return Experiment.of(import_module(f"{__name__}.{name}"))
+experiment = partial(Experiment.of, __name__)
 
 
 def warm_up() -> None:

@@ -1,6 +1,6 @@
 """The radio paper: Kim and Kim, CSMA/CD-R for a wireless multi-robot communication."""
 
-from importlib import import_module
+from functools import partial
 
 from innervate.networks.radio.papers.readings import READINGS as READINGS
 from innervate.papers.experiment import Experiment
@@ -13,11 +13,7 @@ FIGURES = (
     "fig1", "fig4_5", "limits", "fig6_7", "quadratic", "fig12", "ties", "silent", "members",
     "capture", "fairness", "practical", "turnaround", "delay",
 )  # fmt: skip
-
-
-def experiment(name: str) -> Experiment:
-    """The experiment of a figure, loaded when it is asked for."""
-    return Experiment.of(import_module(f"{__name__}.{name}"))
+experiment = partial(Experiment.of, __name__)
 
 
 def warm_up() -> None:

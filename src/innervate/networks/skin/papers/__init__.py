@@ -1,6 +1,6 @@
 """The skin paper: Bader, Bergner and Cheng, a dynamic network protocol for an artificial skin."""
 
-from importlib import import_module
+from functools import partial
 
 from innervate.networks.skin.papers.readings import READINGS as READINGS
 from innervate.papers.experiment import Experiment
@@ -12,11 +12,7 @@ FIGURES = (
     "startup", "fig5", "fig6", "eq3", "delay", "fig8a", "fig8b", "eq7", "at_most", "fig10", "eq9",
     "fig11", "loop", "modes",
 )  # fmt: skip
-
-
-def experiment(name: str) -> Experiment:
-    """The experiment of a figure, loaded when it is asked for."""
-    return Experiment.of(import_module(f"{__name__}.{name}"))
+experiment = partial(Experiment.of, __name__)
 
 
 def warm_up() -> None:
