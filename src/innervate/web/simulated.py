@@ -188,7 +188,9 @@ class Simulated(Source):
             if is_point:
                 self._keep()
             if time.perf_counter() - began > SLICE_S:
-                return
+                break
+        if self.at_end and self.engine.now_us > self._sampled_us:
+            self._sample()
 
     def _point_us(self) -> int:
         """Time between two points of the plots now."""
