@@ -77,6 +77,7 @@ def test_a_station_is_cut_off_and_let_back(look, short, monkeypatch):
         expect(page.locator("#timeline")).to_be_hidden()
         click(page, "s1")
         expect(page.locator("#selected-facts")).to_have_text("cut off")
+        expect(page.locator("#headline")).to_contain_text("Robot s1 is off")
         expect(other.locator("#unconnected output")).to_have_text("1")
         click(other, "s1")
         expect(page.locator("#selected-facts")).to_have_text("idle")
@@ -179,6 +180,7 @@ def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, 
             expect(page.locator("#unconnected output")).to_have_text("1")
             expect(page.locator("#recovery .more")).to_contain_text("n2 - n4")
             expect(page.locator("#recovery .more")).to_contain_text("1 cut off")
+            expect(page.locator("#recovery .more")).not_to_contain_text("noticed")  # nobody asked
             click(page, "n2 - n4")
             expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
             expect(page.locator("#unconnected output")).to_have_text("0")

@@ -40,16 +40,20 @@ export function showNumbers(network) {
   show("since", none ? "–" : ago(since), none ? "none yet" : "", "");
   if (!recovery) show("recovery", "–", "", "");
   else {
-    const noticed = recovery.detected_ms === null || recovery.detected_ms === undefined
-      ? "not noticed yet" : `noticed after ${duration(recovery.detected_ms)}`;
+    const isLive = network.scene.source === "live"; // its nodes do not say when they notice
+    const noticed = isLive ? ""
+      : recovery.detected_ms === null || recovery.detected_ms === undefined
+        ? "not noticed yet" : `noticed after ${duration(recovery.detected_ms)}`;
     const isOpen = recovery.recovered_ms === null || recovery.recovered_ms === undefined;
     const text = isOpen ? ago(network.now.t_s - recovery.at_s) : duration(recovery.recovered_ms);
-    const state = isOpen ? "not yet, " : "";
+    const state = isOpen ? ["not yet", noticed] : [noticed];
+    const known = state.filter(Boolean).join(", ");
     const isWhole = !unconnected && !recovery.apart; // else it is good news of the others only
     const look = !isKnown ? "" : isOpen ? "open" : isWhole ? "done" : "";
     const shown = isKnown || !isOpen ? text : "–";
-    const cut = recovery.apart ? `${recovery.apart} cut off; the others: ` : "";
-    const more = isKnown ? `${recovery.cause}: ${cut}${state}${noticed}` : recovery.cause;
+    const cut = recovery.apart ? `${recovery.apart} cut off${known && "; the others: "}` : "";
+    const came = `${cut}${known}`;
+    const more = isKnown && came ? `${recovery.cause}: ${came}` : recovery.cause;
     if (isKnown && recovery.nobody) {
       const word = WORDS[network.kind] ?? "node";
       show("recovery", "–", `${recovery.cause}: no ${word} is left that could have a way`, "bad");
