@@ -49,7 +49,7 @@ def test_its_nodes_hear_each_other_over_a_channel_of_processes(talk, monkeypatch
             told = status.ask_one(network.socket("n0"), {"do": "status"})
             assert told["fields"]["value"] == 41
             assert live_status.lines(told)[0].startswith("n0: talk node, up ")
-            assert live_status.headline([told], 0).startswith("ok: ")
+            assert live_status.headline([told], []).startswith("ok: ")
         finally:
             await network.down()
 

@@ -106,7 +106,7 @@ def test_the_cables_of_a_cell_that_ended_are_drawn_as_its_file_has_them(tmp_path
     assert state["link_up"].tolist() == [0, 1]
     assert state["headline"] == {
         "level": "degraded", "nodes": [1],
-        "text": "1 of 2 cells (1) does not answer; the other cell has a way to the PC.",
+        "text": "1 of 2 cells (c1) does not answer; the other cell has a way to the PC.",
     }  # fmt: skip
 
 

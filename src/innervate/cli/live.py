@@ -53,19 +53,19 @@ def show(names: list[str], as_json: bool) -> int:
         except LiveError:
             if names:
                 raise
-            silent.append(path.stem)
+            silent.append(path)
     if as_json:
         print(json.dumps(told if len(told) != 1 or not names else told[0]))
     else:
         if not names:
-            print(live_status.headline(told, len(silent)))
+            print(live_status.headline(told, silent))
         for one in told:
             for line in live_status.lines(one):
                 print(line)
         for line in live_status.broken(told):
             print(line)
-    for name in silent:
-        print(f"{name}: does not answer; its process was killed, or hangs", file=sys.stderr)
+    for path in silent:
+        print(f"{path.stem}: does not answer; its process was killed, or hangs", file=sys.stderr)
     return 1 if silent else 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from innervate.network import known
@@ -9,17 +10,19 @@ from innervate.network import known
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
 
 
-def headline(told: list[dict[str, Any]], silent: int) -> str:
-    """Is all well with these nodes and `silent` more that do not answer: as pages say it, now."""
+def headline(told: list[dict[str, Any]], silent: list[Path]) -> str:
+    """Is all well with these nodes and those that do not answer, by their sockets, as pages say."""
     from innervate.analysis.headline import silent as nobody
+    from innervate.web import live_known
 
     kinds = {one["kind"] for one in told}
     if len(kinds) > 1:
         return f"{' and '.join(sorted(kinds))} nodes: name those of one network to have it judged"
-    found = nobody(silent, "node")
+    found = nobody(len(silent), "node")
     if told:
         view = known(min(kinds)).live_view()
-        where = view.map(dict(enumerate([*told, *view.unknown(told, silent)])))
+        stand_in = live_known.silent(view, told, silent).values()
+        where = view.map(dict(enumerate([*told, *stand_in])))
         found = view.state(where, dict(enumerate(told))).headline()
     return f"{found.level}: {found.text}"
 

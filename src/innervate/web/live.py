@@ -96,17 +96,10 @@ class Live(Source):
 
     def _unheard(self, sockets: list[Path]) -> set[int]:
         """Those who do not answer; they are on the map as what their files say of them."""
-        there = {path.parent for path in sockets}
-        known = {at: node for folder in there for at, node in live_known.files(folder).items()}
-        silent = [i for i in range(len(sockets)) if i not in self._told]
-        for i in silent:
-            node = known.get(sockets[i])
-            if node is not None and node.table.kind == self._kind:
-                self._last[i] = live_known.unheard(node)
-        others = [i for i in silent if sockets[i] not in known]
-        stand_in = self._view.unknown(list(self._last.values()), len(others))
-        self._last |= dict(zip(others, stand_in, strict=True))
-        return set(silent)
+        silent = {path: i for i, path in enumerate(sockets) if i not in self._told}
+        stand_in = live_known.silent(self._view, list(self._last.values()), list(silent))
+        self._last |= {silent[path]: one for path, one in stand_in.items()}
+        return set(silent.values())
 
     def scene(self) -> dict[str, Any]:
         """Who answered, and who is linked with whom as they say."""

@@ -14,6 +14,7 @@ from innervate.live import status
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import Loaded, SerialTable, UdpTable, load
 from innervate.web.live_map import Status
+from innervate.web.live_view import LiveView
 
 
 def missing(folder: Path, there: Iterable[Path]) -> list[Path]:
@@ -40,6 +41,21 @@ def files(folder: Path) -> dict[Path, Loaded]:
     return found
 
 
+def silent(view: LiveView, heard: list[Status], sockets: list[Path]) -> dict[Path, Status]:
+    """What stands for nodes that have not answered, by socket, beside those that have.
+
+    It is what their files say, or else what can be guessed. Nodes of other kinds are left out.
+    """
+    folders = {path.parent for path in sockets}
+    known = {at: node for folder in folders for at, node in files(folder).items()}
+    kind = heard[0]["kind"]
+    found = {at: unheard(known[at]) for at in sockets
+             if at in known and known[at].table.kind == kind}  # fmt: skip
+    others = [at for at in sockets if at not in known]
+    made = view.unknown([*heard, *found.values()], len(others))
+    return found | {at: {**one, "name": at.stem} for at, one in zip(others, made, strict=True)}
+
+
 def unheard(node: Loaded) -> Status:
     """What stands for the words of a node that has not answered yet: what its file says."""
     table = node.table
@@ -48,7 +64,7 @@ def unheard(node: Loaded) -> Status:
         for port, (own, far) in enumerate(ends for link in table.link for ends in _ends(link))
     ]
     role = {} if table.role is None else {"role": table.role}
-    common = {"kind": table.kind, "number": table.number, "paths": paths}
+    common = {"kind": table.kind, "name": node.name, "number": table.number, "paths": paths}
     return {**common, **role, "neighbours": [], "counters": {}}
 
 

@@ -40,6 +40,7 @@ class Map:
 
     Attributes:
         places: the map's nodes; those that are ports of a node come last.
+        names: what their nodes are called.
         links: in order of their places.
     """
 
@@ -53,6 +54,7 @@ class Map:
         plain = [Place(i, -1) for i, one in sorted(told.items()) if not self.is_split(one)]
         self.places = [*plain, *ports]
         self.number = {place: at for at, place in enumerate(self.places)}
+        self.names = [str(told[place.node].get("name", place.node)) for place in self.places]
         named = self.find_links(told)
         known = {self.key(link): link for link in (*(before.links if before else ()), *named)}
         self.links: list[Link] = sorted(known.values())

@@ -188,6 +188,8 @@ def test_packets_of_who_died_and_of_who_left():
     for found in (died, left):
         assert (found.offered, found.delivered, found.abandoned, found.pending) == (6, 4, 2, 0)
     assert headline(died).text.startswith("Robot 2 is off with 2 packets not sent; all 4 packets")
+    names = ["s0", "s1", "arm", "s3"].__getitem__
+    assert headline(died, names).text.startswith("Robot arm is off with 2 packets")
     assert headline(left) == (OK, "All 4 packets were delivered.", ())
 
 

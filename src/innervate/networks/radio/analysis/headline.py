@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
@@ -80,12 +80,12 @@ def timeout_us(params: Mapping[str, int], stations: int) -> int:
     return ROUNDS * stations * turn_us + max(BACKOFF_SLOTS, params.get("cw_max", 0)) * step_us
 
 
-def headline(facts: RadioFacts) -> Headline:
-    """The state of a team: what a person reads first of it."""
+def headline(facts: RadioFacts, label: Callable[[int], str] = str) -> Headline:
+    """The state of a team: what a person reads first of it; `label`: a station's name."""
     if not facts.answering:
         return Headline(NO_DATA, "No robot answers.", tuple(range(facts.stations)))
-    down, nodes = _down(facts)
-    worse, more = _degraded(facts, told=bool(down))
+    down, nodes = _down(facts, label)
+    worse, more = _degraded(facts, label, told=bool(down))
     if not (down or worse or facts.offered) and facts.ended:
         return Headline(NO_DATA, "No packet was offered.")
     said = [*down, *worse, *_counts(facts)]
@@ -97,14 +97,14 @@ def headline(facts: RadioFacts) -> Headline:
     return Headline(level, f"{words[0].upper()}{words[1:]}.", tuple(sorted({*nodes, *more})))
 
 
-def _down(facts: RadioFacts) -> tuple[list[str], tuple[int, ...]]:
+def _down(facts: RadioFacts, label: Callable[[int], str]) -> tuple[list[str], tuple[int, ...]]:
     """Why nothing gets through; who is concerned."""
     gone = {*facts.off, *facts.away}
     on = [station for station in range(facts.stations) if station not in gone]
     if not on:
         return ["no robot is on"], tuple(range(facts.stations))
     if len(on) == 1:
-        return [f"robot {on[0]} is alone: nobody can receive its packets"], (on[0],)
+        return [f"robot {label(on[0])} is alone: nobody can receive its packets"], (on[0],)
     if facts.pending and facts.still_ms > facts.timeout_ms:
         waits = _count(facts.pending, "packet waits", "packets wait")
         return [
@@ -117,7 +117,9 @@ def _down(facts: RadioFacts) -> tuple[list[str], tuple[int, ...]]:
     return [], ()
 
 
-def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]]:
+def _degraded(
+    facts: RadioFacts, label: Callable[[int], str], told: bool
+) -> tuple[list[str], tuple[int, ...]]:
     """What is lost, late or cut off, the worst first; `told`: that nothing gets through is said."""
     news: list[str] = []
     nodes: set[int] = set()
@@ -127,7 +129,7 @@ def _degraded(facts: RadioFacts, told: bool) -> tuple[list[str], tuple[int, ...]
     if facts.off and len(facts.off) + len(facts.away) < facts.stations:
         left = 0 if facts.away else facts.abandoned  # else nobody can say whose they are
         with_it = f" with {_count(left, 'packet', 'packets')} not sent" if left else ""
-        news.append(f"{_robots(facts.off)} off{with_it}")
+        news.append(f"{_robots(map(label, facts.off))} off{with_it}")
         nodes |= set(facts.off)
     if facts.dropped:
         news.append(f"{_count(facts.dropped, 'packet', 'packets')} found a full queue")
@@ -181,9 +183,9 @@ def _wrong(bounds: Mapping[str, Any]) -> str:
     return f"delays lie outside the {believed[0]:g} to {believed[1]:g} us that stations believe"
 
 
-def _robots(stations: Iterable[int]) -> str:
+def _robots(names: Iterable[str]) -> str:
     """Who is: "robot 3 is", "robots 3 and 5 are", "12 robots are"."""
-    who = [str(station) for station in stations]
+    who = list(names)
     if len(who) == 1:
         return f"robot {who[0]} is"
     if len(who) > NAMED:

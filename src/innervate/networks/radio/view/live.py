@@ -41,7 +41,8 @@ class RadioState(State):
         told = {at: self.told[p.node] for at, p in enumerate(places) if p.node in self.told}
         off = tuple(np.flatnonzero(self.node_up == 0).tolist())
         timing = next(iter(told.values()))["timing"]
-        return headline(of_stations(told, len(places), off, self.still_ms, timing))
+        found = of_stations(told, len(places), off, self.still_ms, timing)
+        return headline(found, self.map.names.__getitem__)
 
     def more(self) -> dict[str, Any]:
         """Load, what everybody does, whose turn is which."""

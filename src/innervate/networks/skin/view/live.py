@@ -53,7 +53,7 @@ class SkinState(State):
 
     def judge(self) -> Headline:
         """The headline by the ways and loads that `look` found."""
-        return skin_headline(self._facts)
+        return skin_headline(self._facts, self.map.names.__getitem__)
 
     def _skin_facts(self, lost: Any, joined: Any) -> SkinFacts:
         """What cells say of their ways; `joined`: cables join them with the PC."""
