@@ -176,6 +176,21 @@ def test_a_node_is_cut_off_by_all_its_paths_and_let_back(nodes):
         nodes.source.carry_out(Kill(2))
 
 
+def test_who_is_cut_off_whole_stays_so_when_it_forgets_its_neighbours(nodes):
+    nodes.look(1.0)
+    nodes.source.carry_out(Kill(2))
+    nodes.told = all_of_them(n2={"up": (False, False)})
+    assert nodes.look(0.5)["link_up"].tolist() == [1, 0, 0]
+    nodes.told[2]["neighbours"] = []
+    nodes.source.work()
+    shown = nodes.source.fields()
+    assert shown["link_up"].tolist() == [1, 0, 0]
+    assert not any("put back" in text for text in nodes.texts())
+    assert (shown["unconnected"], shown["apart"]) == (1, 1), "as many as the headline says"
+    assert shown["headline"]["text"].startswith("1 of 3 nodes is cut off from the gateway")
+    assert shown["recovery"]["apart"] == 0, "who was cut off is the cause, and not hurt by it"
+
+
 def test_how_a_recovery_went_is_told_from_the_cut_on(nodes):
     nodes.look(1.0)
     nodes.source.carry_out(Cut(0))

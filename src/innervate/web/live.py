@@ -265,7 +265,8 @@ class Live(Source):
         if recovery is None or not self._view.has_ways or not self._told:
             return
         at_us = self._now_us()
-        recovery.cut_off(state.unconnected - state.lacking)
+        others = state.unconnected - sum(state.cut_off)  # who was cut off whole is the cause
+        recovery.cut_off(max(0, others - state.lacking))
         were_none, recovery.nobody = recovery.nobody, not state.left
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:

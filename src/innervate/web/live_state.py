@@ -27,7 +27,8 @@ class State:
         cut_off: per place whether its node answers and carries nothing.
         hop: per place the next one on its way, NOWHERE without one.
         root, depth: where its chain leads over live links, and how far that is.
-        unconnected: how many that answer have no way.
+        answers: per place whether its node answers.
+        unconnected: how many that answer have no way, those that are cut off whole too.
         lacking: how many of those could have one, as links that are up join them.
         left: how many could have one at all, with it or without: they answer and are joined.
     """
@@ -39,6 +40,7 @@ class State:
     def __init__(self, where: Map, told: Told, off: Collection[Place] = ()) -> None:
         self.map = where
         self.told = told
+        self.answers = np.array([place.node in told for place in where.places], np.bool_)
         asked = where.places if self.is_off_when_cut else off
         self.cut_off = [place in asked and self._carries_nothing(place) for place in where.places]
         up = [p.node in told and not off for p, off in zip(where.places, self.cut_off, strict=True)]
@@ -60,7 +62,7 @@ class State:
         first[on[0]] = True
         joined = reach(self.live(), first)
         with_it = np.count_nonzero(joined) - 1
-        return int(np.count_nonzero(~joined & (self.node_up == 1))), 0, int(with_it)
+        return int(np.count_nonzero(~joined & self.answers)), 0, int(with_it)
 
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
         """Links that were cut or put back since, while their ends went on answering."""
@@ -117,9 +119,12 @@ class State:
         return bool(paths) and not any(paths)
 
     def _is_up(self, link: Link) -> bool:
-        """Both ends answer, and neither has been told to drop what comes over the link."""
+        """Both ends answer, and neither has been told to drop what comes over the link.
+
+        A node that drops all that comes forgets by which paths it heard whom.
+        """
         for place, paths in ((link.a, link.paths_a), (link.b, link.paths_b)):
-            if place.node not in self.told:
+            if place.node not in self.told or self._carries_nothing(place):
                 return False
             up = {path["port"]: path["up"] for path in self.word(place, "paths", ())}
             if paths and not any(up.get(path, True) for path in paths):

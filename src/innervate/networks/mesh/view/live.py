@@ -55,7 +55,7 @@ class MeshState(State):
         """Find everybody's way anew: (how many have none, of these are astray, could have one)."""
         self.ways = self._find_ways()
         self.hop, self.depth = self.ways.hop, self.ways.depth
-        without = self.ways.without & (self.node_up == 1)
+        without = self.ways.without & self.answers
         found = without, self.ways.astray, self.ways.served
         none, astray, could = (int(np.count_nonzero(who)) for who in found)
         return none, astray, could

@@ -41,7 +41,7 @@ class SkinState(State):
         self.root, self.depth = follow(
             np.where(live[np.arange(count), np.maximum(self.hop, 0)], self.hop, NOWHERE), roots
         )
-        lost = (self.root == NOWHERE) & (self.node_up == 1)
+        lost = (self.root == NOWHERE) & self.answers & ~self._is_port()
         if not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
         joined = reach(live, roots) if where.links else ~none
