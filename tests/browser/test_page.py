@@ -153,6 +153,34 @@ def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
     expect(page.locator("#selected-facts")).to_have_text("link, up")
 
 
+READ_ALOUD = """() => {
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const name = (one) => one.id || one.className || one.tagName;
+  const words = (one) => one.innerText.trim();
+  const place = "header, main, section[aria-label], dialog, [role=alert]";
+  return {
+    "items of no list": all("li").filter((one) => one.parentElement.matches("[role]")).map(words),
+    "names without what is seen": all("button[aria-label]")
+      .filter((one) => /\\w/.test(words(one)) && !one.ariaLabel.includes(words(one))).map(name),
+    "outside of every landmark": all("body *")
+      .filter((one) => one.offsetParent && words(one) && !one.closest(place)).map(name),
+    "scrolled by the mouse alone": all("body *")
+      .filter((one) => /auto|scroll/.test(getComputedStyle(one).overflowY)
+        && one.scrollHeight > one.clientHeight + 1 && one.tabIndex < 0).map(name),
+  };
+}"""
+
+
+def test_programs_that_read_aloud_find_lists_names_and_places(look, skin):
+    page = look(skin, {"width": 1160, "height": 600})  # plots do not fit
+    click(page, OTHER)  # the log has a line, and the card is there
+    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    found = page.evaluate(READ_ALOUD)
+    click(page, OTHER)
+    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    assert found == {what: [] for what in found}
+
+
 def test_pause_step_and_speed(look, skin):
     page = look(skin)
     page.keyboard.press("Space")

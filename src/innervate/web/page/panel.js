@@ -83,17 +83,18 @@ const WORDS = { skin: "cell", radio: "station", mesh: "node" };
 
 /** Events, the newest at the end; it follows them unless the reader scrolled up. */
 export class Log {
-  constructor(list) {
-    this.list = list;
+  constructor(box) {
+    this.box = box;
+    this.list = box.querySelector("ol");
     this.follows = true;
-    list.addEventListener("scroll", () => {
-      this.follows = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
+    box.addEventListener("scroll", () => {
+      this.follows = box.scrollHeight - box.scrollTop - box.clientHeight < 30;
     });
-    new ResizeObserver(() => this.#follow()).observe(list);
+    new ResizeObserver(() => this.#follow()).observe(box);
   }
 
   #follow() {
-    if (this.follows) this.list.scrollTop = this.list.scrollHeight;
+    if (this.follows) this.box.scrollTop = this.box.scrollHeight;
   }
 
   clear() {
