@@ -46,6 +46,12 @@ def test_labels_and_tips(parse):
     assert "p0 r1 c2" in [node.text for node in tree.iter()]
 
 
+def test_a_drawing_beside_words_that_say_it_is_not_read_aloud(parse):
+    tree = parse(svg.Drawing(20, 10, ""))
+    assert tree.get("aria-hidden") == "true"
+    assert tree.get("role") is tree.get("aria-label") is None
+
+
 def test_alone_it_carries_its_colours(parse, tmp_path):
     drawing = svg.Drawing(20, 10, "x")
     drawing.save(tmp_path / "x.svg", theme.drawing_style())

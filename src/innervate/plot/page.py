@@ -177,7 +177,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") ->
     opening = f'<table class="{kind}">' if kind else "<table>"
     top = "".join(f"<th>{cell}</th>" for cell in head)
     body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>\n" for row in rows)
-    return f'<div class="scroll">{opening}<tr>{top}</tr>\n{body}</table></div>\n'
+    return f'<div class="scroll" tabindex="0">{opening}<tr>{top}</tr>\n{body}</table></div>\n'
 
 
 def details(head: str, inside: str) -> str:

@@ -14,6 +14,7 @@ from xml.sax.saxutils import escape, quoteattr
 Point = tuple[float, float]
 Value = str | float | int | None
 ARROW_PX = 7.0
+HIDDEN = 'aria-hidden="true"'  # of drawings that words beside them say
 
 # What XML 1.0 cannot hold, even escaped.
 _FORBIDDEN = {c: "\ufffd" for c in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)}
@@ -149,9 +150,10 @@ class Drawing:
     def render(self, style: str = "") -> str:
         """The drawing as one <svg> element; with `style` it can stand alone."""
         wide, high = number(self.width), number(self.height)
+        told = f'role="img" aria-label={attribute(self.label)}' if self.label else HIDDEN
         parts = [
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" '
-            f'width="{wide}" height="{high}" role="img" aria-label={attribute(self.label)}>'
+            f'width="{wide}" height="{high}" {told}>'
         ]
         if style:
             parts.append(f"<title>{clean(self.label)}</title><style>{clean(style)}</style>")
