@@ -178,12 +178,13 @@ def test_what_is_noted_of_a_stretch():
 
 
 @pytest.mark.parametrize(("length", "ends", "part"), [
-    (7_999, [], None), (8_000, [], 2_400), (10_000, [1_500], 1_545), (10_000, [2_900], 2_987),
-    (10_000, [2_950], 3_000), (10_000, [1_500, 9_000], 1_545), (10_000, [50, 1_500], 1_545),
+    (7_999, [], None), (8_000, [], (0, 2_400)), (10_000, [1_500], (28, 1_545)),
+    (10_000, [2_900], (0, 2_987)), (10_000, [2_950], (0, 3_000)),
+    (10_000, [1_500, 9_000], (28, 1_545)), (10_000, [50, 1_500], (28, 1_545)),
 ])  # fmt: skip
 def test_a_beginning_goes_to_the_first_success_or_a_third(monkeypatch, length, ends, part):
-    """Of 100 us a slot; the first collision is at 100."""
+    """Of 100 us a slot; the first collision is at 100, near the left."""
     found = packets(*((0, 0, end, end) for end in ends)) if ends else packets()
     monkeypatch.setattr(scene, "successes", lambda _: found)
     begin = scene.beginning(result_of(), scene.Window(0, length, 100))
-    assert (begin and tuple(begin)) == (part and (0, part, 100))
+    assert (begin and tuple(begin)) == (part and (*part, 100))

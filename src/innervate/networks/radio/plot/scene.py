@@ -24,6 +24,7 @@ PACKETS_MAX = 130  # a window chosen here is at most that many packets long, or 
 MARGIN = 0.015
 READABLE_SLOTS = 80
 ENLARGED = 0.3  # share of a resolution that is shown enlarged
+BEFORE = 0.05  # of that, how much of the time before its first frame
 
 NOTICED, DONE, FAILED = "noticed", "done", "failed"
 MARKS = {REPORT_COLLISION: NOTICED, REPORT_DELIVERED: DONE, REPORT_FAILED: FAILED}
@@ -116,7 +117,8 @@ def resolution(result: Any) -> Window:
 def beginning(result: Any, whole: Window) -> Window | None:
     """The first part of a resolution, up to its first success or an enlargement of 3.3.
 
-    None where the whole is short enough to be read.
+    What was before it is shortened, too: a narrow screen would show nothing else. None where the
+    whole is short enough to be read.
     """
     length = whole.to_us - whole.from_us
     if length < READABLE_SLOTS * int(result.plan.params["slot_us"]):
@@ -124,7 +126,9 @@ def beginning(result: Any, whole: Window) -> Window | None:
     ends = successes(result)["end"]
     ends = ends[(ends > whole.origin_us) & (ends < whole.to_us)]
     success = 1.03 * (int(ends[0]) - whole.from_us) if len(ends) else length
-    return whole._replace(to_us=whole.from_us + round(min(success, ENLARGED * length)))
+    to_us = whole.from_us + round(min(success, ENLARGED * length))
+    before_us = round(BEFORE * max(0, to_us - whole.origin_us))
+    return whole._replace(from_us=max(whole.from_us, whole.origin_us - before_us), to_us=to_us)
 
 
 def scene(
