@@ -38,7 +38,7 @@ def skin(page: Any) -> None:
     click(page, "p0 r16 c7 - pc.1")
     expect(page.locator("#selected-facts")).to_have_text("link, cut")
     page.locator("#speed").fill("2")
-    at(page, 1.0162)
+    at(page, 1.016)
 
 
 def touch(page: Any) -> None:
