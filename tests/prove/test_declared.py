@@ -76,12 +76,6 @@ def late(state, params, now, kind, item, out):
 def third(state, params, now, kind, item, out):
     set_timer(out, 2, now)
 
-def on_carrier(state, params, now, cd, voc, out):
-    state.x = cd + voc
-
-def on_sent(state, params, now, ok, out):
-    state.x = ok
-
 def often(state, params, now, timer, out):
     for i in range(params.z):
         report(out, 1, 2, 3)
