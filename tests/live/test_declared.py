@@ -67,6 +67,25 @@ def test_a_protocols_parameters_are_those_of_the_file_within_their_ranges(tmp_pa
         built(tmp_path, protocol="nothing = 1")
 
 
+@pytest.mark.parametrize("attempt", [0, 50])
+def test_a_frame_that_no_wire_can_carry_is_counted_and_the_node_goes_on(
+    tmp_path, monkeypatch, attempt
+):
+    def encode(frame):
+        if frame.dist > 300:
+            raise ValueError("dist does not fit into its bits")
+        return b"frame"
+
+    node, left = built(tmp_path), []
+    monkeypatch.setattr(node.stack, "encode", encode)
+    monkeypatch.setattr(node, "_leave", lambda paths, data: left.append((len(paths), data)))
+    node.engine = SimpleNamespace(later=lambda _wait_us, do: do())
+    for dist in (301, 300, 302):
+        node._transmit(1, SimpleNamespace(dist=dist), attempt, 0)
+    assert left == [(1, b"frame")]
+    assert node.outcomes == {"not sent: dist does not fit into its bits": 2}
+
+
 class Told:
     """In place of an engine."""
 

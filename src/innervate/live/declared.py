@@ -128,12 +128,18 @@ class DeclaredNode(LiveNode):
         return {"input": self._asked_for_input}
 
     def _transmit(self, port: int, frame: Any, attempt: int, flags: int) -> None:
+        try:
+            data = self.stack.encode(frame)
+        except ValueError as error:  # the protocol's mistake, of this frame; the node goes on
+            self.outcomes[f"not sent: {error}"] += 1
+            return
+        ports = self.stack.ports_of(port, frame, 0)
+        paths = self.paths if ports is None else [self.paths[i] for i in ports]
         if attempt <= 0:
-            super()._transmit(port, frame, 0, flags)
+            self._leave(paths, data)
             return
         assert self.engine is not None  # on cables the number is a delay, us
-        paths = [self.paths[i] for i in self.stack.ports_of(port, frame, 0) or ()]
-        self.engine.later(attempt, partial(self._leave, paths, self.stack.encode(frame)))
+        self.engine.later(attempt, partial(self._leave, paths, data))
 
     def _receive(self, path: Path, data: bytes) -> None:
         super()._receive(path, data)
