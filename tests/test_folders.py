@@ -33,6 +33,19 @@ def test_it_is_found_beside_its_scenario_and_in_the_working_folder(own, capsys, 
     assert main(["check", str(other)]) == 0
 
 
+def test_a_name_that_begins_with_a_vowel_has_its_article(alone, capsys):
+    made(alone / "elect")
+    assert innervate.check({"kind": "elect"}).startswith("elect: an elect scenario")
+
+
+def test_what_is_wrong_with_a_line_is_said_once(own, capsys):
+    own.change("protocol.py", "NEWS = 1  # a kind of frame", "NEWS, OTHER = 1, 2")
+    assert main(["check-protocol", str(own.folder)]) == 2
+    lines = capsys.readouterr().out.splitlines()
+    assert lines
+    assert sorted(set(lines)) == sorted(lines)
+
+
 def test_only_a_folder_of_the_kinds_name_is_loaded(own, alone):
     (own.folder / "network.py").write_text("raise SystemError")
     with pytest.raises(innervate.ScenarioError, match="kind must be"):

@@ -225,7 +225,7 @@ def findings(folder: Path, network: Any) -> list[checks.Finding]:
     found += [] if found else _of_declared(folder, network, files)
     for one in found:
         one.path = shown(Path(one.path))
-    return found
+    return list({str(one): one for one in found}.values())
 
 
 def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.Finding]:

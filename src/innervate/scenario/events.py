@@ -77,8 +77,9 @@ def at_us(event: Any, draw: Stream) -> int:
 
 def opening(made: Any) -> str:
     """The first line on a plan: its name, network, length and seed."""
+    article = "an" if made.kind[0] in "aeiou" else "a"
     return (
-        f"{made.scenario.name}: a {made.kind} scenario of {made.duration_us / 1e6:g} s, "
+        f"{made.scenario.name}: {article} {made.kind} scenario of {made.duration_us / 1e6:g} s, "
         f"seed {made.seed}"
     )
 
