@@ -36,6 +36,9 @@ def test_it_is_found_beside_its_scenario_and_in_the_working_folder(own, capsys, 
 def test_a_name_that_begins_with_a_vowel_has_its_article(alone, capsys):
     made(alone / "elect")
     assert innervate.check({"kind": "elect"}).startswith("elect: an elect scenario")
+    capsys.readouterr()
+    assert main(["new", "elect"]) == 0
+    assert capsys.readouterr().out.startswith("# An elect over cables.")
 
 
 def test_what_is_wrong_with_a_line_is_said_once(own, capsys):

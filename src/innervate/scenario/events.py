@@ -8,7 +8,7 @@ from typing import Any
 
 from innervate.scenario.actions.action import Action
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, dotted
+from innervate.scenario.source import Source, dotted, with_article
 from innervate.trace.streams import Stream
 
 SHOWN = 12  # events of a scenario that are told one by one
@@ -77,9 +77,8 @@ def at_us(event: Any, draw: Stream) -> int:
 
 def opening(made: Any) -> str:
     """The first line on a plan: its name, network, length and seed."""
-    article = "an" if made.kind[0] in "aeiou" else "a"
     return (
-        f"{made.scenario.name}: {article} {made.kind} scenario of {made.duration_us / 1e6:g} s, "
+        f"{made.scenario.name}: {with_article(made.kind)} scenario of {made.duration_us / 1e6:g} s, "
         f"seed {made.seed}"
     )
 

@@ -125,3 +125,8 @@ def check_plain(source: Source, value: Any, key: Key = ()) -> None:
     elif not isinstance(value, datetime.date | datetime.time):
         kind = type(value).__name__
         raise source.error(key, f"{name} must be a number, string, list or table, not a {kind}")
+
+
+def with_article(kind: str) -> str:
+    """A kind's name as one says it of one: "an aloha"."""
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"

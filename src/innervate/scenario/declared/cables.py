@@ -28,7 +28,7 @@ from innervate.scenario.declared.shared import (
 )
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, shown
+from innervate.scenario.source import Source, shown, with_article
 from innervate.topology import PORTS, TopologyError, free_graph
 from innervate.topology.graph import Graph
 
@@ -235,7 +235,7 @@ def template(network: Any) -> str:
     if network.model is not CablesScenario:
         return ""
     return "\n".join([
-        f"# A {network.name} over cables.",
+        f"# {with_article(network.name).capitalize()} over cables.",
         f'kind = "{network.name}"',
         "nodes = 6",
         'shape = "ring"  # line, ring, grid, tree; or cables = ["n0.E-n1.W", "n1-n2"]',

@@ -27,7 +27,7 @@ from innervate.scenario.declared.shared import (
 )
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
-from innervate.scenario.source import Source
+from innervate.scenario.source import Source, with_article
 
 NODES_MAX = 1_000
 DONE = ("join", "kill", "revive")  # what can be done to any node on a channel
@@ -225,7 +225,8 @@ def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     if network.model is not ChannelScenario:
         return ""
-    head = [f"# A {network.name} on a shared channel.", f'kind = "{network.name}"', "nodes = 6",
+    title = f"# {with_article(network.name).capitalize()} on a shared channel."
+    head = [title, f'kind = "{network.name}"', "nodes = 6",
             "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20", "",
             "[protocol]"]  # fmt: skip
     return "\n".join([*head, *parameter_lines(network), ""])

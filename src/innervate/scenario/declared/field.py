@@ -28,7 +28,7 @@ from innervate.scenario.declared.shared import (
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source
+from innervate.scenario.source import Source, with_article
 from innervate.topology import placement
 from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
@@ -360,7 +360,8 @@ def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     if network.model is not FieldScenario:
         return ""
-    head = [f"# A {network.name} over a field.", f'kind = "{network.name}"', "nodes = 9",
+    title = f"# {with_article(network.name).capitalize()} over a field."
+    head = [title, f'kind = "{network.name}"', "nodes = 9",
             'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
             "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30", "",
             "[protocol]"]  # fmt: skip
