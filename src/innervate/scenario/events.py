@@ -77,10 +77,8 @@ def at_us(event: Any, draw: Stream) -> int:
 
 def opening(made: Any) -> str:
     """The first line on a plan: its name, network, length and seed."""
-    return (
-        f"{made.scenario.name}: {with_article(made.kind)} scenario of {made.duration_us / 1e6:g} s, "
-        f"seed {made.seed}"
-    )
+    what = f"{made.scenario.name}: {with_article(made.kind)} scenario"
+    return f"{what} of {made.duration_us / 1e6:g} s, seed {made.seed}"
 
 
 def told(
