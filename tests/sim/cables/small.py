@@ -31,6 +31,9 @@ class Do:
     def block_of(self, _frame):
         return OTHER_BLOCK
 
+    def is_off(self, _world, _end):
+        return False
+
     def copy_frame(self, to, frame):
         to.seq = frame.seq
 

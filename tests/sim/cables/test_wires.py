@@ -12,7 +12,7 @@ from innervate.networks.skin.sim.build import build
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
 from innervate.sim import tables, wheel
 from innervate.sim.cables import build as cables
-from innervate.sim.cables import commands, wires
+from innervate.sim.cables import commands, recorder, wires
 from innervate.sim.cables.wires import (
     ARRIVED,
     DELAYED,
@@ -253,6 +253,25 @@ def test_a_cable_is_down_while_it_is_cut_or_a_node_at_it_is_off(steps, is_down):
         action, node = step if isinstance(step, tuple) else (step, -1)
         cable.obey(action, node=node, end=END if node < 0 else -1)
     assert down(cable) == is_down
+
+
+@pytest.mark.parametrize(("steps", "why"), [
+    ([CUT], "cut"), ([OTHER], "off"), ([OFF], "off"), ([OFF, OTHER], "off"),
+    ([CUT, OTHER], "cut"), ([OTHER, CUT], "cut"), ([CUT, OTHER, RESTORE], "off"),
+    ([CUT, OTHER, BACK], "cut"),
+])  # fmt: skip
+def test_what_is_lost_on_a_cable_that_is_down_is_lost_to_the_cut_or_to_who_is_off(steps, why):
+    """For a network of one's own; whoever reads captures of skins takes all of it for cuts."""
+    own = SimpleNamespace(**{**vars(stack), "is_off": recorder.is_off})
+    for do, found in ((own, why), (stack, "cut")):
+        cable = Cable().send(1)
+        event = next(one for one in cable.world.wheel.events if one.bucket != wheel.NIL)
+        for step in steps:
+            action, node = step if isinstance(step, tuple) else (step, -1)
+            cable.obey(action, node=node, end=END if node < 0 else -1)
+        assert not wires.lands(cable.world, do, event, 1, cable.frame(1), 75)
+        wires.transmit(cable.world, do, END, cable.frame(2), 1000, 0)
+        assert cable.counts() == {"sent": 2, found: 2}
 
 
 @pytest.mark.parametrize("flags", [0, URGENT, FLUSH, URGENT | FLUSH])

@@ -16,8 +16,9 @@ What a network brings (`declared.py` makes all of it from declarations):
   `block_of(frame)` (0, or OTHER_BLOCK: how it is counted).
 - The recorder's (`recorder.py` has the default): `on_report(world, time, node, code, a, b)`,
   `on_deliver(world, time, node, port, frame)`, `on_stop(world, time, node)` when a node loses its
-  memory, `before_change(world)` and `on_change(world, time, node, index)` around faults,
-  `check(world, node)` after every call.
+  memory, `is_off(world, end)` if a frame on a cable that is down was lost to a node that is off
+  rather than to a cut, `before_change(world)` and `on_change(world, time, node, index)` around
+  faults, `check(world, node)` after every call.
 - The users': `sense(world, node, time)` fills `world.sample[0]` with what its sensors say (its
   carrier: touch), `take_input(world, command)` with what a node is given, and returns the kind of
   input, or 0 if it cannot be given.

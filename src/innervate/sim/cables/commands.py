@@ -25,10 +25,10 @@ def obey(world, do, command):
         for node in range(world.run[0].nodes):
             queue.insert(world.wheel, node, world.starts[node].phase)
     elif action == CUT:
-        if not is_cut(world, command.end):
+        if not wires.is_cut(world, command.end):
             change_link(world, command.end, 1)
     elif action == RESTORE:
-        if is_cut(world, command.end):
+        if wires.is_cut(world, command.end):
             change_link(world, command.end, -1)
     elif action == KILL:
         switch_off(world, do, time, command.node)
@@ -52,15 +52,6 @@ def change_link(world, end, by):
     peer = world.ends[end].peer
     shift_end(world, end, by)
     shift_end(world, peer, by)
-
-
-def is_cut(world, end):
-    """True if a cable is down for more reasons than that a node at it is dead."""
-    reasons = world.ends[end].impaired >> 2
-    for own in (end, world.ends[end].peer):
-        if world.alive[min(own >> 2, world.run[0].cells)] == DEAD:
-            reasons -= 1
-    return reasons > 0
 
 
 def shift_end(world, end, by):

@@ -56,7 +56,7 @@ def functions(
         vars(do)["copy_frame"] = protocol.copy_frame
     names = {name for name, length, *_ in fields.FRAME if not length}
     vars(do).update(_users_side(do, "made_at" in names))
-    for name in ("on_report", "on_stop", "before_change", "on_change", "check"):
+    for name in ("is_off", "on_report", "on_stop", "before_change", "on_change", "check"):
         vars(do)[name] = getattr(recorder, name)
     if own:
         vars(do).update(_checks(own.values()))

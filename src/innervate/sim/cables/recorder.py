@@ -5,7 +5,7 @@ A row of every report, one of every delivered frame, and the declared range of e
 
 from innervate.kernel.records import within
 from innervate.sim import delays
-from innervate.sim.cables.wires import DELIVERED
+from innervate.sim.cables.wires import DELIVERED, is_cut
 from innervate.sim.cables.world import BROKEN_RANGE
 from innervate.sim.rows import record_row
 
@@ -36,6 +36,11 @@ def keep_latency(world, latency_us):
     delays.note(world, 0, latency_us)
     if run.delivery_limit > 0:
         world.deliveries[run.deliveries - 1].latency = latency_us
+
+
+def is_off(world, end):
+    """True if a cable that is down is so because a node at it is dead, and for nothing else."""
+    return not is_cut(world, end)
 
 
 def on_stop(world, time, node):

@@ -11,7 +11,7 @@ from innervate.dialect.outbox import FLUSH, URGENT
 from innervate.dialect.rng import LOW15, step
 from innervate.sim import taps
 from innervate.sim import wheel as queue
-from innervate.sim.cables.world import ALIVE
+from innervate.sim.cables.world import ALIVE, DEAD
 
 # Kinds of pool slots; an arrival is marked by the block of counters its frame belongs to.
 DELAYED = 1
@@ -133,8 +133,8 @@ def launch(world, do, end, frame, start, block):
     epoch = world.epoch[end]
     wire.busy = start + run.wire_us
     world.counters[SENT + block] += 1
-    if wire.impaired and is_lost(world, end, block):
-        tap_out(world, do, end, frame, start, taps.CUT if wire.impaired & DOWN else taps.NOISE)
+    if wire.impaired and is_lost(world, do, end, block):
+        tap_out(world, do, end, frame, start, why_lost(world, do, end))
         return
     tap_out(world, do, end, frame, start, taps.FINE)
     if run.latency_per_frame:
@@ -148,11 +148,11 @@ def launch(world, do, end, frame, start, block):
     queue.insert(world.wheel, slot, start + latency)
 
 
-def is_lost(world, end, block):
+def is_lost(world, do, end, block):
     """True if a cut or loose cable, or a planned loss, takes the frame; counts it."""
     wire = world.ends[end]
     if wire.impaired & DOWN:
-        world.counters[LOST_CUT + block] += 1
+        world.counters[(LOST_OFF if do.is_off(world, end) else LOST_CUT) + block] += 1
         return True
     buffer = world.buffers[end]
     if buffer.lose > 0:
@@ -165,6 +165,22 @@ def is_lost(world, end, block):
         world.counters[LOST_NOISE + block] += 1
         return True
     return False
+
+
+def is_cut(world, end):
+    """True if a cable is down for more reasons than that a node at it is dead."""
+    reasons = world.ends[end].impaired >> 2
+    for own in (end, world.ends[end].peer):
+        if world.alive[min(own >> 2, world.run[0].cells)] == DEAD:
+            reasons -= 1
+    return reasons > 0
+
+
+def why_lost(world, do, end):
+    """What took a frame that left at this end, as taps say it."""
+    if world.ends[end].impaired & DOWN:
+        return taps.OFF if do.is_off(world, end) else taps.CUT
+    return taps.NOISE
 
 
 def chance(run, n):
@@ -180,6 +196,9 @@ def lands(world, do, event, node, frame, time):
         if world.alive[node] == ALIVE:
             tap_in(world, do, end, frame, time, taps.FINE)
             return True
+        world.counters[LOST_OFF + event.kind] += 1
+        tap_in(world, do, end, frame, time, taps.OFF)
+    elif world.ends[end].impaired & DOWN and do.is_off(world, end):
         world.counters[LOST_OFF + event.kind] += 1
         tap_in(world, do, end, frame, time, taps.OFF)
     else:

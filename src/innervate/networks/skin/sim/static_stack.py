@@ -7,6 +7,7 @@ from innervate.networks.skin.sim.stack import before_change as before_change
 from innervate.networks.skin.sim.stack import block_of as block_of
 from innervate.networks.skin.sim.stack import check as check
 from innervate.networks.skin.sim.stack import digest as digest
+from innervate.networks.skin.sim.stack import is_off as is_off
 from innervate.networks.skin.sim.stack import local
 from innervate.networks.skin.sim.stack import on_change as on_change
 from innervate.networks.skin.sim.stack import on_deliver as on_deliver
