@@ -311,7 +311,8 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
     started, tally = wall_s(), Tally(states=1)
     first = net.begin(budget)
     if broken := first.broken or (net.of_all and net.broken_of_all(first.state)):
-        return replace(tally, ended="broken"), Story(broken, [f"{first.words}."])
+        told = Story(broken, [f"{first.words or 'All nodes are switched on'}."])
+        return replace(tally, ended="broken"), told
     before: dict[State, tuple[State, str] | None] = {first.state: None}
     level = [first.state]
     waits = bool(net.given) and is_still(first.state)  # for its user: so it does from the start

@@ -91,6 +91,14 @@ def test_an_action_that_nobody_can_carry_out_is_found(action, title):
     assert explored(protocol=changed(protocol, on_start=on_start)).story.title == title
 
 
+def test_what_must_hold_of_all_is_looked_at_as_they_are_switched_on(monkeypatch):
+    rules = {"nobody holds a token": lambda nodes, count, params: 0}
+    monkeypatch.setattr(declared, "invariants_of",
+                        lambda network, prefix: rules if prefix == "network_" else {})  # fmt: skip
+    story = explored().story
+    assert (story.title, story.sentences) == ("nobody holds a token", ["All nodes are switched on."])
+
+
 def test_an_outbox_that_overflows_is_found():
     case = explored(protocol=changed(protocol, OUTBOX=1))
     assert case.story.title == "an outbox overflowed"
