@@ -96,7 +96,8 @@ def test_what_must_hold_of_all_is_looked_at_as_they_are_switched_on(monkeypatch)
     monkeypatch.setattr(declared, "invariants_of",
                         lambda network, prefix: rules if prefix == "network_" else {})  # fmt: skip
     story = explored().story
-    assert (story.title, story.sentences) == ("nobody holds a token", ["All nodes are switched on."])
+    assert story.title == "nobody holds a token"
+    assert story.sentences == ["All nodes are switched on."]
 
 
 def test_an_outbox_that_overflows_is_found():
