@@ -57,7 +57,8 @@ class PlotTable(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     by: Annotated[str, Meta(description='a column, like "protocol.rule"')] = ""
     kind: Annotated[Literal["band", "heat"], Meta(description='"band" or "heat"')] = "band"
     name: Annotated[
-        str, Meta(pattern=r"^[\w.+-]{0,80}\Z", description="a file's name without its ending")
+        str,
+        Meta(pattern=r"^[\w.+-]{0,80}(?![\s\S])", description="a file's name without its ending"),
     ] = ""
     title: Annotated[str, Meta(max_length=200, description="a text")] = ""
 
