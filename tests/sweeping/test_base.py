@@ -6,7 +6,6 @@ import shlex
 from pathlib import Path
 from types import SimpleNamespace
 
-import polars
 import pytest
 
 from innervate.running import RunError
@@ -14,7 +13,6 @@ from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, make_plan, planfile, scheduler, sweep, work
 from innervate.sweeping import plan as plans
 from innervate.sweeping.base import Base, base_of
-from innervate.sweeping.result import SHOWN, SHOWN_MAX, Sweep
 from innervate.sweeping.scheduler import DEATHS_MAX, Scheduler
 from innervate.sweeping.vary import Named
 from innervate.sweeping.work import Job
@@ -241,74 +239,6 @@ def test_what_is_suspected_goes_alone_before_all_else():
     assert made._hand_out()
     assert given == [[7], [8], [0], [1], [2], [3]]
     assert scheduler.BATCH_MAX == 500
-
-
-def table(*rows):
-    plan = make_plan(SKIN, vary={"protocol.k": [2, 3]}, paired="protocol.k", repeat=3)
-    found = [{"point": point, "repeat": repeat, "seed": 1, "protocol.k": 2 + point,
-              "status": "done", "x": x, **{name: 1.0 for name in SHOWN}}
-             for point, repeat, x in rows]  # fmt: skip
-    return Sweep(plan, polars.DataFrame(found), polars.DataFrame())
-
-
-def test_pairs_are_runs_that_both_have_and_their_interval_is_of_the_level_asked_for():
-    made = table((0, 0, 1.0), (0, 1, 2.0), (0, 2, 9.0), (1, 0, 3.0), (1, 1, 6.0), (1, 2, None))
-    (wide,) = made.compare("protocol.k", 2, 3, "x", level=0.99).rows(named=True)
-    (row,) = made.compare("protocol.k", 2, 3, "x").rows(named=True)
-    assert (row["pairs"], row["mean_one"], row["mean_other"]) == (2, 1.5, 4.5)
-    assert row["difference"] == wide["difference"] == 3.0
-    assert row["high"] - row["low"] == pytest.approx(2 * 12.7062, abs=1e-3)
-    assert wide["high"] - wide["low"] == pytest.approx(2 * 63.6567, abs=1e-3)
-    (back,) = made.compare("protocol.k", 3, 2, "x").rows(named=True)
-    assert back["difference"] == -3.0
-    (none,) = table((0, 0, 1.0), (1, 1, 2.0)).compare("protocol.k", 2, 3, "x").rows(named=True)
-    assert (none["pairs"], none["difference"]) == (0, None)
-
-
-@pytest.mark.parametrize(
-    "paired", ["all", ("protocol.k", "data.queue", "protocol.rule", "protocol.m")]
-)
-def test_pairs_differ_in_the_key_and_what_goes_with_it_and_in_nothing_else(paired):
-    """Points of other settings have the same seeds, and are not compared with each other."""
-    vary = {"protocol.k": [2, 3], ("protocol.rule", "protocol.m"): [("paper", 2), ("strict", 3)],
-            "data.queue": [4, 8]}  # fmt: skip
-    plan = make_plan(SKIN, vary=vary, paired=paired, derive={"touch.x": "protocol.m * 2"})
-    rows = [{"point": p.index, "repeat": 0, **p.columns, "x": 10.0**p.index} for p in plan.points]
-    made = Sweep(plan, polars.DataFrame(rows), polars.DataFrame())
-    keys, pairs = ["protocol.k", "data.queue"], {}
-    for key, one, other in (("protocol.rule", "paper", "strict"), ("touch.x", 4, 6)):
-        found = made.compare(key, one, other, "x")
-        pairs[key] = set(found.select(*keys, "mean_one", "mean_other").rows())
-    wanted = {(k, q, 10.0**i, 10.0 ** (i + 2))
-              for k, q, i in ((2, 4, 0), (2, 8, 1), (3, 4, 4), (3, 8, 5))}  # fmt: skip
-    assert pairs["protocol.rule"] == pairs["touch.x"] == wanted
-
-
-def test_of_measures_a_few_are_shown_those_asked_for_first():
-    made = table((0, 0, 1.0))
-    assert made.to_show() == list(SHOWN[:SHOWN_MAX])
-    assert made.to_show(["x", "nothing"]) == ["x"]
-    assert made.to_show(["nothing"]) == made.measures[:SHOWN_MAX]
-    assert made.to_show([*SHOWN]) == list(SHOWN[:SHOWN_MAX])
-
-
-def test_over_what_a_figure_takes_means():
-    plan = make_plan(SKIN, vary={"protocol.k": [2, 3, 4], "protocol.m": [2], "seedless": [1, 2]},
-                     derive={"data.queue": "protocol.k + 1"})  # fmt: skip
-    made = Sweep(plan, polars.DataFrame(), polars.DataFrame())
-    assert made.averaged("protocol.k") == {"seedless": 2}
-    assert made.averaged("seedless") == {"protocol.k": 3, "data.queue": 3}
-    assert made.averaged("protocol.k", "seedless") == {}
-    assert made.averaged("protocol.k", "data.loss_ratio") == {"seedless": 2}  # a measure, by which
-
-
-def test_a_figure_by_a_measure_is_drawn_and_one_of_what_no_run_has_is_told():
-    made = table((0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0))
-    (ax,) = made.plot("protocol.k", "data.loss_ratio", by="x").axes
-    assert len(ax.lines) == 3
-    made.results = made.results.with_columns(polars.lit(None, polars.String).alias("never"))
-    with pytest.raises(SweepError, match='no run has a value of "never"'):
-        made.plot("protocol.k", "never")
 
 
 def test_a_plan_is_checked_by_its_first_points_and_goes_on_past_those_that_cannot_be(tmp_path):
