@@ -55,6 +55,16 @@ def test_each_figure_draws_a_free_graph(name):
     assert any(ax.has_data() for ax in made.axes)
 
 
+def test_the_picture_of_what_was_received_says_what_its_shades_and_signs_mean(skin):
+    said = words(skin.plot("received"))
+    force = skin.plan.touch.force_mn / 1e3
+    wanted = {f"0 to {force:g} N", "nothing received in that time", "where the touch really is"}
+    assert wanted <= set(said)
+    bare = words(run(FREE).plot("received"))
+    assert [word for word in bare if "N" in word or "touch" in word] == []
+    assert "nothing received in that time" in bare
+
+
 def test_recovery_shows_the_time_round_the_event(skin):
     ticks = [float(word) for word in words(skin.plot()) if re.fullmatch(r"0\.\d+", word)]
     assert 0.25 < min(ticks) <= 0.3 < max(ticks) < 0.4

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from innervate.networks.skin.analysis.touch import WINDOW_S
 from innervate.networks.skin.plot import map as skinmap
 from innervate.networks.skin.plot.digest import Digest
-from innervate.networks.skin.plot.report import legend
+from innervate.networks.skin.plot.report import legend, touch_legend
 from innervate.networks.skin.plot.words import fault_words
 from innervate.plot import paint, style
 from innervate.plot.charts import Axis, Mark, Steps
@@ -70,9 +70,11 @@ def loads(run: Any) -> Figure:
 def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) -> Figure:
     """The force the PC knew of at a time; hollow: no sample in the window before."""
     at_us = run.result.ended_us if time_s is None else round(1e6 * time_s)
-    panel = Digest(run.result, run.summary).image(at_us, round(1e6 * window_s), "")
+    digest = Digest(run.result, run.summary)
+    panel = digest.image(at_us, round(1e6 * window_s), "")
     title = f"force known at {at_us / 1e6:.3f} s; {panel.text}"
-    return paint.figure(panel.drawing, title, style.COLUMN_IN)
+    drawing = paint.keyed(panel.drawing, touch_legend(digest))
+    return paint.figure(drawing, title, style.COLUMN_IN)
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {

@@ -120,16 +120,22 @@ def _touch(digest: Digest) -> str:
     if not images:
         return ""
     period = words.ms_words(digest.plan.data_period_us / 1e3)
-    entries = [(_icon("none", crossed=True), "nothing received in that time")]
     text = f"Every cell measures once in {period}; shown is what came in 1.25 times that."
+    shown = pictures([panel(one) for one in images], "two" if digest.sheet.wide else "three")
+    return section(
+        "Touch as the PC received it",
+        element("p", text, "note") + shown + keys(touch_legend(digest)),
+    )
+
+
+def touch_legend(digest: Digest) -> list[tuple[svg.Drawing, str]]:
+    """What the shades and signs of a picture of what was received mean."""
+    entries = [(_icon("none", crossed=True), "nothing received in that time")]
     if digest.plan.touch is not None:
         force = digest.plan.touch.force_mn / 1e3
         entries.insert(0, (_ramp("h"), f"0 to {force:g} N"))
         entries.append((_icon("touch", circle=True), "where the touch really is"))
-    shown = pictures([panel(one) for one in images], "two" if digest.sheet.wide else "three")
-    return section(
-        "Touch as the PC received it", element("p", text, "note") + shown + keys(entries)
-    )
+    return entries
 
 
 def _traffic(digest: Digest) -> str:
