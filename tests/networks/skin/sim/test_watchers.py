@@ -118,11 +118,11 @@ ROUTES = {
     ),
     "a cell in the middle": (
         [{"at_s": 0.5, "action": "kill", "node": "n2"}],
-        [(observer.CUT_OFF, 0, 2), (observer.APART, 1, 1), (observer.JOINED, 1, 0)],
+        [(observer.CUT_OFF, 0, 1), (observer.APART, 1, 1), (observer.JOINED, 1, 0)],
     ),
     "the last cell": (
         [{"at_s": 0.5, "action": "kill", "node": "n3"}],
-        [(observer.CUT_OFF, 0, 1), (observer.JOINED, 2, 0)],
+        [(observer.CUT_OFF, 0, 0), (observer.JOINED, 2, 0)],
     ),
     "the PC's cable": (
         [{"at_s": 0.5, "action": "cut", "interface": 0}],

@@ -8,6 +8,7 @@ import pytest
 from innervate import scenario
 from innervate.networks.skin.protocol.constants import REPORT_BROKEN, REPORT_PARENT
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
+from innervate.networks.skin.sim.simulate import simulate
 from innervate.networks.skin.view.view import SkinView
 from innervate.scenario.actions.cables import CUT as EVENT_CUT
 from innervate.sim.cables.world import ROW
@@ -178,6 +179,21 @@ def test_where_nobody_was_left_it_is_over_when_somebody_is_back_with_a_way():
     revived = (mark(0), mark(1), mark(2), mark(3))
     assert of_cells(*revived, unrouted(420, 0)) == (False, 120.0)
     assert of_cells(*revived, mark(4)) == (True, None)
+
+
+@pytest.mark.parametrize(("cell", "told"), [
+    (2, []), (1, ["1 cell lost the way to the PC"]), (0, ["2 cells lost the way to the PC"]),
+])  # fmt: skip
+def test_a_cell_that_is_switched_off_is_not_among_those_that_lost_their_way(cell, told):
+    """A line of three whose way leads over cell 0 to interface 0."""
+    kill = {"at_s": 0.3, "action": "kill", "cell": {"row": 0, "column": cell}}
+    keys = line(3, event=[kill]) | {"duration_s": 0.4}
+    keys["interface"] = keys["interface"][:1]
+    plan = scenario.plan(scenario.from_dict(keys))
+    rows = simulate(plan, plain=True).rows
+    view = SkinView(SimpleNamespace(plan=plan, given=[], now_us=0), History())
+    view.note({"rows": rows[rows["code"] == CUT_OFF], "deliveries": np.zeros(0)})
+    assert [text for text in lines(view) if "lost the way" in text] == told
 
 
 def test_only_a_parent_that_is_lost_is_told():

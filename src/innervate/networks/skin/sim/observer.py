@@ -26,7 +26,7 @@ DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this 
 UNROUTED = 100  # a = connected cells without a route, from now on
 LOOP_OPEN = 101  # a = cells in it
 LOOP_CLOSED = 102  # a = how long it stood, us
-CUT_OFF = 103  # a = index of the scenario's event, b = cells whose chain used the link
+CUT_OFF = 103  # a = index of the scenario's event, b = cells whose chain used it and that are on
 APART = 104  # a = cells that are on and that no live cable joins with the PC, b = those since now
 JOINED = 105  # a = cells that live cables join with the PC, from now on
 
@@ -216,7 +216,8 @@ def on_links_changed(world, time, node, index):
     lost = 0
     for cell in range(run.cells):
         run.unrouted += watch.joined[cell] & (1 - watch.routed[cell])
-        lost += watch.before[cell] & (1 - watch.routed[cell])
+        if world.alive[cell] != DEAD:  # who is off has lost more than its way
+            lost += watch.before[cell] & (1 - watch.routed[cell])
     note(world, time, node, CUT_OFF, index, lost)
     if index < 0 or not goes_on(world, time):
         note_apart(world, time, node)
