@@ -101,6 +101,12 @@ def test_the_report_shows_all_parts(field):
     assert page.count("<script>") == 1
 
 
+def test_when_a_fence_was_crossed_is_on_one_line_on_a_phone_too(field):
+    rows = field.report().partition("<h2>Crossings</h2>")[2].partition("</table>")[0]
+    assert len(re.findall(r"<td>\d+\.\d{3}\u00a0s</td>", rows)) == 2
+    assert len(re.findall(r"<td>[\d.]+\u00a0m</td>", rows)) == 2
+
+
 def test_a_mesh_without_a_fence_has_no_crossings(plain):
     page = plain.report()
     assert "A crossing, in slow motion" not in page
