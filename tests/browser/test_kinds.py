@@ -35,6 +35,18 @@ PAINTED = """(selector) => [...document.querySelectorAll(`${selector} canvas`)]
   .reduce((sum, data) => sum + data.filter((value, i) => i % 4 === 3 && value).length, 0)"""
 
 
+def test_who_left_a_team_is_told_from_who_is_off(look, tmp_path):
+    path = tmp_path / "radio.toml"
+    gone = "".join(f'[[event]]\nat_s = 0.0{i}\naction = "{word}"\nstation = {i}\n'
+                   for i, word in enumerate(("leave", "kill"), 1))  # fmt: skip
+    path.write_text(RADIO.replace("stations = 3", "stations = 4") + gone)
+    with beside(path, 0.1) as address:
+        page = look(address)
+        expect(page.locator("#unconnected output")).to_have_text("1")
+        more = "of 4 stations; 1 more not in the team"
+        expect(page.locator("#unconnected .more")).to_have_text(more)
+
+
 def test_a_radio_team(look, tmp_path):
     path = tmp_path / "radio.toml"
     path.write_text(RADIO)

@@ -75,8 +75,9 @@ export function showNumbers(network) {
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
   const who = apart === unconnected ? "cut off" : `${apart} of them cut off`;
   const off = apart && tellsWays ? `; ${who}` : "";
+  const away = network.now.away ? `; ${network.now.away} more not in the team` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
-    isKnown ? `${of}${off}` : "nobody answers", unconnected ? "bad" : "");
+    isKnown ? `${of}${off}${away}` : "nobody answers", unconnected ? "bad" : "");
 }
 
 const WORDS = { skin: "cell", radio: "station", mesh: "node" };

@@ -62,6 +62,16 @@ def test_what_every_station_does_now(view):
     assert (shown["unconnected"], shown["load"].tolist()) == (1, [0, 0.25, 0.25, 0.25, 0.25])
 
 
+def test_who_left_the_team_is_told_from_who_was_switched_off(view):
+    radios = view.engine.world.radios
+    radios["alive"][:5] = (1, 1, 0, 0, 0)
+    radios["leaving"][:5] = (0, 1, 0, 1, 2)
+    view.engine.now_us = 1
+    shown = view.arrays(False)
+    assert (shown["unconnected"], shown["away"]) == (1, 2)
+    assert shown["node_up"].tolist() == [1, 1, 0, 0, 0]
+
+
 @pytest.mark.parametrize(("mode", "name"), [("practical", "pos"), ("paper", "place")])
 def test_whose_turn_is_when(mode, name):
     view = viewed(protocol={"mode": mode})

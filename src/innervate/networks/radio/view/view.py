@@ -175,6 +175,9 @@ class RadioView(View):
         now = np.where(radios["deaf"] > 0, TURNING, now)
         now = np.where((radios["deaf"] > 0) & self._on_air(), SENDING, now)
         up = radios["alive"] > 0
+        away = ~up & (radios["leaving"] > 0)
+        if self.engine.now_us == 0:  # who is yet to come
+            away = ~up & np.array(self.plan.absent or [0] * count, np.bool_)
         return {
             "node_up": up.astype(np.int64),
             "radio": {
@@ -182,7 +185,8 @@ class RadioView(View):
                 "turn": self._turns(),
             },
             "load": (world.stations["queued"][:count] / 16).round(3),
-            "unconnected": int(np.count_nonzero(~up)),
+            "unconnected": int(np.count_nonzero(~up & ~away)),
+            "away": int(np.count_nonzero(away)),
             "flights": [],
         }
 
