@@ -47,6 +47,7 @@ TIGHT = "".join(f"[[link]]\na = '{a}'\nb = '{b}'\n" for a, b in (
 FENCE = "nodes = 10\n[radio]\nmean_degree = 8\n[fence]\npolygon = [[0, 0], [9, 0], [9, 9]]\n"
 ROBOT = "[[robot]]\nnode = 9\nrandom = true\nspeed_mps = 1\n"
 FLOW = "nodes = 10\n[radio]\nmean_degree = 8\n[[flow]]\nfrom = 1\nto = 2\n"
+ACKS = "nodes = 10\n[radio]\nmean_degree = 8\nturnaround_us = 192\n[protocol]\n"
 
 # Kind, words, a scenario of which they are said, one of which they are not.
 CASES = [
@@ -67,6 +68,9 @@ CASES = [
         for most in (105, 104)
     )),
     # Two thirds of the nodes: 6 leaves of 9, and 9 of 14.
+    # An ack of 15 bytes at 250 kbit/s takes 480 us, after the turnaround.
+    ("mesh", "a hop's ack is there 672 us after its frame", ACKS + "ack_us = 671",
+     ACKS + "ack_us = 672"),
     ("mesh", "nearly a star", star(8, 1), star(13, 2)),
     ("mesh", "fewer than 3 neighbours", links((0, 1), (0, 2), (0, 3), (0, 4), (0, 5),
      (1, 2), (3, 4), (3, 5), (4, 5)), links(*every_pair(6))),

@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import dist, log10
 from operator import itemgetter
 
-from innervate.networks.mesh.protocol.constants import ALL, MONITOR
+from innervate.networks.mesh.protocol.constants import ACK_BYTES, ALL, MONITOR
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk
@@ -22,7 +22,21 @@ MOMENTS_MAX = 300
 
 def foreseen(made: MeshPlan) -> list[str]:
     """A sentence for each; none if all is well."""
-    return [*_at_the_end(made), *_too_much(made), *_out_of_reach(made)]
+    return [*_acks(made), *_at_the_end(made), *_too_much(made), *_out_of_reach(made)]
+
+
+def _acks(made: MeshPlan) -> list[str]:
+    """Hops that are given up before an ack can be there."""
+    radio, wait_us = made.radio, made.params["ack_us"]
+    if not radio.collisions or not made.params["hop_acks"]:
+        return []
+    needed_us = radio.turnaround_us + (radio.phy_bytes + int(ACK_BYTES)) * radio.byte_ns // 1000
+    if wait_us >= needed_us:
+        return []
+    return [
+        f"a hop's ack is there {needed_us:,} us after its frame at the earliest, and "
+        f"protocol.ack_us is {wait_us:,}: every hop counts as lost; make it longer"
+    ]
 
 
 def _at_the_end(made: MeshPlan) -> list[str]:
