@@ -12,6 +12,7 @@ import pytest
 from innervate import scenario
 from innervate.cli.app import app
 from innervate.live import nodefile
+from innervate.network import networks
 from innervate.networks.skin.scenario import model
 from innervate.sweeping import make_plan, planfile
 
@@ -98,6 +99,15 @@ def test_scenarios_in_pages_can_be_run(page, tmp_path):
             nodefile.parse(tables)
         else:
             scenario.plan(scenario.loads(block))
+
+
+def test_link_types_of_captures_are_those_of_the_page():
+    page = (DOCS / "export.md").read_text()
+    rows = re.findall(r"^\| (\w+) \| (\d+), LINKTYPE_USER(\d+) ", page, re.MULTILINE)
+    assert all(int(number) == 147 + int(user) for _, number, user in rows)
+    ours = [name for name in networks() if networks()[name].package.startswith("innervate.")]
+    said = {name: int(number) for name, number, _ in rows}
+    assert said == {name: networks()[name].link_type for name in ours}
 
 
 def test_commands_in_pages_exist():

@@ -1,9 +1,13 @@
 """What RFC 8966 says, sentence by sentence, of updates, requests and Hellos."""
 
+import pytest
+
 import innervate
+from innervate.network import networks
 from innervate.networks.babel.protocol import fields
-from innervate.networks.babel.protocol.constants import INFINITY, LOOK, NONE, SOON
+from innervate.networks.babel.protocol.constants import INFINITY, LOOK, NONE, PORTS, SOON, TICK
 from innervate.networks.babel.protocol.links import rxcost_of
+from innervate.prove.theory import prove
 from tests.networks.babel.bench import (
     HELLO_US,
     UPDATE_US,
@@ -25,6 +29,28 @@ def test_3_7_1_periodic_updates():
     bench.tick()
     told = [updates(bench.tick()) for _ in range(8)]
     assert [set(one) for one in told] == [set(), set(), set(), {1, 2, 3}] * 2
+
+
+# Without a route there is none to advertise; one that was advertised is retracted [3.7.1, 3.7.2].
+def test_3_7_1_without_a_route_nothing_is_told():
+    bench = Bench().up(0)
+    assert updates(bench.advertise() + bench.advertise()) == {}
+    bench.update(0, 5, C)
+    assert {metric for _, metric in updates(bench.advertise()).values()} == {2 * C}
+    bench.update(0, 5, INFINITY)
+    assert {metric for _, metric in updates(bench.advertise()).values()} == {INFINITY}
+
+
+# The Interval of an update is an upper bound on when the next one comes; it has 16 bits [4.6.9].
+def test_4_6_9_what_a_frame_says_of_the_next_update_is_kept():
+    for hello_us, hellos, beats in ((1_000_000, 64, 6), (1_000_000, 6, 6), (100_000, 64, 64),
+                                    (110_000, 64, 59)):  # fmt: skip
+        bench = routed(0, hello_us=hello_us, update_hellos=hellos)
+        told = [bench.timer(TICK, hello_us) for _ in range(2 * beats + 1)]
+        with_one = [place for place, sent in enumerate(told) if updates(sent)]
+        assert with_one == [0, beats, 2 * beats]
+        (said,) = {f.update for place in with_one for _, f in told[place] if f.has_update}
+        assert said == beats * hello_us // 100 <= 65535
 
 
 # "When a route is retracted, a node SHOULD send a triggered update and SHOULD make a reasonable
@@ -240,6 +266,16 @@ def test_a_1_history():
     assert bench.node.hello_next[0] == 5
 
 
+def test_a_1_sixteen_hellos_that_are_missed_leave_none_of_those_before():
+    bench = Bench().up(0)
+    bench.hello(0, skip=15)
+    assert bench.node.history[0] == 0b111 << 16 & 0xFFFF | 1
+    bench.hello(0, skip=16)
+    assert (bench.node.history[0], bench.node.neighbour[0]) == (1, 10)
+    bench.hello(0)
+    assert bench.node.history[0] == 0b11
+
+
 # "if the two differ by more than 16 (modulo 2^16), then the sending node has probably rebooted
 # [...]; the whole associated neighbour table entry is flushed and a new one is created" [A.1]
 def test_a_1_a_neighbour_that_rebooted():
@@ -308,3 +344,29 @@ def test_b_an_outage_is_detected():
         down = rows["time"][(rows["code"] == 3) & (rows["b"] == 0)] - 200_300
         assert len(down) == 2
         assert all(1.5 * HELLO_US <= time <= 3.5 * HELLO_US + 100 for time in down)
+
+
+# A feasibility distance that was forgotten decides nothing any more, whatever it was [3.7.3].
+@pytest.mark.parametrize(("known", "before", "after"), [
+    (0, (9, 1), (5, 2 * C)), (1, (4, 1), (5, 2 * C)), (1, (5, 1), (5, 1)),
+    (1, (5, 999), (5, 2 * C)), (1, (6, 1), (6, 1)),
+])  # fmt: skip
+def test_3_7_3_what_is_told_becomes_part_of_the_feasibility_distance(known, before, after):
+    bench = routed(0)
+    bench.node.fd_known = known
+    bench.node.fd_seq, bench.node.fd_metric = before
+    bench.advertise()
+    assert bench.fd == after
+
+
+@pytest.mark.slow
+def test_all_stays_in_range_whatever_comes_in_and_every_branch_is_taken():
+    babel = networks()["babel"]
+    (theory,) = babel.prove.theories(babel)
+    came = prove(theory)
+    assert [(one.name, bad.goal) for one in came.checked for bad in one.refuted] == []
+    assert came.is_as_expected
+
+
+def test_a_node_has_an_entry_for_each_of_its_ports():
+    assert {length for _, length, *_ in fields.STATE if length} == {PORTS}

@@ -5,7 +5,6 @@ import pytest
 from innervate.networks.rpl.protocol import constants as c
 from innervate.networks.rpl.protocol import packets as parts
 from innervate.networks.rpl.protocol.node import ALARM, MESSAGE
-from innervate.networks.rpl.shows import depth
 from tests.networks.rpl.nodes import (
     RPL,
     attached,
@@ -74,10 +73,3 @@ def test_a_frame_of_which_nothing_is_said_says_nothing():
     parts.clean(frame)
     for name, length, *_ in RPL.fields.FRAME:
         assert getattr(frame, name) == ([0] * length if length else 0), name
-
-
-@pytest.mark.parametrize(("rank", "shown"), [(c.INFINITE, -1), (128, 0), (256, 1), (448, 2.5)])
-def test_what_a_page_shows_of_how_far_a_node_is(rank, shown):
-    one = node()
-    one.node.rank = rank
-    assert depth(one.node, one.params) == shown

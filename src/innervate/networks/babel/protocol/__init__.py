@@ -92,7 +92,9 @@ Any input is data for the PC. Reports: `REPORT_ROUTE = 1` (port, neighbour; -1 n
 
 Constants and settings
 ======================
-`PORTS = 4`; a request is sent `TRIES = 3` times more; a call puts at most `OUTBOX = 34` actions.
+`PORTS = 4`; a request is sent `TRIES = 3` times more, `WANTED_MAX = 16000000` us apart at most; a
+frame says of an update that the next comes within `SAID_MAX = 6553500` us at most, so that updates
+come as often; a call puts at most `OUTBOX = 34` actions.
 Settings, by themselves those of appendix B with a Hello every 4 ms instead of 4 s, all other times
 in proportion:
 

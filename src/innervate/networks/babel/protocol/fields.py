@@ -1,5 +1,7 @@
 """What nodes, frames and settings of Babel hold: (name, length, low, high, unit, meaning)."""
 
+from innervate.networks.babel.protocol.constants import WANTED_MAX
+
 clock = (0, 1073741823, "us")
 number = (0, 65535, "number")
 cost = (0, 65535, "cost")
@@ -35,7 +37,7 @@ STATE = (
     ("wanted", 0, 0, 1, "flag", "a request was sent and not answered yet"),
     ("wanted_seq", 0, *number, "that is requested"),
     ("wanted_tries", 0, 0, 3, "requests", "that follow if it stays unanswered"),
-    ("wanted_us", 0, 0, 16_000_000, "us", "between the last two of them"),
+    ("wanted_us", 0, 0, WANTED_MAX, "us", "between the last two of them"),
     ("wanted_at", 0, *clock, "when the next is due, or it is given up"),
     ("said", 0, *cost, "our metric as we advertised it last"),
     ("soon", 0, 0, 1, "flag", "a triggered update is about to be sent"),

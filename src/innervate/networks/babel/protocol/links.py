@@ -22,8 +22,8 @@ def hear(node, params, now, port, frame, out):
         forget_neighbour(node, port)
         ahead = 0
     if ahead < 17:
-        node.history[port] = (node.history[port] << ahead) & MASK16
-    elif ahead > 65519:
+        node.history[port] = (node.history[port] & (MASK16 >> ahead)) << ahead
+    else:
         node.history[port] = node.history[port] >> (65536 - ahead)  # "undo history"
     node.history[port] = ((node.history[port] << 1) | 1) & MASK16
     node.neighbour[port] = frame.source

@@ -20,11 +20,12 @@ from innervate.networks.babel.protocol.constants import (
     TENTH_MS,
     TICK,
     UPDATE,
+    WANTED_MAX,
 )  # fmt: skip
 from innervate.networks.babel.protocol.links import hear, hear_ihu, look_at_link, rxcost_of
 from innervate.networks.babel.protocol.requests import send_request, take_request, want
 from innervate.networks.babel.protocol.routes import look_at_route, select, take
-from innervate.networks.babel.protocol.updates import fill_route, send_update, trigger
+from innervate.networks.babel.protocol.updates import between, fill_route, send_update, trigger
 
 TIMERS = 3
 OUTBOX = 34
@@ -116,7 +117,7 @@ def forward(node, params, frame, out):
         onward = out.frame[send(out, node.parent, 0, 0)]
     onward.kind = DATA
     onward.source = frame.source
-    onward.hops = frame.hops + 1
+    onward.hops = min(frame.hops + 1, 255)
     onward.value = frame.value
     onward.made_at = frame.made_at
 
@@ -127,7 +128,7 @@ def tick(node, params, now, out):
     node.beats = node.beats - 1
     has_update = node.beats <= 0 and (node.fd_known or own_metric(node, params) < INFINITY)
     if node.beats <= 0:
-        node.beats = params.update_hellos
+        node.beats = between(params)
     for p in range(PORTS):
         frame = frame_to(node, p, HELLO, out)
         frame.hello_no = node.hello_no
@@ -160,7 +161,8 @@ def look(node, params, now, out):
         if after(now, node.wanted_at):
             if node.wanted_tries > 0:
                 again = node.wanted_tries - 1
-                want(node, now, node.wanted_seq, 2 * node.wanted_us, again, out)
+                wait = min(2 * node.wanted_us, WANTED_MAX)
+                want(node, now, node.wanted_seq, wait, again, out)
                 send_request(node, NONE, node.wanted_seq, HOPS_MAX, out)
             else:
                 node.wanted = 0

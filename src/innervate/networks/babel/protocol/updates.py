@@ -3,12 +3,24 @@
 from innervate.dialect.arith import MASK30, later
 from innervate.dialect.outbox import set_timer
 from innervate.networks.babel.protocol.common import arm, frame_to, own_metric
-from innervate.networks.babel.protocol.constants import INFINITY, NONE, SOON, TENTH_MS, UPDATE
+from innervate.networks.babel.protocol.constants import (
+    INFINITY,
+    NONE,
+    SAID_MAX,
+    SOON,
+    TENTH_MS,
+    UPDATE,
+)
 
 
 def send_update(node, params, now, port, out):
     """An update of its own on a port."""
     fill_route(node, params, now, frame_to(node, port, UPDATE, out), 1, out)
+
+
+def between(params):
+    """Hellos between two updates; fewer where a frame could not say when the next one comes."""
+    return min(params.update_hellos, SAID_MAX // params.hello_us)
 
 
 def fill_route(node, params, now, frame, is_update, out):
@@ -21,7 +33,7 @@ def fill_route(node, params, now, frame, is_update, out):
         seq = node.seq[node.parent]
     frame.seq = seq
     frame.metric = metric
-    frame.update = params.update_hellos * params.hello_us // TENTH_MS
+    frame.update = between(params) * params.hello_us // TENTH_MS
     if is_update == 0 or metric == INFINITY:
         return
     if node.fd_known == 0 or later(seq, node.fd_seq):
