@@ -5,7 +5,8 @@ import pytest
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.live.machine import machine
 from innervate.live.receipts import DELIVERED
-from innervate.networks.mesh.live.order import ANEW, QUIET_US, Order
+from innervate.networks.mesh.live.order import QUIET_US, Order
+from innervate.networks.mesh.protocol.duplicates import ANEW
 from tests.live import time_by_hand
 from tests.live.net import Mesh
 from tests.networks.mesh.live.test_order import PROFILE, WAIT, handed_up, until_simulated

@@ -15,11 +15,11 @@ from typing import NamedTuple
 from innervate.dialect.arith import MASK16, later
 from innervate.live.engine import clock_us
 from innervate.live.streams import Arrivals
+from innervate.networks.mesh.protocol.duplicates import ANEW
 
 WAIT_US = 10_000_000  # a message is rarely tried longer; at most 26 s
 BUFFER = 256
 REMEMBERED = 256  # numbers of messages that came too late: a router keeps no more apart
-ANEW = 320  # numbers behind the newest, as in the router's windows (duplicates.py)
 NEW_AHEAD = 32_768  # in place of the message before, so far ahead less the boot: drawn numbers
 BOOTS = 128  # boots of a machine that are told apart
 QUIET_US = 30_000_000  # a packet is under way for 26 s at most: behind that none is an old one
