@@ -1,14 +1,18 @@
 """`innervate prove`: what it prints and returns."""
 
 import json
+import os
 import re
+import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from innervate.network import networks
 from innervate.networks.radio.protocol.constants import WIDE_MOST
 from innervate.networks.radio.prove import turns
+from innervate.prove import solve
 from tests.own import alone
 
 __all__ = ["alone"]
@@ -38,6 +42,34 @@ def test_people_are_told_in_lines(sh, monkeypatch):
     *_, holds, _, last = sh.out.splitlines()
     assert holds == "  Holds: 7 lemmas; 26 ways of branches reached, 2 cannot be, as said."
     assert last.startswith("All as it should be: 7 lemmas in ")
+
+
+def test_what_the_solver_cannot_say_is_not_said_to_hold(sh, monkeypatch):
+    """With hardly any steps to think it finds no state that refutes a lemma."""
+    monkeypatch.setattr(solve.Question.__init__, "__defaults__", (50,))
+    assert sh("prove", "radio") == 2
+    assert "the solver could not say" in sh.err
+    assert len(sh.err.splitlines()) == 1
+    assert "as it should be" not in sh.out
+    assert "Holds" not in sh.out
+
+
+def test_an_interrupted_proof_says_how_far_it_came(sh, monkeypatch):
+    """Ctrl-C comes while the first of some theories is tried."""
+    network = networks()["radio"]
+    queue, *others = network.prove.theories(network)
+
+    def interrupted():
+        os.kill(os.getpid(), signal.SIGINT)
+        return step()
+
+    *first, step = queue.steps
+    made = replace(queue, steps=(*first, interrupted))
+    monkeypatch.setattr(network.prove, "theories", lambda _: [made, *others])
+    assert sh("prove", "radio") == 130
+    cut = f"; interrupted after 0 of {1 + len(others)} theories."
+    assert sh.out.splitlines()[-1].endswith(cut)
+    assert "All as it should be" not in sh.out
 
 
 def test_planted_mistakes_are_refuted(sh):
