@@ -203,30 +203,6 @@ def test_the_recovery_of_a_mesh_does_not_depend_on_the_pace():
     assert None not in found
 
 
-def newest_point(made):
-    return items(made, SERIES)[-1]
-
-
-@pytest.mark.parametrize("speed", [0, 0.1])
-def test_plots_tell_of_where_one_goes_holds_and_ends(speed):
-    """And not only of the last of the moments at which points are made."""
-    burst = {**RADIO, "duration_s": 60.0, "traffic": {"kind": "disaster"}}
-    made = simulated(burst, speed)
-    go_to(made, 0.14)
-    assert newest_point(made).at_us == 140_000
-    assert newest_point(made).what["throughput"] > 0
-    made.carry_out(messages.Pause())
-    assert [point.at_us for point in items(made, SERIES)].count(140_000) == 1
-    made.carry_out(messages.Step())
-    assert newest_point(made).at_us == 140_000  # too little has happened since
-    go_to(made, 0.1)
-    assert newest_point(made).at_us == 100_000
-    made.run_to_end()
-    assert 140_000 < newest_point(made).at_us == made.engine.now_us < 60_000_000
-    go_to(made, 60.0)
-    assert [point.at_us for point in items(made, SERIES)].count(made.engine.now_us) == 1
-
-
 def test_stations_send_listen_and_wait():
     made = simulated(RADIO)
     seen = set()

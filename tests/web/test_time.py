@@ -14,7 +14,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
-from tests.web.runs import KINDS, SKIN, few_points, go_to, plan_of, simulated
+from tests.web.runs import KINDS, RADIO, SKIN, few_points, go_to, plan_of, simulated
 
 __all__ = ["few_points"]
 
@@ -256,3 +256,27 @@ def test_moments_to_go_back_to_lie_over_the_whole_time():
     assert 16 <= len(kept) <= 32
     assert kept[0] == 0
     assert max(b - a for a, b in zip(kept, [*kept[1:], 1_000_000], strict=True)) <= 2 * 40_000
+
+
+def newest_point(made):
+    return items(made, SERIES)[-1]
+
+
+@pytest.mark.parametrize("speed", [0, 0.1])
+def test_plots_tell_of_where_one_goes_holds_and_ends(speed):
+    """And not only of the last of the moments at which points are made."""
+    burst = {**RADIO, "duration_s": 60.0, "traffic": {"kind": "disaster"}}
+    made = simulated(burst, speed)
+    go_to(made, 0.14)
+    assert newest_point(made).at_us == 140_000
+    assert newest_point(made).what["throughput"] > 0
+    made.carry_out(messages.Pause())
+    assert [point.at_us for point in items(made, SERIES)].count(140_000) == 1
+    made.carry_out(messages.Step())
+    assert newest_point(made).at_us == 140_000  # too little has happened since
+    go_to(made, 0.1)
+    assert newest_point(made).at_us == 100_000
+    made.run_to_end()
+    assert 140_000 < newest_point(made).at_us == made.engine.now_us < 60_000_000
+    go_to(made, 60.0)
+    assert [point.at_us for point in items(made, SERIES)].count(made.engine.now_us) == 1

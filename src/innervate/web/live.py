@@ -274,7 +274,7 @@ class Live(Source):
         if recovery.recovered_ms is None and not state.lacking and state.left:
             kept = recovery.detected_ms is None and not were_none
             recovery.recovered_ms = 0.0 if kept else after_ms
-            how = "kept its way" if kept else f"has a way again after {after_ms:.0f} ms"
+            how = "kept its way" if kept else f"has a way again after {int(after_ms + 0.5)} ms"
             apart = state.unconnected
             are = "is" if apart == 1 else "are"
             every = f"every node{'' if len(self._told) == len(self._last) else ' that answers'}"

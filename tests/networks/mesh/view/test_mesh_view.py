@@ -261,6 +261,8 @@ WELL = {"leads": [0], "on": range(5)}
         (50_000, WELL, False, 0.0, []),
         (50_002, WELL, False, 0.002, ["all nodes have a way to the gateway again after 0 ms"]),
         (173_400, WELL, False, 123.4, ["all nodes have a way to the gateway again after 123 ms"]),
+        # As the page rounds it in its large number.
+        (352_500, WELL, False, 302.5, ["all nodes have a way to the gateway again after 303 ms"]),
         (173_400, WELL | {"astray": [3]}, False, None, []),
         (173_400, WELL | {"leads": []}, False, None, []),  # who is on could be served
         (173_400, WELL | {"on": [0]}, True, None, []),  # nobody else is left

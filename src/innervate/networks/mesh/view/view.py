@@ -153,7 +153,7 @@ class MeshView(View):
         kept = after_us <= 1
         recovery.recovered_ms = 0.0 if kept else after_us / 1e3
         if not kept:
-            text = f"all nodes have a way to the gateway again after {after_us / 1e3:.0f} ms"
+            text = f"all nodes have a way to the gateway again after {int(after_us / 1e3 + 0.5)} ms"
             self.log.say(self.engine.now_us, text, "good")
 
     def _ways(self) -> Ways:
