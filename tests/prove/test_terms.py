@@ -4,6 +4,7 @@ import random
 
 import pytest
 
+from innervate.prove.errors import ProveError
 from innervate.prove.solve import Formulas, Question, width_of
 from innervate.prove.terms import KNOWN, Terms
 
@@ -132,3 +133,13 @@ def test_of_what_is_joined_both_truths_are_possible():
     parts = [terms.less(a, b), terms.same(a, terms.number(3))]
     for joined in (terms.all(*parts), terms.any(*parts)):
         assert (joined.low, joined.high) == (0, 1)
+
+
+def test_one_name_is_not_taken_for_two_numbers():
+    """Else the wide one would have the range of the narrow one, and less could be."""
+    terms = Terms()
+    wide, narrow = terms.unknown("n", 0, 7), terms.unknown("n", 0, 5)
+    most, some = terms.same(wide, terms.number(7)), terms.less(narrow, terms.number(4))
+    assert Question(Formulas(), []).values(most) == {"n": 7}
+    with pytest.raises(ProveError, match=r"^two unknowns are called n$"):
+        Question(Formulas(), []).values(most, some)

@@ -99,6 +99,8 @@ class Formulas:
 
     def _unknown(self, term: Term, width: int) -> Any:
         name = str(term.args[0])
+        if name in self.unknowns:  # the solver would take both for one, in the range of the last
+            raise ProveError(f"two unknowns are called {name}")
         if term.low >= 0:
             made = z3.ZeroExt(1, z3.BitVec(name, width - 1))
         else:
