@@ -57,6 +57,15 @@ def test_wrong_files(tmp_path: Path, text: str, pattern: str, words: str) -> Non
         cells_from_urdf("r.urdf", pattern, tmp_path)
 
 
+def test_a_robot_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch) -> None:
+    (tmp_path / "r.urdf").write_text(URDF)
+    monkeypatch.setattr("innervate.topology.urdf.SIZE_MAX", len(URDF))
+    assert cells_from_urdf("r.urdf", "skin_*", tmp_path)[0]
+    monkeypatch.setattr("innervate.topology.urdf.SIZE_MAX", len(URDF) - 1)
+    with pytest.raises(TopologyError, match=r"r\.urdf is too large for a URDF file"):
+        cells_from_urdf("r.urdf", "skin_*", tmp_path)
+
+
 def test_missing_files_and_packages(tmp_path: Path) -> None:
     with pytest.raises(TopologyError, match="cannot read the URDF file"):
         cells_from_urdf("none.urdf", "x", tmp_path)

@@ -18,6 +18,7 @@ from innervate.topology.errors import TopologyError
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 PACKAGE = "package:"
+SIZE_MAX = 64 * 1024 * 1024
 NUMBER_MAX = 1e6  # m or rad: no robot is that large
 _HERE: tuple[Matrix, Vector] = (((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0))
 
@@ -101,7 +102,11 @@ def read_links(path: Path, pattern: str) -> list[Link]:
 
 def _parse(path: Path) -> ElementTree.Element:
     try:
-        root = ElementTree.fromstring(path.read_bytes())
+        with path.open("rb") as file:
+            content = file.read(SIZE_MAX + 1)
+        if len(content) > SIZE_MAX:
+            raise TopologyError(f"{path} is too large for a URDF file (over 64 MiB)", "urdf")
+        root = ElementTree.fromstring(content)
     except (OSError, ValueError, LookupError) as error:
         reason = getattr(error, "strerror", None) or "unreadable"
         raise TopologyError(f"cannot read the URDF file {path}: {reason}", "urdf") from None
