@@ -79,6 +79,17 @@ def test_three_hops_by_default_and_seven_at_most():
     assert {name: high for name, _, _, high, *_ in FLOODING.fields.PARAMS}["hops"] == 7
 
 
+def test_frames_are_of_whole_bytes_each_number_in_no_more_bits_than_it_has():
+    """Six of header; behind them 16 of what users say, or two of what is acknowledged."""
+    frames, ranges = FLOODING.frames, {field[0]: field[2:4] for field in FLOODING.fields.FRAME}
+    sizes = {name: frames.KIND_BITS + sum(bits * max(many, 1) for _, many, bits, _ in fields)
+             for _kind, name, fields in frames.LAYOUTS}  # fmt: skip
+    assert sizes == {"packet": 8 * (6 + 16), "ack": 8 * (6 + 2)}
+    for _kind, _name, fields in frames.LAYOUTS:
+        for name, _many, bits, _signed in fields:
+            assert not name or ranges[name][1].bit_length() == bits
+
+
 def test_what_was_heard_before_is_ignored(node):
     """Overview: "it checks to see if it has heard that message before. If it has it ignores" """
     node.hear(**packet())
