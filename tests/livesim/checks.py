@@ -90,7 +90,7 @@ class Messages:
         self.again = 0  # handed up once more by another life of the recipient
         self._count = 0
         self._newest = {}
-        self._numbers = {}  # by sender: the life and number of its newest packet
+        self._numbers = {}  # by sender: life and number of its newest packet, what its disk refused
 
     def new(self, sender, life, dest, length):
         """A message that nobody has sent yet; its payload says which one it is."""
@@ -134,12 +134,14 @@ class Messages:
 
     def _look_at_number(self, sent):
         """Numbers go on over a restart, where the disk could keep them."""
-        seq, (old, newest) = sent.receipt.seq, self._numbers.get(sent.sender, (sent.life, -1))
+        seq, refused = sent.receipt.seq, sent.life.host.disk.refused
+        old, newest, before = self._numbers.get(sent.sender, (sent.life, -1, 0))
         lives = sent.life.number - old.number  # four restarts may lead half way round the numbers
-        if 0 < lives < 4 and newest >= 0 and not old.node.state.failed and not later(seq, newest):
+        is_kept = refused == before and not old.node.state.failed
+        if 0 < lives < 4 and newest >= 0 and is_kept and not later(seq, newest):
             self.world.fail(f"{sent.life.name}: packet {seq} after {newest} of {old.name}")
         if old is not sent.life or newest < 0 or later(seq, newest):
-            self._numbers[sent.sender] = (sent.life, seq)
+            self._numbers[sent.sender] = (sent.life, seq, refused)
 
     def look(self):
         """What became of those that are under way."""

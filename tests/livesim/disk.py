@@ -23,6 +23,7 @@ class Disk:
         names: what processes see, by path.
         safe_names: the same as the journal has it.
         full: nothing more can be written.
+        refused: how often something could not be.
         cut_after: the power goes off at that many operations from now; None = it does not.
         on_cut: is called then.
     """
@@ -31,6 +32,7 @@ class Disk:
         self.names = {}
         self.safe_names = {}
         self.full = False
+        self.refused = 0
         self.cut_after = None
         self.on_cut = None
         self._chance = chance
@@ -76,6 +78,11 @@ class Disk:
         if older:
             self.put(path, self._chance.choice(older))
 
+    def refuse(self):
+        """There is no room."""
+        self.refused += 1
+        raise OSError(errno.ENOSPC, "No space left on device")
+
     def read_text(self, path):
         """What processes see in a file."""
         self.step()
@@ -87,7 +94,7 @@ class Disk:
         """A new file, or an old one emptied."""
         self.step()
         if self.full and str(path) not in self.names:
-            raise OSError(errno.ENOSPC, "No space left on device")
+            self.refuse()
         content = self.names[str(path)] = Content()
         return _File(self, content)
 
@@ -133,7 +140,7 @@ class _File(io.StringIO):
         if self.closed or self.getvalue() == self.content.text:
             return
         if self.disk.full:
-            raise OSError(errno.ENOSPC, "No space left on device")
+            self.disk.refuse()
         self.content.text = self.getvalue()
 
     def close(self):

@@ -24,7 +24,7 @@ OF_KIND = {
 }
 KILLS = {"hurts": ("crash", "restarts"), "storm_s": 60}
 LOSSES = {"hurts": ("lossy", "doubled", "cut")}
-LIVES = {"hurts": ("crash", "restarts", "lossy", "sluggish"), "storm_s": 60}
+LIVES = {"hurts": ("full", "crash", "restarts", "lossy", "sluggish"), "storm_s": 60}
 LONG = {"long": 0.5, "mtu": 127}
 
 
@@ -156,17 +156,9 @@ FAULTS = (
     Fault("packets' numbers begin anywhere after a restart", MESH + "node",
           "        if self.state.numbers >= 0:\n", "        if 0:\n",
           {**KILLS, "sealed": False, "in_order": False}),
-    Fault("any ack says that its sender knows the present life", PROTOCOL + "retransmission",
-          "    word = who // BITS\n",
-          "    word = who // BITS\n    node.met[word] = node.met[word] | 1 << (who % BITS)\n",
-          LIVES),
     Fault("copies are known by the router alone", MESH + "inbox",
           "is_again = self._is_copy(frame.origin, frame.seq, body) or is_again", "pass",
           {**LIVES, "in_order": False}),
-    Fault("who drew its numbers is late", MESH + "order",
-          "(is_drawn and is_far)", "False", {**LIVES, "in_order": True}),
-    Fault("whoever is far behind has drawn its numbers", MESH + "order",
-          "(is_drawn and is_far)", "is_far", {**LIVES, "in_order": True}),
 )  # fmt: skip
 
 
