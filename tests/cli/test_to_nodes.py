@@ -88,7 +88,9 @@ STATUS = {"name": "n1", "kind": "mesh"}
 def plain(monkeypatch):
     """What is said of nodes in short: tests of their words are elsewhere."""
     monkeypatch.setattr(live.live_status, "lines", lambda one: [f"{one['name']} is well"])
-    monkeypatch.setattr(live.live_status, "headline", lambda told, silent: f"{len(told)} {silent}")
+    monkeypatch.setattr(
+        live.live_status, "headline", lambda told, silent: f"{len(told)} {len(silent)}"
+    )
     monkeypatch.setattr(live.live_status, "broken", lambda told: [f"broken of {len(told)}"])
 
 

@@ -43,6 +43,7 @@ class State:
         self._errno = 0
         self._written_at: int | None = None
         self._is_aside = False  # a file is there whose numbers are not to be gone by
+        self._has_numbers = False  # the file has some
         if path is None:
             return
         aside = _aside(path)
@@ -53,6 +54,7 @@ class State:
             raise LiveError(f"{path}: cannot be looked at: {error.strerror}") from None
         if is_there:
             self._read(path)
+            self._has_numbers = self.numbers >= 0
         elif self._is_aside:
             self._read(aside)
             self.numbers = -1
@@ -87,6 +89,7 @@ class State:
             self.failed += 1
             return False
         self.trouble, self._written_at = "", machine().monotonic_ns()
+        self._has_numbers = self.numbers >= 0
         if self._is_aside:
             self._is_aside = False
             with suppress(OSError):
@@ -99,10 +102,10 @@ class State:
         The next life takes all else from it, and draws its numbers. A name can be changed on most
         disks that are full; numbers that come again would be taken for packets of this life.
         """
-        if self.path is not None and not self._is_aside:
+        if self.path is not None and self._has_numbers and not self._is_aside:
             with suppress(OSError):
                 machine().replace(self.path, _aside(self.path))
-                self._is_aside = True
+                self._is_aside, self._has_numbers = True, False
 
     def check_place(self) -> None:
         """Refuse a file that could not be written where it is; a full disk is no such reason.
@@ -124,7 +127,7 @@ class State:
 
 
 def _aside(path: Path) -> Path:
-    return path.with_name(path.name + ".old")
+    return Path(f"{path}.old")
 
 
 def _whole(value: Any, most: int, least: int = 0) -> int:

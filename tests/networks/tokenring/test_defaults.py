@@ -37,7 +37,7 @@ OWN = {
     "received_image", "demo", "sizing", "measured_template", "capture", "dissector",
     "fit", "log", "rerun_parts", "recovery", "counterexample", "random", "papers", "event",
     "comparison",
-    "boards", "invariants", "measures", "shows", "happenings",
+    "boards", "foreseen", "invariants", "measures", "shows", "happenings",
     "packets",
 }  # fmt: skip
 CUT = """

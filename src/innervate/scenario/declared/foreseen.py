@@ -58,7 +58,7 @@ def _nobody(plan: Any, network: Any) -> Iterator[str]:
             yield f"protocol.{name} = {value}, but nodes are 0 to {last}: nobody is it"
     # The greatest value of a field often stands for all.
     named = {name: high for name, _, _, high, unit, _ in network.fields.FRAME if unit == NODE}
-    for place, given in enumerate(model.input):
+    for place, given in enumerate(getattr(model, "input", ())):
         for name, value in given.item.items():
             if name in named and isinstance(value, int) and last < value < named[name]:
                 where = f"input.{place}.item.{name}"

@@ -27,13 +27,16 @@ def crossing(**changes):
     return Crossing(**usual | changes)
 
 
+AT, BY = "15.000\N{NO-BREAK SPACE}s", "0.13\N{NO-BREAK SPACE}m"  # each on one line
+
+
 @pytest.mark.parametrize(("changes", "row"), [
-    ({}, ["15.000 s", "c&amp;d", "b", "12.5 ms", "3, routed", "0.13 m", "no"]),
+    ({}, [AT, "c&amp;d", "b", "12.5 ms", "3, routed", BY, "no"]),
     ({"flooded": True, "warned_us": 13_000_000},
-     ["15.000 s", "c&amp;d", "b", "12.5 ms", "3, flooded", "0.13 m", "2 s before"]),
-    ({"accepted_us": NEVER}, ["15.000 s", "c&amp;d", "b", "never", "", "0.13 m", "no"]),
+     [AT, "c&amp;d", "b", "12.5 ms", "3, flooded", BY, "2 s before"]),
+    ({"accepted_us": NEVER}, [AT, "c&amp;d", "b", "never", "", BY, "no"]),
     ({"accepted_us": NEVER, "open": True, "raised_by": NEVER, "robot": 0},
-     ["15.000 s", "a", "nobody noticed", "still open at the end", "", "0.13 m", "no"]),
+     [AT, "a", "nobody noticed", "still open at the end", "", BY, "no"]),
 ])  # fmt: skip
 def test_a_crossing_is_a_row(changes, row):
     told = report._crossings(Of(plan=PLAN), [crossing(), crossing(**changes)])

@@ -69,7 +69,7 @@ def test_how_many_that_arrived_were_delivered(delivered, median, end):
 ])  # fmt: skip
 def test_how_many_frames_met(monkeypatch, members, struck, said):
     found = Of(members=np.array(members), collision=np.array(struck, bool))
-    monkeypatch.setattr(report.radio, "groups", lambda _: found)
+    monkeypatch.setattr(report.air, "groups", lambda _: found)
     assert report._collisions(None, {"collisions": sum(struck)}) == [said]
     assert report._collisions(None, {"collisions": 0}) == ["No packet collided with another one."]
 

@@ -73,7 +73,7 @@ def result_of(stations=3, rows=(), faults=(), saturated=False):
 
 
 def test_a_bar_for_every_station_and_the_even_share(monkeypatch):
-    monkeypatch.setattr(charts.radio, "settled", lambda _: packets((0, 0, 1, 1), (2, 0, 1, 1),
+    monkeypatch.setattr(charts.packets, "settled", lambda _: packets((0, 0, 1, 1), (2, 0, 1, 1),
                                                                    (2, 0, 1, 1)))  # fmt: skip
     made = charts.shares(result_of(), {"jain": 0.6, "jain_round": None})
     assert [(bar.name, bar.value) for bar in made.bars] == [
@@ -83,12 +83,12 @@ def test_a_bar_for_every_station_and_the_even_share(monkeypatch):
     assert both.text.endswith("Over one round of 3 turns: 0.500.")
     full = charts.shares(result_of(saturated=True), {"jain": None, "jain_round": None})
     assert full.text == "Without the first tenth of all packets."
-    monkeypatch.setattr(charts.radio, "settled", lambda _: packets((0, 0, 1, 1)))
+    monkeypatch.setattr(charts.packets, "settled", lambda _: packets((0, 0, 1, 1)))
     assert charts.shares(result_of(1), {"jain": None, "jain_round": None}).even is None
 
 
 def test_who_was_never_served_is_said(monkeypatch):
-    monkeypatch.setattr(charts.radio, "timed", lambda _: packets((2, 0, 1, 1)))
+    monkeypatch.setattr(charts.packets, "timed", lambda _: packets((2, 0, 1, 1)))
     monkeypatch.setattr(charts.radio, "delays", lambda _: np.array([7.0]))
     found = [(bar.value, bar.words) for bar in charts.waits(result_of()).bars]
     assert found == [(0.0, "never"), (0.0, "never"), (7.0, "7 slots")]
@@ -110,7 +110,7 @@ def test_quantiles_that_coincide_have_one_mark(monkeypatch, quantiles, names):
 def test_faults_are_marked_where_the_drawing_is(monkeypatch):
     faults = [Of(at_us=at * 1_000_000, action=KILL, node=1, value=0) for at in (0, 2, 3, 6, 7)]
     steps = Of(time_us=np.array([2e6, 4e6]), values=np.array([0.5, 1.0]))
-    monkeypatch.setattr(charts.radio, "airtime_steps", lambda *_: steps)
+    monkeypatch.setattr(charts.airtime, "airtime_steps", lambda *_: steps)
     made = charts.filled(result_of(faults=faults), 2)
     assert (made.x.low, made.x.high) == (2.0, 6.0)
     assert [mark.at for mark in made.marks] == [2.0, 3.0, 6.0]
