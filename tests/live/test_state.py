@@ -107,6 +107,20 @@ def test_what_is_set_aside_gives_the_next_life_all_but_the_numbers(disk, path):
     assert State(path).numbers == 700
 
 
+def test_of_two_files_that_a_power_cut_left_the_newer_is_set_aside(disk, path):
+    for epoch, numbers in ((1, 100), (2, 200)):
+        state = State(path)
+        state.epoch, state.numbers = epoch, numbers
+        disk.fails["remove"] = errno.EIO
+        assert state.write()
+        if epoch == 1:
+            state.set_aside()
+    assert len(list(path.parent.iterdir())) == 2
+    again = State(path)
+    again.set_aside()
+    assert (State(path).epoch, State(path).numbers) == (2, -1)
+
+
 def test_a_file_that_cannot_be_set_aside_stays(disk, path):
     State(path).set_aside()  # there is none
     state = State(path)

@@ -102,7 +102,7 @@ class State:
         The next life takes all else from it, and draws its numbers. A name can be changed on most
         disks that are full; numbers that come again would be taken for packets of this life.
         """
-        if self.path is not None and self._has_numbers and not self._is_aside:
+        if self.path is not None and self._has_numbers:
             with suppress(OSError):
                 machine().replace(self.path, _aside(self.path))
                 self._is_aside, self._has_numbers = True, False
