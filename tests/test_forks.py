@@ -71,6 +71,25 @@ def test_waits(left):
 }
 
 
+SLOW = {
+    "conftest.py": """
+import os, time
+until = time.monotonic() + 1.5
+
+def wait():  # an interrupt that comes here is swallowed
+    while time.monotonic() < until:
+        pass
+
+def count():
+    global forks
+    forks += 1
+
+forks = 0
+os.register_at_fork(before=count, after_in_child=lambda: forks == 2 and wait())
+""",
+}
+
+
 def begin(folder, suite, *options):
     for name, text in suite.items():
         (folder / name).write_text(text)
@@ -124,8 +143,9 @@ def test_it_ends_at_the_first_that_fails(tmp_path):
     assert (tmp_path / "gone").exists()
 
 
-def test_ctrl_c_ends_it_and_tears_down(tmp_path):
-    process = begin(tmp_path, WAITS, "--forks", "2")
+@pytest.mark.parametrize("more", [{}, SLOW], ids=["", "as a worker begins"])
+def test_ctrl_c_ends_it_and_tears_down(tmp_path, more):
+    process = begin(tmp_path, WAITS | more, "--forks", "2")
     while not (tmp_path / "begun").exists():
         assert process.poll() is None
         time.sleep(0.01)
