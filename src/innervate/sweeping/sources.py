@@ -48,9 +48,9 @@ def files_named(made: Scenario, folder: str, varied: Mapping[str, Any]) -> dict[
         folder: where relative paths start.
         varied: the values that it is given, by key.
     """
-    whole = _texts(tomllib.loads(scenarios.dump(made)))  # with full paths
+    whole = texts(tomllib.loads(scenarios.dump(made)))  # with full paths
     paths = [text for text in whole if os.path.isabs(text)]
-    paths += [os.path.join(folder, text) for text in _texts(varied) if "." in text]
+    paths += [os.path.join(folder, text) for text in texts(varied) if "." in text]
     found = {}
     for path in filter(os.path.isfile, dict.fromkeys(paths)):
         content = Path(path).read_bytes()
@@ -58,13 +58,13 @@ def files_named(made: Scenario, folder: str, varied: Mapping[str, Any]) -> dict[
     return found
 
 
-def _texts(value: Any) -> Iterator[str]:
+def texts(value: Any) -> Iterator[str]:
     """All texts in nested tables."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, Mapping):
         for inner in value.values():
-            yield from _texts(inner)
+            yield from texts(inner)
     elif isinstance(value, list | tuple):
         for inner in value:
-            yield from _texts(inner)
+            yield from texts(inner)

@@ -13,7 +13,6 @@ import socket
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Iterator
 from contextlib import nullcontext, suppress
 from functools import cache
 from importlib import metadata
@@ -27,7 +26,7 @@ from innervate.running import RunError
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping.base import Base, Settings
 from innervate.sweeping.flat import flat
-from innervate.sweeping.sources import sources_of
+from innervate.sweeping.sources import sources_of, texts
 from innervate.trace.provenance import PACKAGES
 
 SCENARIOS_KEPT = 256
@@ -119,7 +118,7 @@ def _scenario(base: Base, mark: str, job: Job) -> Scenario:
 
 def _row(scenario: Scenario) -> str:
     """The run's figures as JSON."""
-    words = frozenset(_words(msgspec.to_builtins(scenario.model)))
+    words = frozenset(texts(msgspec.to_builtins(scenario.model)))
     # Which loop is compiled depends on words (rule, mac, ...) and on no number. Threads that want
     # the same one for the first time wait for each other; processes share Numba's cache.
     with nullcontext() if words in _loaded else _first:
@@ -132,18 +131,6 @@ def _row(scenario: Scenario) -> str:
         if isinstance(value, float) and not math.isfinite(value):
             raise RunError(f"its {name} is {value}, no finite number")
     return json.dumps(figures, ensure_ascii=False, allow_nan=False)
-
-
-def _words(value: Any) -> Iterator[str]:
-    """All texts in nested tables."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, dict):
-        for inner in value.values():
-            yield from _words(inner)
-    elif isinstance(value, list | tuple):
-        for inner in value:
-            yield from _words(inner)
 
 
 @cache
