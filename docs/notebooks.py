@@ -58,8 +58,7 @@ def executed(script: Path, folder: Path, kernel: Any = None) -> Any:
     if kernel is not None:
         forget = f"%reset -f\nimport os\nos.chdir({str(folder)!r})\ndel os"
         made.cells.insert(0, nbformat.v4.new_code_cell(forget))
-    where = {"metadata": {"path": str(folder)}}
-    NotebookClient(made, km=kernel, timeout=300, resources=where, coalesce_streams=True).execute()
+    run_all(made, kernel, resources={"metadata": {"path": str(folder)}}, coalesce_streams=True)
     if kernel is not None:
         del made.cells[0]
     for cell in made.cells:  # neither times nor what was there only while it ran
@@ -68,6 +67,16 @@ def executed(script: Path, folder: Path, kernel: Any = None) -> Any:
             cell.outputs = [one for one in cell.outputs if not is_passing(one)]
     made.metadata = nbformat.from_dict(KERNEL)
     return made
+
+
+def run_all(made: Any, kernel: Any = None, **options: Any) -> None:
+    """Run all cells of a notebook, which keeps what they give; options are `NotebookClient`'s."""
+    client = NotebookClient(made, km=kernel, timeout=300, **options)
+    try:
+        client.execute()
+    finally:
+        if client.kc is not None:  # of a kernel that goes on: its heartbeat would go on, too,
+            client.kc.stop_channels()  # and break off the process once the kernel is shut down
 
 
 def is_passing(output: Any) -> bool:

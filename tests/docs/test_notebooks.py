@@ -2,11 +2,11 @@
 
 import json
 import re
+import threading
 
 import nbformat
 import pytest
 from jupyter_client import KernelManager
-from nbclient import NotebookClient
 
 from docs import notebooks
 
@@ -32,7 +32,7 @@ def run_in_jupyter(kernel, *sources):
     """A notebook of these cells that was run."""
     cells = [nbformat.v4.new_code_cell(source) for source in sources]
     made = nbformat.v4.new_notebook(cells=cells, metadata=notebooks.KERNEL)
-    NotebookClient(made, km=kernel, timeout=120).execute()
+    notebooks.run_all(made, kernel)
     return made.cells
 
 
@@ -66,6 +66,12 @@ def test_the_notebook_runs_in_jupyter_and_shows_what_it_showed(script, tmp_path_
     fresh = notebooks.executed(script, tmp_path_factory.mktemp("notebook"), kernel)
     assert said(fresh) == said(kept(script))
     assert shown(fresh) == shown(kept(script))
+
+
+def test_nothing_of_it_runs_on_here_once_it_was_run(kernel):
+    """A heartbeat that is left polls a socket that the end of the kernel closes, and aborts."""
+    run_in_jupyter(kernel, "pass")
+    assert not [thread for thread in threading.enumerate() if "jupyter" in type(thread).__module__]
 
 
 def test_a_bar_is_shown_while_work_goes_on_and_gone_afterwards(kernel):
