@@ -41,6 +41,12 @@ def test_who_was_switched_on_again_is_heard_by_all_and_in_order(seed):
     assert runs.run(seed, "mesh").broken == []
 
 
+# The last pieces of two long messages were tried one after the other, and in vain, for 52 s.
+@pytest.mark.slow
+def test_who_was_started_anew_says_which_long_messages_it_cannot_have():
+    assert runs.run(920_019, "mesh").broken == []
+
+
 # A channel that was started anew told stations that had sent meanwhile that they listen again, and
 # an answer to somebody else was proof of what nobody had heard.
 @pytest.mark.parametrize("seed", [9_000_001, pytest.param(333_057, marks=pytest.mark.slow)])

@@ -26,7 +26,8 @@ MEANINGS = {
     "data": "what the application sends",
     "mark": "number of the packet and 16384: this is a piece",
     "message": "number of the packet that the first piece went in",
-    "in_order": "1: in turn with its origin's other messages; 2 + b: its origin is new, boot b",
+    "in_order": "1: in turn with its origin's other messages; 2 + b: its origin is new, boot b; "
+    "255: a refusal",
     "at": "byte of the message with which the piece begins",
     "size": "bytes of the message, less one",
     "acked": "seq of each packet that has arrived",

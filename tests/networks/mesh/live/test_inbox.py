@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.networks.mesh.live.inbox import HAD, HAD_US, Inbox
-from innervate.networks.mesh.live.pieces import IDLE_US, Piece
+from innervate.networks.mesh.live.pieces import IDLE_US, REFUSAL, Piece
 from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
 from tests.live import time_by_hand
@@ -164,14 +164,28 @@ def test_pieces_are_acknowledged_as_they_come_and_the_last_with_the_whole(in_ord
     run(come)
 
 
-def test_a_last_piece_that_leaves_a_hole_is_left_without_an_answer():
+def test_a_last_piece_that_leaves_a_hole_is_refused():
     def come():
-        one = inbox()
+        one, refused = inbox(), []
+        one.refuse = lambda *given: refused.append(given)
         one.note(piece(11, 2, b"cd"), False)
         one.hand_up()
         assert (one.told, one.got) == ([], [])
         assert one.held() == {"messages": 1, "bytes": 4}
+        assert refused == [(5, 11, Piece(10, 0, 2, 4, b"cd"))]
         one.stop()
+
+    run(come)
+
+
+def test_a_refusal_is_no_piece_of_a_message_and_is_acknowledged():
+    def come():
+        one, refused = inbox(), []
+        one.refused = lambda *given: refused.append(given)
+        one.note(piece(30, 0, b"\0", in_order=REFUSAL), False)
+        one.hand_up()
+        assert (one.told, one.got, len(one.pieces)) == ([(5, 30)], [], 0)
+        assert refused == [(5, Piece(10, REFUSAL, 0, 4, b"\0"))]
 
     run(come)
 

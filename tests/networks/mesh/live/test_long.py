@@ -99,6 +99,51 @@ def test_a_recipient_that_starts_anew_in_the_middle_has_no_half_of_it():
     assert len(node.inbox.pieces) == 0
 
 
+def test_the_sender_is_told_at_once_that_its_recipient_was_started_anew():
+    """It was told when the last piece had been tried for as long as a packet is, up to 26 s."""
+
+    async def main():
+        async with Mesh(3, LINE) as mesh:
+            loop, at = asyncio.get_running_loop(), []
+            at_piece(mesh.nodes[2], 20, lambda node: setattr(node.inbox, "pieces", Pieces()))
+            at_piece(mesh.nodes[2], 20, lambda _: at.append(loop.time()))
+            node = mesh.nodes[0]
+            receipt = node.send_message(2, bytes(2000))
+            told = await receipt.wait(), receipt.reason
+            took_s = loop.time() - at[0]
+            await asyncio.sleep(1)
+            kept = sum(node.stack.node.wait_kind[:])
+            return told, took_s, node.status(), mesh.nodes[2].status(), kept
+
+    told, took_s, *status, kept = run(main)
+    assert told == (EXPIRED, "its recipient no longer has its beginning")
+    assert took_s < 0.5
+    assert [one["under_way"] for one in status] == [0, 0]
+    assert kept == 0  # nor does the router try the last piece any more
+
+
+@pytest.mark.parametrize(
+    ("of", "by", "size", "told"),
+    [(0, 0, 0, EXPIRED), (1, 0, 0, DELIVERED), (0, -1, 0, DELIVERED), (0, 0, 1, DELIVERED)],
+)
+def test_a_refusal_ends_the_message_that_it_names_and_no_other(of, by, size, told):
+    async def main():
+        async with Mesh(3, LINE) as mesh:
+            sender, take = mesh.nodes[0], mesh.nodes[2].inbox.pieces.take
+
+            def watched(origin, piece, now):
+                if piece.is_last:
+                    named = piece.message + of, piece.size + size
+                    refusal = pieces.Piece(named[0], pieces.REFUSAL, 0, named[1], b"\0")
+                    sender.outgoing.refused(2 + by, refusal)
+                return take(origin, piece, now)
+
+            mesh.nodes[2].inbox.pieces.take = watched
+            return await sender.send_message(2, bytes(2000)).wait()
+
+    assert run(main) == told
+
+
 def test_those_after_one_that_expired_wait_for_nothing():
     async def main():
         async with Mesh(3, LINE) as mesh:

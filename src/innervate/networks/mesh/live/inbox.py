@@ -11,7 +11,7 @@ from innervate.dialect.arith import MASK16, later
 from innervate.live.engine import clock_us
 from innervate.live.streams import Arrivals
 from innervate.networks.mesh.live.order import BEFORE_BYTES, BOOTS, NEW_AHEAD, Message, Orderly
-from innervate.networks.mesh.live.pieces import NEW, NO_TURN, Piece, Pieces, read_piece
+from innervate.networks.mesh.live.pieces import NEW, NO_TURN, REFUSAL, Piece, Pieces, read_piece
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
 
 HAD = 320  # messages of a sender that are known again, as many as the router's window has
@@ -28,6 +28,8 @@ class Inbox:
 
     Attributes:
         arrivals: hands up messages as they come.
+        refuse: is told sender, number and content of a last piece whose message is not whole.
+        refused: is told who cannot have one of ours whole, and the refusal.
     """
 
     def __init__(
@@ -38,6 +40,8 @@ class Inbox:
         self.orderly.on_up = acknowledge
         self.outcomes = outcomes
         self.pieces = Pieces()
+        self.refuse: Callable[[int, int, Piece], None] = _nobody
+        self.refused: Callable[[int, Piece], None] = _nobody
         self._acknowledge = acknowledge
         self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before
         self._sweep: asyncio.TimerHandle | None = None
@@ -116,6 +120,10 @@ class Inbox:
 
     def _put(self, message: Message, piece: Piece) -> None:
         sender, seq = message.sender, message.seq
+        if piece.turn == REFUSAL:
+            self._acknowledge(sender, seq)
+            self.refused(sender, piece)
+            return
         is_kept, whole = self.pieces.take(sender, piece, clock_us())
         self._arm()
         ordered = seq if piece.turn != NO_TURN and piece.is_last else None
@@ -129,6 +137,8 @@ class Inbox:
             self._acknowledge(sender, seq)
         elif is_kept:  # it came before, and may have been too late for its turn
             self.orderly.again(Message(sender, seq, ordered, b"", boot))
+        elif piece.is_last and not is_kept:
+            self.refuse(sender, seq, piece)
 
     def _up(self, message: Message) -> None:
         self.arrivals.put((message.sender, message.payload))
@@ -144,3 +154,7 @@ class Inbox:
         self._sweep = None
         self.pieces.forget(clock_us())
         self._arm()
+
+
+def _nobody(*_given: Any) -> None:
+    """Nobody wants to know of refusals."""

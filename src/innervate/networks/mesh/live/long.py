@@ -2,7 +2,8 @@
 
 A piece is a packet as any other: it has its turn, is tried again, and is acknowledged. The last one
 goes when all others are acknowledged, and when those before the message that are in order have
-their end; what becomes of it becomes of the message.
+their end; what becomes of it becomes of the message. A recipient that has not all others by then
+was started anew, or had to forget them; it says so, and what is tried in vain has its end.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 from innervate.dialect.arith import MASK16
 from innervate.live.receipts import ACCEPTED, DELIVERED, EXPIRED, FINAL, HOP_ACKED, Receipt
 from innervate.networks.mesh.live.chains import Chains
-from innervate.networks.mesh.live.pieces import HEAD_BYTES, NEW, NO_TURN, SIZE_MAX, TURN
+from innervate.networks.mesh.live.pieces import HEAD_BYTES, NEW, NO_TURN, REFUSAL, SIZE_MAX, TURN
 from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
 
 WAITING_MAX = 64 * SIZE_MAX  # bytes of all long messages of a node that have no end yet
@@ -68,6 +69,11 @@ class Long:
             return True
         return not self._under_way and not (self._chains and self._chains.is_open(self.dest))
 
+    def is_named(self, dest: int, message: int, size: int) -> bool:
+        """True if this is the message of that name, as its recipient speaks of it."""
+        named = self.dest, self._message, len(self.payload)
+        return self.is_cut and named == (dest, message, size)
+
     def cut(self, make: Maker) -> tuple[int, Any]:
         """The next piece, its head still to be written: its handle, and the item that goes."""
         receipt = PieceReceipt(self, self._at, self.is_ending)
@@ -105,16 +111,41 @@ class Long:
             self.on_end(DELIVERED, "")
 
 
+class Refusal:
+    """Tells the sender of a long message that it cannot be whole here.
+
+    Args:
+        message, size: its name, as in its pieces.
+        on_end: is told the state of what tells it, once.
+    """
+
+    in_order = False
+
+    def __init__(self, message: int, size: int, on_end: Callable[[str], None]) -> None:
+        self._message, self._size = message, size
+        self._on_end = on_end
+
+    def head(self, at: int, seq: int) -> bytes:
+        """What stands in the packet, which goes out as `seq`."""
+        mark = (seq + PIECE_AHEAD) & MASK16
+        return struct.pack(PIECE_STRUCT, mark, self._message, REFUSAL, at, self._size - 1)
+
+    def told(self, piece: PieceReceipt, state: str, reason: str) -> None:
+        """What became of the packet."""
+        if state in FINAL:
+            self._on_end(state)
+
+
 class PieceReceipt(Receipt):
     """What becomes of a piece: its message hears of it.
 
     Attributes:
-        long: the message.
+        long: the message, or what takes the place of one.
         at: where the piece begins.
         is_last: it is sent when all others are acknowledged.
     """
 
-    def __init__(self, long: Long, at: int, is_last: bool) -> None:
+    def __init__(self, long: Long | Refusal, at: int = 0, is_last: bool = False) -> None:
         super().__init__()
         self.long, self.at, self.is_last = long, at, is_last
 

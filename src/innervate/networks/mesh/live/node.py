@@ -19,6 +19,7 @@ from innervate.networks.mesh.live.chains import Chains, drawn_number
 from innervate.networks.mesh.live.inbox import Inbox
 from innervate.networks.mesh.live.order import Callback, Orderly
 from innervate.networks.mesh.live.outgoing import Outgoing, refused
+from innervate.networks.mesh.live.pieces import Piece
 from innervate.networks.mesh.live.stack import TOO_LONG, MeshStack
 from innervate.networks.mesh.protocol.constants import (
     AGAIN,
@@ -74,6 +75,7 @@ class MeshNode(LiveNode):
         self.inbox = Inbox(orderly or Orderly(), self._acknowledge, self.outcomes)
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self.outgoing = Outgoing(stack, self._hand_down, self.inbox.put_own, self.outcomes)
+        self.inbox.refuse, self.inbox.refused = self._refuse, self.outgoing.refused
         self.arrivals = self.inbox.arrivals
         self._ending = stack.item()
         self.alarms = Alarms()
@@ -280,6 +282,10 @@ class MeshNode(LiveNode):
         if self.engine is not None:
             self._ending.dest, self._ending.handle = sender, seq
             self.engine.input(HANDED_UP, self._ending)
+
+    def _refuse(self, sender: int, seq: int, piece: Piece) -> None:
+        """The last piece of a message that is not whole came: its sender is to know."""
+        self.outgoing.refuse(sender, piece, lambda: self._acknowledge(sender, seq))
 
     def _hand_down(self, item: Any) -> None:
         assert self.engine is not None

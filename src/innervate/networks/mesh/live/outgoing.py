@@ -11,15 +11,16 @@ from innervate.dialect.arith import MASK16
 from innervate.live.receipts import (
     DELIVERED,
     EXPIRED,
+    FINAL,
     HOP_ACKED,
     REFUSED,
     STOPPED,
     Receipt,
 )
 from innervate.networks.mesh.live.chains import Chains
-from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt
+from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt, Refusal
 from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD
-from innervate.networks.mesh.live.pieces import SIZE_MAX
+from innervate.networks.mesh.live.pieces import HEAD_BYTES, SIZE_MAX, Name, Piece
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.live.turns import Turns
 from innervate.networks.mesh.protocol.constants import (
@@ -38,6 +39,8 @@ from innervate.networks.mesh.protocol.messages import payload_limit, resolve
 
 HANDLES = 65_536
 IN_VAIN = (NO_ROUTE, NO_ACK)
+REFUSALS = 16  # under way at the same time
+FORGOTTEN = "its recipient no longer has its beginning"
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 
@@ -71,6 +74,7 @@ class Outgoing:
         self.chains = Chains()
         self._handle = 0
         self._long_bytes = 0  # of long messages
+        self._refusals: set[Name] = set()  # under way
         self._feeding = False
 
     def check(self, recipient: int, flags: int, size: int) -> int:
@@ -132,6 +136,39 @@ class Outgoing:
         self._long_bytes -= len(long.payload)
         self.turns.drop(handle, long)
         self._end(handle, state, reason)
+
+    def refuse(self, sender: int, piece: Piece, then: Callable[[], None]) -> None:
+        """Tell the sender of a long message that it cannot be whole here; `then` once it knows.
+
+        By then its last piece can be acknowledged; else it would be tried for 26 s.
+        """
+        name = sender, piece.message, piece.size
+        if name in self._refusals or len(self._refusals) == REFUSALS:
+            return  # the last piece comes again
+        if not self.turns.has_room(sender):
+            return
+
+        def end(state: str) -> None:
+            self._refusals.discard(name)
+            if state == DELIVERED:
+                then()
+
+        handle, item = self._new_item(PieceReceipt(Refusal(piece.message, piece.size, end)))
+        item.dest, item.flags = sender, ORDERED | END_TO_END
+        item.length = HEAD_BYTES + 1  # no piece is without data
+        item.body[HEAD_BYTES] = 0
+        self._refusals.add(name)
+        if self.turns.put(handle, item):
+            self.feed()
+
+    def refused(self, recipient: int, piece: Piece) -> None:
+        """A recipient says that a long message cannot be whole there: it has its end."""
+        for receipt in list(self.receipts.values()):
+            long = receipt.long if isinstance(receipt, PieceReceipt) else None
+            if isinstance(long, Long) and long.is_named(recipient, piece.message, piece.size):
+                if long.receipt.state not in FINAL:
+                    long.on_end(EXPIRED, FORGOTTEN)
+                return
 
     def told(self, code: int, handle: int, detail: int) -> None:
         """The router says what becomes of a message."""

@@ -2,7 +2,7 @@
 
 A piece that is kept is acknowledged at once, the last one of a message when the whole was handed
 up. Its sender sends that one when all others are acknowledged: if something is missing then, this
-node was started anew meanwhile, or had to forget; the last piece is left without an answer, and
+node was started anew meanwhile, or had to forget. It says so, by a piece of a kind of its own, and
 the sender tells its user that the message has expired.
 """
 
@@ -24,6 +24,7 @@ HAD = 8  # messages of a sender that were handed up: copies of their pieces may 
 
 # The whole among its sender's messages in order; from NEW on: and the boot, see order.py.
 NO_TURN, TURN, NEW = range(3)
+REFUSAL = 255  # in its place: the message of the same name that we sent cannot be whole there
 
 Name = tuple[int, int, int]  # of a message: its sender, the number of its first packet, its bytes
 
@@ -33,7 +34,7 @@ class Piece(NamedTuple):
 
     Attributes:
         message: the number of the packet that its first piece was in.
-        turn: NO_TURN, TURN, or NEW and a boot.
+        turn: NO_TURN, TURN, NEW and a boot, or REFUSAL.
         at: its place in the message, in bytes.
         size: bytes of the whole.
         data: its bytes.
