@@ -136,9 +136,9 @@ class Messages:
         """Numbers go on over a restart, where the disk could keep them."""
         seq, refused = sent.receipt.seq, sent.life.host.disk.refused
         old, newest, before = self._numbers.get(sent.sender, (sent.life, -1, 0))
-        lives = sent.life.number - old.number  # four restarts may lead half way round the numbers
+        lives = sent.life.number - old.number  # eight restarts may lead half way round
         is_kept = refused == before and not old.node.state.failed
-        if 0 < lives < 4 and newest >= 0 and is_kept and not later(seq, newest):
+        if 0 < lives < 8 and newest >= 0 and is_kept and not later(seq, newest):
             self.world.fail(f"{sent.life.name}: packet {seq} after {newest} of {old.name}")
         if old is not sent.life or newest < 0 or later(seq, newest):
             self._numbers[sent.sender] = (sent.life, seq, refused)

@@ -42,7 +42,8 @@ from innervate.networks.mesh.protocol.constants import (
 if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
 
-NUMBERS = 4111  # of packets that are kept for a while; 16 restarts unheard lead round to no old one
+NUMBERS = 4111  # of packets that are kept for a while: a busy node writes its file so much less
+FEW = 512  # by who was just switched on: 7 restarts one after the other lead less than half round
 
 
 class MeshNode(LiveNode):
@@ -72,6 +73,7 @@ class MeshNode(LiveNode):
         super().__init__(name, stack, links, sealer, state)
         stack.epoch = self.state.epoch
         self.in_order = False
+        self._ahead = -1  # numbers that were kept last; -1 = none in this life
         self.inbox = Inbox(orderly or Orderly(), self._acknowledge, self.outcomes)
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self.outgoing = Outgoing(stack, self._hand_down, self.inbox.put_own, self.outcomes)
@@ -167,6 +169,7 @@ class MeshNode(LiveNode):
 
         By how much is drawn: where a disk failed, nobody may have noted those used last.
         """
+        self._ahead = -1
         if self.state.numbers >= 0:
             self.outgoing.chains = Chains()
             self.stack.first = (self.state.numbers + machine().chance.getrandbits(12)) & MASK16
@@ -272,8 +275,9 @@ class MeshNode(LiveNode):
         """
         state, seq = self.state, self.stack.node.seq
         left = (state.numbers - seq) & MASK16
-        if state.numbers < 0 or not NUMBERS // 2 <= left <= NUMBERS:
-            state.numbers = (seq + NUMBERS) & MASK16
+        if state.numbers < 0 or not self._ahead // 2 <= left <= self._ahead:
+            self._ahead = FEW if self._ahead < 0 else NUMBERS
+            state.numbers = (seq + self._ahead) & MASK16
             if not state.write():
                 state.set_aside()
 
