@@ -227,7 +227,7 @@ WATCHES = {
         ("explored routers", explored_routers, (0,)),
         ("explored gateways", explored_routers, (1,)),
     ],
-    "verify.declared": [("explored nodes of any network", explored_declared, ())],
+    "verify.net": [("explored nodes of any network", explored_declared, ())],
 }
 ROWS = [row for rows in WATCHES.values() for row in rows]
 

@@ -5,10 +5,7 @@ else the least of their ranges. What nodes are handed is GIVEN of `fields`: (kin
 What holds of any protocol is checked after every handler call: all fields in their declared range,
 room in the outbox, no handler that cannot go on; and of every state, that something can still
 happen (a timer is set, or a frame is on its way). A network's own `invariants` are looked at, too.
-
-Nodes know only their own time, so that a state holds timers and moments relative to it: fields in
-"us" of the full range of clocks. It passes when a timer fires, and not between; what other nodes do
-meanwhile is left open.
+What nodes draw is tried in every way, as far as draws.py says.
 """
 
 from __future__ import annotations
@@ -16,306 +13,36 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from operator import itemgetter
-from types import ModuleType
 from typing import Any
 
-from innervate.dialect import plain
-from innervate.dialect.access import ALL
-from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.folders import MEDIA_ON_AIR, invariants_of
 from innervate.kernel.clock import wall_s
 from innervate.network import Network
-from innervate.topology import PORTS, Graph
+from innervate.topology import Graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
 from innervate.verify.frames import Frames, layouts_of
 from innervate.verify.graphs import GRAPHS, graph_of
-from innervate.verify.states import Budget, Node, State, Step, is_still, most_frames, sent
+from innervate.verify.net import Net
+from innervate.verify.states import Budget, State, is_still, most_frames
 from innervate.verify.tally import Tally
-from innervate.verify.telling import ERRORS, first_broken, story_of, where
-from innervate.verify.values import ahead, put, values, with_one
+from innervate.verify.telling import story_of
 
-OUTBOX = 16
 IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left out, and counted
 STATES = 20_000
 BATCH = 500
-COLD, MEMORY_LOST = 0, 1
-NEVER = 1 << 62  # us
-OF_RECEIVER = {"made_at", "rssi"}  # fields of a frame that each receiver may have its own of
 STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
-
-
-class Net:
-    """Makes the states of a graph's nodes follow each other.
-
-    Args:
-        protocol, fields: parts of a network.
-        graph: its nodes and cables.
-        params: of the protocol; others are the value in range nearest 0.
-    """
-
-    def __init__(
-        self, protocol: ModuleType, fields: ModuleType, graph: Graph, params: dict[str, int]
-    ) -> None:
-        self.do, self.fields, self.graph = protocol, fields, graph
-        self.on_air = hasattr(protocol, "on_carrier")
-        self.has_carrier = self.on_air
-        self.is_told = hasattr(protocol, "on_sent")  # when its frames have left
-        self.is_slotted = False  # on a channel: frames last so many slots
-        self.is_addressed = False  # a frame's field `to` says who is given it
-        self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
-        self.of_all: dict[str, Any] = {}  # and of all nodes together
-        self.params = plain.make("Params", fields.PARAMS)()
-        for name, value in params.items():
-            setattr(self.params, name, value)
-        self.node = plain.make("Node", fields.STATE)()
-        frame = plain.make("Frame", fields.FRAME)
-        self.out = plain.Outbox(frame, getattr(protocol, "OUTBOX", OUTBOX))
-        self.frame = frame()
-        self.frames = Frames(fields.FRAME)
-        for one in self.out.frame:
-            self.frames.blank(one)
-        self.all = [plain.make("Node", fields.STATE)() for _ in range(graph.cells)]
-        self.given = getattr(fields, "GIVEN", ())
-        self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
-                       if unit == "us" and high == MASK30}  # fmt: skip
-
-    def begin(self, budget: Budget) -> Step:
-        """All nodes are switched on, one after the other."""
-        blank = plain.make("Node", self.fields.STATE)
-        nodes = []
-        for number in range(self.graph.cells):
-            node = blank()
-            for name, value in (("number", number), ("rng", 1 + number), ("choice", -1)):
-                if hasattr(node, name):
-                    setattr(node, name, value)
-            nodes.append(Node(values(node, self.fields.STATE), ()))
-        state = State(
-            tuple(nodes), ((),) * len(self.graph.peer), (budget.loss, budget.restart, budget.input)
-        )
-        for number in range(self.graph.cells):
-            state, broken = self.call(state, number, 0, self.do.on_start, COLD)
-            if broken:
-                return Step(f"{self.graph.label(number)} is switched on", state, broken)
-        return Step("All nodes are switched on", state, "")
-
-    def steps(self, state: State) -> Iterator[Step]:
-        """All that can happen next."""
-        loss, restart, given = state.left
-        for end, frames in enumerate(state.ways):
-            if frames:
-                yield self.arrive(state, end)
-                if loss:
-                    rest = with_one(state.ways, end, frames[1:])
-                    gone = state._replace(ways=rest, left=(loss - 1, restart, given))
-                    yield self.missed(gone, end)
-        for number, node in enumerate(state.nodes):
-            yield from self.due(state, number)
-            if node.airing:
-                yield self.fall_silent(state, number)
-            if node.down:
-                yield self.leave(state, number, 1)
-                if loss:
-                    yield self.leave(state._replace(left=(loss - 1, restart, given)), number, 0)
-            if restart:
-                lost = state._replace(left=(loss, restart - 1, given))
-                lost = lost._replace(nodes=with_one(lost.nodes, number, Node(node.values, ())))
-                after, broken = self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
-                yield Step(f"{self.graph.label(number)} loses its memory", after, broken)
-            if given:
-                fewer = state._replace(left=(loss, restart, given - 1))
-                yield from (self.give(fewer, number, *one) for one in self.given)
-
-    def arrive(self, state: State, end: int) -> Step:
-        """The oldest frame from an end comes to the other."""
-        first, *rest = state.ways[end]
-        peer = self.graph.peer[end]
-        number, port = self.graph.node_of(peer), self.graph.port_of(peer)
-        put(self.frame, self.fields.FRAME, first)
-        gone = state._replace(ways=with_one(state.ways, end, tuple(rest)))
-        if self.on_air:
-            return self.heard(gone, number, end)
-        after, broken = self.call(gone, number, 0, self.do.on_frame, port, self.frame)
-        what = f"{self.graph.label(number)} gets a frame from {self.graph.label_end(end)}"
-        return Step(what, after, broken)
-
-    def heard(self, state: State, number: int, end: int) -> Step:
-        """A frame on the air: a carrier alone, the frame, silence."""
-        frame = values(self.frame, self.fields.FRAME, OF_RECEIVER)
-        what = f"{self.graph.label(number)} hears a frame of {self.graph.label(end // PORTS)}"
-        after, broken = state, ""
-        if self.has_carrier:
-            after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 1)
-        put(self.frame, self.fields.FRAME, frame)
-        is_ours = not self.is_addressed or self.frame.to in (number, ALL)
-        if not broken and is_ours:
-            after, broken = self.call(after, number, 0, self.do.on_frame, 0, self.frame)
-            if values(self.frame, self.fields.FRAME, OF_RECEIVER) != frame:
-                broken = broken or "a receiver changed the frame that the others are handed, too"
-        if not broken and self.has_carrier:
-            after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
-        return Step(what, after, broken)
-
-    def fall_silent(self, state: State, number: int) -> Step:
-        """A frame of a node's own has ended, and it is told."""
-        node = state.nodes[number]
-        over = node._replace(airing=node.airing - 1)
-        ended = state._replace(nodes=with_one(state.nodes, number, over))
-        after, broken = self.call(ended, number, 0, self.do.on_carrier, 0, 0)
-        return Step(f"A frame of {self.graph.label(number)} has ended", after, broken)
-
-    def missed(self, state: State, end: int) -> Step:
-        """A frame is lost; on the air its receiver hears that there was something."""
-        what = f"A frame from {self.graph.label_end(end)} is lost"
-        if not self.has_carrier:
-            return Step(what, state, "")
-        number = self.graph.node_of(self.graph.peer[end])
-        after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 0)
-        if not broken:
-            after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
-        return Step(what, after, broken)
-
-    def ends_of(self, number: int, port: int) -> list[int]:
-        """Where what a node sends goes: to all who hear it, or out of a port."""
-        ends = self.graph.ends_of(number) if self.on_air else [self.graph.end(number, port)]
-        return [end for end in ends if self.graph.peer[end] >= 0]
-
-    def give(self, state: State, number: int, kind: int, item: dict[str, Any]) -> Step:
-        """A node's user hands something down."""
-        blank = plain.make("Frame", self.fields.FRAME)()
-        put(self.frame, self.fields.FRAME, values(blank, self.fields.FRAME))
-        for name, value in item.items():
-            setattr(self.frame, name, list(value) if isinstance(value, list | tuple) else value)
-        after, broken = self.call(state, number, 0, self.do.on_input, kind, self.frame)
-        what = f"{self.graph.label(number)} is given {kind}"
-        return Step(f"{what} by its user", after, broken)
-
-    def due(self, state: State, number: int) -> Iterator[Step]:
-        """What a node's own time brings next: a timer, or that a delayed frame leaves."""
-        node = state.nodes[number]
-        timer = min((wait for _, wait in node.timers), default=NEVER)
-        late = node.late[0][0] if node.late else NEVER
-        if timer <= late and node.timers:
-            yield self.fire(state, number)
-        if late <= timer and node.late:
-            yield self.depart(state, number)
-
-    def depart(self, state: State, number: int) -> Step:
-        """A frame that was sent with a delay leaves; so far its node's time passes."""
-        node = state.nodes[number]
-        (wait, port, frame), *rest = node.late
-        put(self.node, self.fields.STATE, node.values)
-        after = self.kept(state, number, max(wait, 0), node._replace(late=tuple(rest)))
-        after = sent(after, self.ends_of(number, port), frame)
-        return Step(f"A delayed frame of {self.graph.label(number)} leaves", after, "")
-
-    def fire(self, state: State, number: int) -> Step:
-        """The next timer of a node fires; so far its time passes."""
-        node = state.nodes[number]
-        timer, wait = min(node.timers, key=lambda one: (one[1], one[0]))
-        rest = tuple(one for one in node.timers if one[0] != timer)
-        waiting = state._replace(nodes=with_one(state.nodes, number, node._replace(timers=rest)))
-        after, broken = self.call(waiting, number, max(wait, 0), self.do.on_timer, timer)
-        return Step(f"Timer {timer} of {self.graph.label(number)} fires", after, broken)
-
-    def leave(self, state: State, number: int, ok: int) -> Step:
-        """A frame that a node handed down goes out, or the channel stayed busy; it is told."""
-        first, *rest = state.nodes[number].down
-        node = state.nodes[number]._replace(down=tuple(rest))
-        gone = state._replace(nodes=with_one(state.nodes, number, node))
-        if ok:
-            node = node._replace(airing=node.airing + self.has_carrier)
-            gone = state._replace(nodes=with_one(state.nodes, number, node))
-            gone = sent(gone, self.ends_of(number, 0), first)
-        after, broken = self.call(gone, number, 0, self.do.on_sent, ok)
-        what = "goes out" if ok else "finds the channel busy and is given up"
-        return Step(f"A frame of {self.graph.label(number)} {what}", after, broken)
-
-    def call(
-        self, state: State, number: int, now: int, handler: Any, *what: Any
-    ) -> tuple[State, str]:
-        """The state after a handler of a node at its time `now`, and what it broke."""
-        node, out = state.nodes[number], self.out
-        put(self.node, self.fields.STATE, node.values)
-        for one in out.frame[: out.count[0]]:
-            self.frames.blank(one)
-        out.count[0] = out.overflow[0] = 0
-        try:
-            handler(self.node, self.params, now, *what, out)
-        except ERRORS as error:
-            return state, f"a handler cannot go on: {where(error)}"
-        broken = self.broken(now)
-        timers, down, late = dict(node.timers), list(node.down), list(node.late)
-        airing = node.airing
-        for act, frame in zip(out.action[: out.count[0]], out.frame, strict=False):
-            broken = self.frames.wrong(frame, act.kind, handler.__name__, broken)
-            if act.kind == SET_TIMER:
-                timers[act.a] = ahead(act.b)
-                broken = broken or ("" if 0 <= act.a < self.do.TIMERS else "there is no such timer")
-            elif act.kind == SEND:
-                if not 0 <= act.a < PORTS:
-                    broken = broken or "a frame is sent on a port that no node has"
-                    continue
-                if self.is_slotted and frame.slots < 1:
-                    broken = broken or "a frame of no slots is sent"
-                one = values(frame, self.fields.FRAME, {"made_at"})
-                if self.is_told and not act.c & URGENT:
-                    down.append(one)
-                    continue
-                ends = self.ends_of(number, act.a)
-                if act.b > 0 and ends and not self.on_air:
-                    late.append((now + act.b, act.a, one))
-                    continue
-                state, airing = sent(state, ends, one), airing + self.has_carrier
-            elif act.kind not in (DELIVER, REPORT):
-                broken = broken or "the outbox holds what is no action"
-        asked = Node((), tuple(timers.items()), tuple(down), tuple(late), airing)
-        return self.kept(state, number, now, asked), broken
-
-    def kept(self, state: State, number: int, now: int, asked: Node) -> State:
-        """The state with a node as it is now, its moments relative to its time."""
-        for name in self.clocks:
-            at = getattr(self.node, name)
-            own = (
-                [(one - now) & MASK30 for one in at]
-                if isinstance(at, list)
-                else (at - now) & MASK30
-            )
-            setattr(self.node, name, own)
-        waits = tuple(sorted((timer, at - now) for timer, at in asked.timers))
-        late = sorted(((at - now, port, one) for at, port, one in asked.late), key=itemgetter(0))
-        left = asked._replace(values=values(self.node, self.fields.STATE), timers=waits)
-        node = left._replace(late=tuple(late))
-        return state._replace(nodes=with_one(state.nodes, number, node))
-
-    def broken_of_all(self, state: State) -> str:
-        """What is broken of all nodes together."""
-        for node, at in zip(self.all, state.nodes, strict=True):
-            put(node, self.fields.STATE, at.values)
-        return first_broken(self.of_all, self.all, len(self.all), self.params)
-
-    def broken(self, now: int) -> str:
-        """What the last handler broke."""
-        if self.out.overflow[0]:
-            return "an outbox overflowed"
-        for name, length, low, high, *_ in self.fields.STATE:
-            value = getattr(self.node, name)
-            if not all(low <= one <= high for one in (value if length else [value])):
-                return f"{name} is out of its declared range"
-        return first_broken(self.own, self.node, self.params, now)
 
 
 def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tuple[Tally, Story]:
     """All states breadth first, up to `limit`; the story has no title if nothing is broken."""
     started, tally = wall_s(), Tally(states=1)
-    first = net.begin(budget)
-    if broken := first.broken or (net.of_all and net.broken_of_all(first.state)):
-        told = Story(broken, [f"{first.words or 'All nodes are switched on'}."])
-        return replace(tally, ended="broken"), told
-    before: dict[State, tuple[State, str] | None] = {first.state: None}
-    level = [first.state]
-    waits = bool(net.given) and is_still(first.state)  # for its user: so it does from the start
+    before: dict[State, tuple[State | None, str] | None] = {}
+    for first in net.begins(budget):
+        if broken := first.broken or (net.of_all and net.broken_of_all(first.state)):
+            return replace(tally, ended="broken"), Story(broken, [f"{first.words}."])
+        before.setdefault(first.state, (None, first.words) if net.draws.made else None)
+    level = list(before)
+    waits = bool(net.given) and all(map(is_still, level))  # for its user, from the start on
     while level:
         fresh: list[State] = []
         for state in level:
@@ -384,15 +111,16 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
 
     def how_far() -> str:
         more = f" but {tally.left_out:,} successors with too many frames in flight"
-        return extent(tally) + (more if tally.left_out else "")
+        return extent(tally) + (more if tally.left_out else "") + net.draws.words()
 
     names = ("states", "expanded", "generated", "left_out", "depth", "ended")
     return Case(
         lines=lines_of(f"{head} {tally.wall_s:7.1f} s", told, how_far),
         record={"graph": cables, **{name: getattr(tally, name) for name in names},
+                "draws": net.draws.as_dict(),
                 "broken": story.title or None, "story": story.sentences or None},
         is_broken=told is not None,
-        is_complete=tally.ended == "complete" and not tally.left_out,
+        is_complete=tally.ended == "complete" and not tally.left_out and not net.draws.some,
         story=told,
         stem=f"{network.name}-counterexample",
     )  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from innervate import dialect, folders
+from innervate import dialect, folders, verify
 from innervate.verify.cases import Story
 from innervate.verify.states import State, Step
 
@@ -15,15 +15,18 @@ MOST = 6  # changes that a sentence has room for
 DRAWN = {"rng", "choice", "asked"}  # a generator's own
 ERRORS = (ArithmeticError, AttributeError, IndexError, NameError, TypeError, ValueError)
 
-Before = Mapping[State, tuple[State, str] | None]
+# What a state was first reached from, and how; None where it is the start, and nothing was drawn.
+Before = Mapping[State, tuple[State | None, str] | None]
 
 
 def story_of(net: Any, before: Before, state: State, title: str, last: Step | None = None) -> Story:
     """The way to a state, and what breaks in it, or in the last step from it."""
     steps = [(last.words, state, last.state)] if last else []
-    while (made := before[state]) is not None:
-        steps.append((made[1], made[0], state))
-        state = made[0]
+    here: State | None = state
+    while here is not None and (made := before[here]) is not None:
+        earlier, words = made
+        steps.append((words, earlier or here, here))
+        here = earlier
     return Story(title, [_sentence(net, *step) for step in reversed(steps)])
 
 
@@ -52,8 +55,9 @@ def _changes(net: Any, was: tuple[Any, ...], now: tuple[Any, ...]) -> Iterator[s
 def where(error: BaseException) -> str:
     """An error in a protocol or an invariant: its file and line, and what is wrong."""
     places = traceback.extract_tb(error.__traceback__)
-    home = Path(dialect.__file__).parent
-    last = [one for one in places if not Path(one.filename).is_relative_to(home)][-1]
+    homes = [Path(room.__path__[0]) for room in (dialect, verify)]
+    last = [one for one in places
+            if not any(Path(one.filename).is_relative_to(home) for home in homes)][-1]  # fmt: skip
     what = f"{type(error).__name__}: {error}"
     if isinstance(error, AttributeError) and error.name:
         what = f"{error.name} is no field that fields.py declares"
