@@ -143,6 +143,40 @@ def test_a_walk_remembers_where_it_was_and_keeps_what_it_passes():
     assert list(here.work) == [1] * BYTES
 
 
+@pytest.mark.parametrize("many", [1, 2, 3, 4, 5])
+def test_a_walk_draws_every_outcome_evenly(many):
+    """One move, which draws: what it gave stands in the row. The same seed draws the same."""
+    given = []
+
+    def step(world, move, variant, choice):
+        world.found[0], world.work[0] = 0, choice
+        world.work[1] = (world.work[1] + 1) % 200
+        return many
+
+    def check(world):
+        given.append(world.work[0])
+        return 0
+
+    def walked(seed):
+        search, here = table(), world([0] * BYTES)
+        here.found, here.move_kind = [0], [0]
+        s.append(here, search)
+        search.run[s.RANDOM] = seed
+        given.clear()
+        system = SimpleNamespace(variants=lambda world, move: 1, step=step, check=check)
+        s.build(system).wander(here, search, 10, 50)
+        assert search.run[s.GENERATED] == len(given) == 10 * 49
+        assert here.work[1] == 49  # what a step did first is not left where it was taken again
+        return list(given)
+
+    drawn = walked(1)
+    counts = [drawn.count(choice) for choice in range(many)]
+    assert sum(counts) == len(drawn)
+    assert min(counts) > 0.7 * len(drawn) / many
+    assert walked(1) == drawn
+    assert (walked(2) == drawn) == (many == 1)
+
+
 @pytest.mark.parametrize(("count", "behind", "limit", "slots", "why"), [
     (5, 5, 10**6, 10**6, s.DONE), (5, 4, 10**6, 10**6, s.GOING),
     (10, 0, 10 + s.MARGIN, 10**6, s.GOING), (11, 0, 10 + s.MARGIN, 10**6, s.FULL),

@@ -27,6 +27,9 @@ MARGIN = 1 << 14
 LOW32 = 0xFFFFFFFF
 HIGH_BITS = 0x8080808080808080 - (1 << 64)
 
+# Streams of a walk beside the one that chooses moves: another move, and what a draw gives.
+OTHER_WAY, DRAWN = 7, 11
+
 # A move as it is kept: move, variant and choice of its draw in one number.
 VARIANT, CHOICE = 1 << 12, 1 << 4
 
@@ -262,6 +265,17 @@ def build(system):
             wanted -= count
         return -1, 0
 
+    def stride(world, search, move, variant):
+        """A step of a walk, what it draws being any that can be; the row before it is saved."""
+        save_row(world, search)
+        asked = step(world, move, variant, 0)
+        if asked > 1:
+            choice = ((mix(search.run[RANDOM], DRAWN) >> 20) & LOW32) % asked
+            if choice > 0:
+                restore_row(world, search)
+                asked = step(world, move, variant, choice)
+        return asked
+
     def wander(world, search, walks, length):
         """So many random walks from the state in row 0; the rows of the last one are kept."""
         run = search.run
@@ -273,12 +287,11 @@ def build(system):
                 move, variant = choose(world, (run[RANDOM] >> 20) & LOW32)
                 if move < 0:
                     break
-                save_row(world, search)
-                asked = step(world, move, variant, (run[RANDOM] >> 8) & 1)
+                asked = stride(world, search, move, variant)
                 if asked < 0 or world.found[0] == TOO_MANY:
                     restore_row(world, search)  # not that way; the next number is another
                     run[GENERATED] += 1
-                    run[RANDOM] = mix(run[RANDOM], 7)
+                    run[RANDOM] = mix(run[RANDOM], OTHER_WAY)
                     if run[RANDOM] & 63 == 0:
                         break
                     continue
@@ -292,4 +305,4 @@ def build(system):
                 append(world, search)
             run[NEXT] += 1
 
-    return Engine((note, follow, choose), insert, expand, wander)
+    return Engine((note, follow, choose, stride), insert, expand, wander)
