@@ -24,10 +24,11 @@ ROOMS = ("dialect", "prove")
 NOTES_MAX = 64
 
 
-def sources(*folders: Path) -> list[Path]:
-    """The files that have a part in a proof: what proves, and a network's folders."""
-    homes = (*(ROOT / room for room in ROOMS), *folders)
-    return sorted(path for home in homes for path in home.rglob("*.py"))
+def sources(*parts: Path) -> list[Path]:
+    """The files that have a part in a proof: what proves, and a network's folders and files."""
+    homes = (*(ROOT / room for room in ROOMS), *parts)
+    return sorted(path for home in homes
+                  for path in ([home] if home.is_file() else home.rglob("*.py")))  # fmt: skip
 
 
 def name_of(claim: str, known: dict[str, Function], files: Iterable[Path]) -> str:
@@ -60,18 +61,18 @@ def solver() -> str:
 
 
 def holds(
-    claim: str, known: dict[str, Function], folders: Iterable[Path], attempt: Callable[[], bool]
+    claim: str, known: dict[str, Function], parts: Iterable[Path], attempt: Callable[[], bool]
 ) -> bool:
     """What an attempt to prove says, or what was noted of the same attempt when it held.
 
     Args:
         claim: what is proved.
         known: the functions that it is proved of.
-        folders: of a network, with its part of the proof and what it declares.
+        parts: folders and files of a network, with its part of the proof and what it declares.
         attempt: the proof; True if all holds.
     """
-    folders = list(folders)
-    name = name_of(claim, known, sources(*folders))
+    parts = list(parts)
+    name = name_of(claim, known, sources(*parts))
     home = cache_root() / "proved"
     if not solver():
         return attempt()
@@ -82,9 +83,7 @@ def holds(
         if note.is_file():
             return True
         held = attempt()
-        if held and name == name_of(
-            claim, known, sources(*folders)
-        ):  # nothing was edited meanwhile
+        if held and name == name_of(claim, known, sources(*parts)):  # nothing was edited meanwhile
             _write(note)
         return held
 

@@ -119,3 +119,20 @@ def test_what_is_refuted_is_told_and_what_holds_is_not_tried_again(tmp_path, mon
     tried = assumptions.refuted.__wrapped__
     assert [tried("feasible") for _ in range(3)] == ["refuted: a lemma", "", ""]
     assert len(said) == 1
+
+
+def test_what_holds_is_tried_again_when_what_is_asked_was_edited(tmp_path, monkeypatch):
+    """The file that says which lemmas are needed has a part in the note, too."""
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    ours = tmp_path / "networks" / "skin" / "verify" / "assumptions.py"
+    ours.parent.mkdir(parents=True)
+    for room in ("protocol", "prove"):
+        (ours.parent.parent / room).mkdir()
+    ours.write_text("asks for one lemma")
+    monkeypatch.setattr(assumptions, "__file__", str(ours))
+    said = ["", "refuted: another lemma"]
+    monkeypatch.setattr(assumptions, "_refuted", lambda rule, change: said.pop(0))
+    tried = assumptions.refuted.__wrapped__
+    assert [tried("feasible"), tried("feasible")] == ["", ""]
+    ours.write_text("asks for another")
+    assert tried("feasible") == "refuted: another lemma"

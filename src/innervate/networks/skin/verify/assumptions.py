@@ -103,10 +103,11 @@ def refuted(rule: str, change: Change | None = None) -> str:
         found.append(_refuted(rule, None))
         return not found[0]
 
-    home = Path(__file__).resolve().parent.parent
-    folders = home / "protocol", home / "prove"
+    asks = Path(__file__).resolve()  # which lemmas are needed, and for which rule
+    home = asks.parent.parent
+    parts = home / "protocol", home / "prove", asks
     known = {**source(pc.ENTRY, None), **source(feasible.ENTRY, None)}
-    held = kept.holds(f"skin, reduced, {rule}", known, folders, attempt)
+    held = kept.holds(f"skin, reduced, {rule}", known, parts, attempt)
     return "" if held else found[0]
 
 
