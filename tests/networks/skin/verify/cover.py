@@ -9,7 +9,7 @@ import numpy as np
 from innervate.networks.skin.protocol.constants import INFINITY
 from innervate.networks.skin.verify import calm as skin_calm
 from innervate.networks.skin.verify import check as skin_check
-from innervate.networks.skin.verify import fair, retrace
+from innervate.networks.skin.verify import retrace
 from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as w
@@ -59,23 +59,23 @@ class Cover:
         return self.played[calm]
 
     def played_out(self, row, order):
-        """What follows a calm state, for each choice that draws can come to."""
+        """What follows a calm state, for each way in which draws can turn out."""
         world, system = self.twin.world, self.twin.system
         world.at[w.FAIR] = 1
-        for choice in range(fair.CHOICES):
+        skin_calm.draw_first(world)
+        is_open = True
+        while is_open:
             self.twin.put(row)
-            world.found[1] = 0
-            assert system.settle(world, choice)
+            assert system.settle(world)
             for node in 2 * order:
-                assert system.turn(world, node, choice)
+                assert system.turn(world, node)
             skin_check.measure_depths(world)
             holds = [
                 world.work[at + w.HOLD] if world.depth[c] < INFINITY else 0
                 for c, at in enumerate(self.lay.cell_at)
             ]
             yield self.tidied(self.twin.row()), *holds
-            if world.found[1] == 0:  # nothing was drawn: the other choice is the same
-                break
+            is_open = skin_calm.draw_otherwise(world)
         world.at[w.FAIR] = 0
 
     def is_followed(self, order):

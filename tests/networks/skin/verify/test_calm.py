@@ -1,13 +1,14 @@
 """What a fair schedule starts from: a state, and those that the search may have left out."""
 
 from functools import partial
-from itertools import chain, combinations
+from itertools import chain, combinations, product
 from types import SimpleNamespace as Of
 
 import numpy as np
 import pytest
 
-from innervate.networks.skin.verify import calm, fair
+from innervate.networks.skin.verify import calm, fair, row
+from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.row import IS_PARENT
 from innervate.networks.skin.verify.system import system_of
 from innervate.verify import search as s
@@ -123,14 +124,27 @@ def test_a_table_that_grows_still_knows_its_states():
     assert rows.count == 1
 
 
-@pytest.mark.parametrize(("said", "drawn", "counted"), [
-    (s.TOO_MANY, 0, 1), (s.TOO_MANY, 1, 2), (0, s.TOO_MANY, 0), (0, 0, 0),
-])  # fmt: skip
-def test_where_there_is_no_room_for_what_comes_before_a_round_it_is_counted(said, drawn, counted):
-    """Once for each choice that was drawn."""
+def draw(world, sizes):
+    """Draws of a round, out of so many each: what they gave."""
+    given = []
+    for size in sizes:
+        given.append(row.next_draw(world))
+        row.note_draw(world, size)
+    return tuple(given)
 
-    def settle(world, choice):
-        world.found[0], world.found[1] = said, drawn
+
+SIZES = (), (2,), (3, 2), (2, 4, 3)
+
+
+@pytest.mark.parametrize("sizes", SIZES)
+@pytest.mark.parametrize("said", [s.TOO_MANY, 0])
+def test_where_there_is_no_room_for_what_comes_before_a_round_it_is_counted(said, sizes):
+    """Once for each way in which draws turn out: all of them, not the same for all draws."""
+    drawn = []
+
+    def settle(world):
+        world.found[0] = said
+        drawn.append(draw(world, sizes))
         return True
 
     play = fair.build(Of(settle=settle, turn=None, is_settled=None))[-1]
@@ -141,17 +155,20 @@ def test_where_there_is_no_room_for_what_comes_before_a_round_it_is_counted(said
         seen.append(target.run[s.LEFT_OUT])
 
     assert len(kept(Tiny(), played)[0]) == 1
-    assert seen == [counted]
+    assert drawn == list(product(*map(range, sizes)))
+    assert seen == [len(drawn) if said else 0]
 
 
-@pytest.mark.parametrize(("said", "drawn", "counted"), [
-    (s.TOO_MANY, 0, 3), (s.TOO_MANY, 1, 6), (0, s.TOO_MANY, 0), (0, 0, 0),
-])  # fmt: skip
-def test_where_there_is_no_room_for_what_a_round_sends_it_is_counted(said, drawn, counted):
-    """Once for each order in which the nodes have their turns, and each choice that was drawn."""
+@pytest.mark.parametrize("sizes", SIZES)
+@pytest.mark.parametrize("said", [s.TOO_MANY, 0])
+def test_where_there_is_no_room_for_what_a_round_sends_it_is_counted(said, sizes):
+    """Once for each order in which the nodes have their turns, and each way draws turn out."""
+    drawn = []
 
-    def turn(world, node, choice):
-        world.found[0], world.found[1] = said, drawn
+    def turn(world, node):
+        world.found[0] = said
+        if node == 1:
+            drawn.append(draw(world, sizes))
         return True
 
     play = fair.build(Of(settle=None, turn=turn, is_settled=lambda world: True))[-1]
@@ -162,7 +179,18 @@ def test_where_there_is_no_room_for_what_a_round_sends_it_is_counted(said, drawn
         seen.extend((target.run[s.LEFT_OUT], target.run[s.GENERATED]))
 
     assert kept(Tiny(), played) == ([], [])
-    assert seen == [counted, 6 if drawn else 3]
+    assert drawn == 3 * list(product(*map(range, sizes)))
+    assert seen == [len(drawn) if said else 0, len(drawn)]
+
+
+def test_of_a_round_with_very_many_draws_the_first_are_tried_in_every_way():
+    world = Tiny(3).world
+    calm.draw_first(world)
+    sizes = [1] * (w.DRAWS - 1) + [2, 2]
+    seen = {draw(world, sizes)}
+    while calm.draw_otherwise(world):
+        seen.add(draw(world, sizes))
+    assert seen == {(0,) * (w.DRAWS - 1) + (last, 0) for last in (0, 1)}
 
 
 def test_what_rounds_had_no_room_for_is_added_up():

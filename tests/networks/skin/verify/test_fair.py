@@ -18,6 +18,20 @@ def model(graph, **keys):
     return SkinModel(graphs.parse(graph), keep=True, **{"budget": FAULTY} | keys)
 
 
+def ways(world):
+    """Once for each way in which draws can turn out, by recursion over what was asked before."""
+    todo = [()]
+    while todo:
+        given = todo.pop()
+        calm.draw_first(world)
+        world.draws[1 : 1 + len(given)] = list(given)
+        yield given
+        made, asked = world.draws[0], world.draws[1 + w.DRAWS :]
+        for place in range(len(given), made):
+            zeros = (0,) * (place - len(given))
+            todo += [(*given, *zeros, value) for value in range(1, asked[place])]
+
+
 def rounds_by_hand(result, most=9):
     """States left after each round: stepped one by one, told apart as bytes in a set."""
     twin = Twin(result.model.changed(keep=True), system_of())
@@ -25,20 +39,22 @@ def rounds_by_hand(result, most=9):
     world.at[w.FAIR] = 1
     rows = bytes(memoryview(result.rows).cast("B"))
     states, left = set(), []
-    for row, choice in product(range(0, len(rows), width), (0, 1)):
-        twin.put(rows[row : row + width])
-        calm.forget_budgets(world)
-        assert system.settle(world, choice)
-        states.add(twin.image())
+    for row in range(0, len(rows), width):
+        for _ in ways(world):
+            twin.put(rows[row : row + width])
+            calm.forget_budgets(world)
+            assert system.settle(world)
+            states.add(twin.image())
     orders = list(permutations(range(result.model.graph.nodes)))
     while states and len(left) < most:
         after = set()
-        for state, order, choice in product(states, orders, (0, 1)):
-            twin.put(state)
-            for node in order:
-                assert system.turn(world, node, choice)
-            if not system.is_settled(world):
-                after.add(twin.image())
+        for state, order in product(states, orders):
+            for _ in ways(world):
+                twin.put(state)
+                for node in order:
+                    assert system.turn(world, node)
+                if not system.is_settled(world):
+                    after.add(twin.image())
         states = after
         left.append(len(states))
     return left

@@ -53,10 +53,10 @@ def test_a_route_by_a_distance_out_of_date_is_not_settled():
     world, system = played.twin.world, played.twin.system
     skin_calm.forget_budgets(world)
     world.at[w.FAIR] = 1
-    assert system.settle(world, 0)
+    assert system.settle(world)
     settled = []
     for order in ((PC, Y, Q, C, X), (PC, Y, X, C, Q), (PC, Y, X, Q, C), (X, C, Q, Y, PC)):
         for node in order:
-            assert system.turn(world, node, 0)
+            assert system.turn(world, node)
         settled.append(played.is_settled())
     assert settled == [False, False, True, True]

@@ -9,6 +9,7 @@ from innervate.networks.skin.verify.world import (
     BUDGETS,
     CELLS,
     DIRECTIONS,
+    DRAWS,
     HELD,
     HOLD,
     LOSS,
@@ -27,6 +28,26 @@ def forget_budgets(world):
     row[world.at[PC_AT] + PC_COUNTS] = 1
     for i in range(BUDGETS):
         row[world.at[BUDGET_AT] + i] = 0
+
+
+def draw_first(world):
+    """All draws of what is played next give the first of what may be chosen."""
+    for k in range(len(world.draws)):
+        world.draws[k] = 0
+
+
+def draw_otherwise(world):
+    """The next way in which the draws that were made can turn out; 0 if this was the last."""
+    draws = world.draws
+    place = min(draws[0], DRAWS)
+    draws[0] = 0
+    while place > 0:
+        draws[place] += 1
+        if draws[place] < draws[DRAWS + place]:
+            return True
+        draws[place] = 0
+        place -= 1
+    return False
 
 
 def insert_lost(world, source, target, index):

@@ -28,7 +28,6 @@ PLAIN_CHUNK = 50
 # What is played, if not a round of so many nodes: what comes before the first one; what comes
 # before that, where beacons may have been lost; what comes before one in which cells may forget.
 CALM, LOST, EXPIRY = 0, -1, -2
-CHOICES = 2  # what every draw of a round returns, if it was out of so many
 
 
 @dataclass(slots=True)
@@ -78,35 +77,36 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
 
     def calm(world, source, target, index):
         """No more faults, and what is in flight arrives, before the first round."""
-        for choice in range(CHOICES):
+        skin_calm.draw_first(world)
+        is_open = True
+        while is_open:
             s.fetch_row(world, source, index)
             skin_calm.forget_budgets(world)
-            world.found[1] = 0
             world.found[0] = 0
-            if not settle(world, choice):
+            if not settle(world):
                 target.run[s.BROKEN] = 1
             if world.found[0] == s.TOO_MANY:
                 target.run[s.LEFT_OUT] += 1
             s.insert(world, target, index)
-            if world.found[1] == 0:
-                break
+            is_open = skin_calm.draw_otherwise(world) and target.run[s.BROKEN] == 0
 
     def round_of(world, source, target, index, order, nodes):
-        """One round in one order, with every choice; what is not settled afterwards is kept."""
+        """One round in one order, with all that it can draw; what is not settled then is kept."""
         run = target.run
-        for choice in range(CHOICES):
+        skin_calm.draw_first(world)
+        is_open = True
+        while is_open:
             s.fetch_row(world, source, index)
-            world.found[0], world.found[1] = 0, 0
+            world.found[0] = 0
             for k in range(nodes):
-                if not turn(world, world.orders[order + k], choice):
+                if not turn(world, world.orders[order + k]):
                     run[s.BROKEN] = 1
             run[s.GENERATED] += 1
             if world.found[0] == s.TOO_MANY:
                 run[s.LEFT_OUT] += 1
             if not is_settled(world):
                 s.insert(world, target, index)
-            if world.found[1] == 0:  # nothing was drawn: the other choice is the same
-                break
+            is_open = skin_calm.draw_otherwise(world) and target.run[s.BROKEN] == 0
 
     def play(world, source, target, nodes, begin, end):
         """A round from each state, or CALM, LOST, or EXPIRY."""

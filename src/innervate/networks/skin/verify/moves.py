@@ -203,8 +203,8 @@ def finish_cell(world, c, known, sq, dist, has_ticked):
     """After a handler of a cell: check it, put it back, send what it sends; draws it asked for."""
     cell = world.cells[0]
     asked = max(cell.asked, 1)
-    if asked > 1:
-        world.found[1] = 1
+    if asked > 1 and world.at[FAIR]:
+        rows.note_draw(world, asked)
     cell.asked = 0
     cell.choice = 0
     check_range(world)
@@ -359,29 +359,29 @@ def bind(skin, skin_sink):
             rows.save_pc(world)
         return 1
 
-    def settle(world, choice):
+    def settle(world):
         """Everything in flight arrives, and what that sets off; 0 if it never ends."""
         for _ in range(200):
             moved = False
             for way in range(world.at[DIRECTIONS]):
                 while queued(world, way) > 0:
-                    hear(world, way, choice)
+                    hear(world, way, rows.next_draw(world))
                     moved = True
             for c in range(world.at[CELLS]):
                 if world.work[world.cell_at[c] + FLAGS] & rows.IS_SOON:
-                    soon(world, c, choice)
+                    soon(world, c, rows.next_draw(world))
                     moved = True
             if not moved:
                 return True
         return False
 
-    def turn(world, node, choice):
+    def turn(world, node):
         """A node ticks in the fair schedule, and is heard before the next one does."""
         if node == world.at[CELLS]:
             pc_tick(world, 0)
         else:
-            tick(world, node, 0, choice)
-        return settle(world, choice)
+            tick(world, node, 0, rows.next_draw(world))
+        return settle(world)
 
     parts = (hear, attend, tick, soon, pc_tick, make, step, settle, turn)
     return Moves(parts, start, variants, step, settle, turn)

@@ -13,6 +13,7 @@ from innervate.networks.skin.verify.world import (
     CAPACITY,
     CELLS,
     DIST,
+    DRAWS,
     FAIR,
     FD_DIST,
     FD_SQ,
@@ -300,3 +301,17 @@ def is_same(row, frame, port):
         and row[frame + SQ] == row[port + SQ]
         and row[frame + SAYS] == (row[port + SAYS] & 3)
     )
+
+
+def next_draw(world):
+    """What the next draw of a fair round gives."""
+    made = world.draws[0]
+    return world.draws[1 + made] if made < DRAWS else 0
+
+
+def note_draw(world, asked):
+    """A draw of a fair round was made, out of so many."""
+    made = world.draws[0]
+    if made < DRAWS:
+        world.draws[1 + DRAWS + made] = asked
+    world.draws[0] = made + 1

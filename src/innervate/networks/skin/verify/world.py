@@ -20,6 +20,7 @@ CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
 MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, UNREDUCED, IMAGES, WIDTH, LEAN = range(7, 17)
 HELD, RISING, STEADY = range(17, 20)
 SETTINGS = 20
+DRAWS = 16  # most draws of a fair round that are tried in every way; others give the first
 
 # A cell's head; then PORT_BYTES for each cabled port.
 HEAD_BYTES, PORT_BYTES = 9, 3
@@ -89,7 +90,8 @@ class SkinWorld(NamedTuple):
     pc: Sink
     out: Out
     frame: Any
-    found: Any  # [0] what a step broke, [1] whether anything was drawn
+    found: Any  # [0] what a step broke
+    draws: Any  # of a fair round: how many, what each gives, out of how many each was
     work: Any
     work_words: Any
     trial: Any
