@@ -155,15 +155,24 @@ def test_each_trouble_of_a_table_is_one_line(code, words):
 @pytest.mark.parametrize(
     "harm",
     [
-        """UPDATE runs SET figures = '{"x": 1'""",
-        "UPDATE runs SET figures = '5'",
-        "UPDATE runs SET figures = x'ff'",
-        "UPDATE runs SET figures = CAST(x'7bff' AS TEXT)",
-        "UPDATE places SET facts = 'torn'",
+        """figures = '{"x": 1'""", "figures = '5'", "figures = x'ff'", "figures = NULL",
+        "figures = CAST(x'7bff' AS TEXT)", """figures = CAST(x'7b2278ff223a317d' AS TEXT)""",
+        "seed = 'ten'", "wall_s = 'long'", "place = x'01'", "reason = x'00'", "state = 'failed'",
     ],
-)
-def test_a_table_with_a_torn_row_is_said_to_be_damaged(table, harm):
+)  # fmt: skip
+def test_a_torn_row_costs_that_run_alone_and_the_next_outcome_takes_its_place(table, harm):
+    table.add([done("p", 0), done("p", 1), done("p", 2)], PLACE)
+    table._db.execute("PRAGMA foreign_keys = OFF")
+    table._db.execute(f"UPDATE runs SET {harm} WHERE repeat = 1")
+    assert list(table.runs("p", 9)) == [0, 2]
+    assert table.torn == {("p", 1)}
+    table.add([done("p", 0, 7), done("p", 1, 7)], OTHER)
+    assert [run.figures["x"] for run in table.runs("p", 9).values()] == [1, 7, 1]
+
+
+def test_of_a_torn_place_nothing_is_known_and_its_runs_stay(table):
     table.add([done("p", 0)], PLACE)
-    table._db.execute(harm)
-    with pytest.raises(SweepError, match="is no job table, or damaged; move it away"):
-        table.runs("p", 9), table.places()
+    table.add([done("p", 1)], OTHER)
+    table._db.execute("UPDATE places SET facts = 'torn' WHERE id = 1")
+    assert table.places() == {1: {}, 2: {"host": "b"}}
+    assert (table.torn_places, list(table.runs("p", 9))) == ({1}, [0, 1])

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import innervate
+from innervate.cli import main
 from innervate.sweeping import scheduler as conduct
 from innervate.sweeping.engines import Here
 from tests.sweeping.conftest import FOUR, TIMEOUT_S, start, until
@@ -148,3 +149,21 @@ def alive(group):
     except ProcessLookupError:
         return False
     return True
+
+
+def test_a_torn_row_of_the_job_table_is_named_and_run_again(four, capsys):
+    asked = ["sweep", "four.toml", "--vary", "protocol.k=2,4", "--repeat", "2", "--workers", "1",
+             "--out", "out"]  # fmt: skip
+    assert main(asked) == 0
+    before = table("out")
+    with sqlite3.connect("out/jobs.sqlite") as rows:
+        point = innervate.load_sweep("out").plan.points[1].digest
+        rows.execute("UPDATE runs SET figures = '{' WHERE point = ? AND repeat = 0", (point,))
+    rows.close()
+    capsys.readouterr()
+    assert main(asked) == 0
+    said = capsys.readouterr().err
+    assert "out/jobs.sqlite had damaged rows: point 1, repeat 0, which was run again" in said
+    assert table("out") == before
+    assert main(asked) == 0
+    assert "damaged" not in capsys.readouterr().err

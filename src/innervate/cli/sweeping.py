@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 POINTS_MAX = 40
 CELL_MAX = 40  # letters of a setting
 REASONS_MAX = 5
+TORN_MAX = 5
 
 
 def sweep(file: str, options: SweepOptions) -> int:
@@ -37,6 +38,10 @@ def sweep(file: str, options: SweepOptions) -> int:
             table.close()
             errors.say(f"interrupted; {table.kept(folder)}")
             return errors.INTERRUPTED
+    if done.torn:
+        more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
+        errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
+                   f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
     for line in result_lines(done, wanted):
         print(line)
     drawn = draw_plots(done, folder)

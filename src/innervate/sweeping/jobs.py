@@ -30,6 +30,7 @@ CREATE TABLE IF NOT EXISTS runs (
 ) WITHOUT ROWID;
 """
 _INSERT = "INSERT OR IGNORE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"
+_DELETE = "DELETE FROM runs WHERE point = ? AND repeat = ?"
 
 
 class Stored(NamedTuple):
@@ -46,17 +47,27 @@ class Stored(NamedTuple):
 class Jobs:
     """An open job table; use it as a context manager.
 
+    A row that is torn costs that run, and no other: it counts as not run, and the next outcome of
+    it takes its place.
+
     Args:
         folder: where it lies, made if it is not there; None keeps it in memory.
+
+    Attributes:
+        torn: the runs whose rows were found torn, (point, repeat).
+        torn_places: numbers of the places of which nothing is known any more.
 
     Raises:
         SweepError: it cannot be written, is damaged, or somebody else is at work on it.
     """
 
     def __init__(self, folder: Path | None) -> None:
+        self.torn: set[tuple[str, int]] = set()
+        self.torn_places: set[int] = set()
         self._name = ":memory:" if folder is None else str(folder / FILE)
         with self._errors():
             self._db = sqlite3.connect(self._name, timeout=0.2, isolation_level=None)
+            self._db.text_factory = _text
         try:
             with self._errors():
                 self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
@@ -124,6 +135,9 @@ class Jobs:
                 self._db.execute("INSERT OR IGNORE INTO places (facts) VALUES (?)", (place,))
                 row = self._db.execute("SELECT id FROM places WHERE facts = ?", (place,))
                 (number,) = row.fetchone()
+                outcomes = list(outcomes)
+                again = [(o.point, o.repeat) for o in outcomes if (o.point, o.repeat) in self.torn]
+                self._db.executemany(_DELETE, again)
                 self._db.executemany(
                     _INSERT,
                     [
@@ -148,29 +162,18 @@ class Jobs:
         return dict(self.each(point, behind))
 
     def each(self, point: str, behind: int) -> Iterator[tuple[int, Stored]]:
-        """The same one by one, in order of repeat: a point may have a million.
-
-        Raises:
-            SweepError: what stands there is no run.
-        """
+        """The same one by one, in order of repeat: a point may have a million."""
         query = (
-            "SELECT repeat, seed, figures, reason, wall_s, began_s, place FROM runs "
+            "SELECT repeat, state, seed, figures, reason, wall_s, began_s, place FROM runs "
             "WHERE point = ? AND repeat < ? ORDER BY repeat"
         )
         with self._errors():
-            for repeat, seed, text, *rest in self._db.execute(query, (point, behind)):
-                figures = None if text is None else self._tables(text)
-                yield repeat, Stored(seed, figures, *rest)
-
-    def _tables(self, text: Any) -> dict[str, Any]:
-        """A JSON object that was kept as text."""
-        try:
-            found = json.loads(text)
-        except (ValueError, TypeError):
-            found = None
-        if not isinstance(found, dict):
-            raise SweepError(_damaged(self._name))
-        return found
+            for repeat, *row in self._db.execute(query, (point, behind)):
+                run = _run(*row)
+                if run is None:
+                    self.torn.add((point, repeat))
+                else:
+                    yield repeat, run
 
     def count(self) -> int:
         """How many runs there are, of this sweep and of others in the same folder."""
@@ -182,7 +185,31 @@ class Jobs:
         """What is known of the machines and processes, by number."""
         with self._errors():
             rows = self._db.execute("SELECT id, facts FROM places").fetchall()
-        return {number: self._tables(facts) for number, facts in rows}
+        found = {number: _object(facts) for number, facts in rows}
+        self.torn_places |= {number for number, facts in found.items() if facts is None}
+        return {number: facts or {} for number, facts in found.items()}
+
+
+def _run(state: str, seed: Any, text: Any, *rest: Any) -> Stored | None:
+    """A run as its row has it; None if that is torn."""
+    figures = None if text is None else _object(text)
+    kinds = [type(value) for value in (seed, *rest)]
+    whole = kinds == [int, str, float, float, int] and (figures is None) == (state == "failed")
+    return Stored(seed, figures, *rest) if whole else None
+
+
+def _object(text: Any) -> dict[str, Any] | None:
+    """A JSON object that was kept as text; None if it is none."""
+    try:
+        found = json.loads(str.encode(text))  # what is no text at all is no JSON either
+    except (ValueError, TypeError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _text(raw: bytes) -> str:
+    """Text, torn or not: an error here would be that of the whole table."""
+    return raw.decode(errors="surrogateescape")
 
 
 def _in_words(name: str, error: sqlite3.Error) -> str:
@@ -196,10 +223,6 @@ def _in_words(name: str, error: sqlite3.Error) -> str:
             f"{name}: no space left on the disk, or it fails; make room and give the same "
             "command again, what is done is kept"
         )
-    if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")) or "decode" in str(error):
-        return _damaged(name)
+    if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
+        return f"{name} is no job table, or damaged; move it away or choose another --out"
     return f"{name}: {error}"
-
-
-def _damaged(name: str) -> str:
-    return f"{name} is no job table, or damaged; move it away or choose another --out"

@@ -43,6 +43,7 @@ class Sweep:
         complete: nothing is missing.
         ran: runs that were done now rather than earlier.
         others: runs that the folder keeps besides, of other points or repeats.
+        torn: rows of the job table that were found torn, in words.
         written: the folder, if there is one.
     """
 
@@ -52,6 +53,7 @@ class Sweep:
     complete: bool = True
     ran: int = 0
     others: int = 0
+    torn: tuple[str, ...] = ()
     written: Path | None = field(default=None)
 
     def __repr__(self) -> str:

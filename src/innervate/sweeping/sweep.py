@@ -288,6 +288,17 @@ def _result(plan: SweepPlan, jobs: Jobs, scheduler: Scheduler) -> Sweep:
         complete=all(state.finished for state in scheduler.states),
         ran=scheduler.ran,
         others=jobs.count() - results.height,
+        torn=_torn(plan, jobs),
+    )
+
+
+def _torn(plan: SweepPlan, jobs: Jobs) -> tuple[str, ...]:
+    """What was torn in the job table, in words."""
+    index = {point.digest: point.index for point in plan.points}
+    runs = sorted((index[point], repeat) for point, repeat in jobs.torn)
+    return (
+        *(f"point {point}, repeat {repeat}, which was run again" for point, repeat in runs),
+        *(f"place {number}, where runs were" for number in sorted(jobs.torn_places)),
     )
 
 
