@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from innervate.cli import live_table
 from innervate.cli.live_table import LiveTable
-from innervate.sweeping.engines import Pool
+from innervate.sweeping.engines import Pool, engine
+from innervate.sweeping.errors import SweepError
 from innervate.sweeping.flat import flat
 from innervate.sweeping.until import parse
 from tests.sweeping.conftest import TIMEOUT_S, environment
@@ -164,3 +165,12 @@ def test_new_workers_take_the_place_of_all_that_were_there():
         old.submit(len, "")
     assert pool.submit(len, "abc").result() == new.submit(len, "abc").result() == 3
     pool.close()
+
+
+@pytest.mark.parametrize(
+    ("own", "option"), [({"workers": 2}, "--workers"), ({"kind": "threads"}, "--engine")]
+)
+def test_what_is_for_this_machine_is_refused_beside_a_cluster(own, option):
+    said = f"^{option} is for this machine, and --dask for a cluster; leave one out$"
+    with pytest.raises(SweepError, match=said), engine(dask="tcp://127.0.0.1:1", **own):
+        pass

@@ -192,14 +192,17 @@ def engine(kind: str = "processes", workers: int | None = None, dask: str = "") 
         dask: address of a Dask scheduler; the cluster is used instead of this machine.
 
     Raises:
-        SweepError: no such kind, or no scheduler at the address.
+        SweepError: no such kind, no scheduler at the address, or both asked for.
     """
     if kind not in KINDS:
         raise SweepError(f'no engine "{kind}"; there are {", ".join(KINDS)}')
+    if dask and (workers is not None or kind != KINDS[0]):
+        said = "--engine" if workers is None else "--workers"
+        raise SweepError(f"{said} is for this machine, and --dask for a cluster; leave one out")
     count = cores() if workers is None else workers
     if count < 1:
         raise SweepError(f"{count} workers cannot run anything; give at least 1")
-    if count > WORKERS_MAX and not dask:
+    if count > WORKERS_MAX:
         raise SweepError(
             f"{count:,} workers are more than a machine can bear; give at most {WORKERS_MAX:,}, or "
             "leave --workers out for one on every core"
