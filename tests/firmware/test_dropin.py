@@ -1,6 +1,7 @@
 """A live node's protocol as C, in Python's place: whatever it is told, it does the same."""
 
 import asyncio
+import random
 import shutil
 from contextlib import suppress
 from pathlib import Path
@@ -194,6 +195,71 @@ def test_any_network_over_cables_has_it(name, until_us, monkeypatch):
     assert knows == plain_knows
     monkeypatch.undo()
     networks.cache_clear()
+
+
+@pytest.fixture
+def ring(monkeypatch):
+    """The stacks of a node of the token ring, in Python and as C."""
+    monkeypatch.setenv("INNERVATE_NETWORKS", str(NETWORKS / "tokenring"))
+    networks.cache_clear()
+    network = networks()["tokenring"]
+    made = [DeclaredStack(network, 0, {"hold_us": 9, "lost_us": 99}, 5, [0, 1]) for _ in range(2)]
+    assert dropin.take_place(made[1], network) == ""
+    yield made
+    monkeypatch.undo()
+    networks.cache_clear()
+
+
+def said(stack):
+    """What a call came to: its outbox with all of its frames, their bytes or why none, the node."""
+    fields, found = stack.network.fields, []
+    for i in range(stack.out.count[0]):
+        act, data = stack.out.action[i], b""
+        frame = fields_of(stack.out.frame[i], fields.FRAME) if act.kind in (SEND, DELIVER) else {}
+        if act.kind == SEND:
+            try:
+                data = stack.encode(stack.out.frame[i])
+            except ValueError as error:
+                data = str(error)
+        found.append((act.kind, act.a, act.b, act.c, frame, data))
+    stack.out.count[0] = 0
+    return found, fields_of(stack.node, fields.STATE)
+
+
+def test_values_out_of_their_ranges_are_what_they_are_in_python_call_by_call(ring):
+    """What a wire cannot carry is not sent, with the same words; and counters go on."""
+    draw, refused, passed = random.Random(7), 0, 0
+    for number in range(700):
+        name, kind = draw.choice([("on_timer", 0), ("on_timer", 1), ("on_input", 0),
+                                  ("on_frame", 0)])  # fmt: skip
+        load = [draw.choice([3, 255, 256, 70_000, -1]) for _ in range(2)]
+        lap, made_at = draw.choice([1, 65_536]), draw.choice([5, -9])
+        told = []
+        for stack in ring:
+            record = stack.inbox if name == "on_frame" else stack.item
+            record.kind, record.lap, record.made_at = 1, lap, made_at
+            record.load[:] = load
+            if name == "on_frame":
+                stack.node.lap = lap  # or it would be dropped
+                stack.on_frame(number, kind)
+            elif name == "on_input":
+                stack.on_input(number, kind, record)
+            else:
+                stack.on_timer(number, kind)
+            told.append(said(stack))
+        assert told[1] == told[0], (number, name)
+        refused += sum(one[5] == "load does not fit into its bits" for one in told[0][0])
+        passed = told[0][1]["passed"]
+    assert (refused > 50, passed > 256) == (True, True)
+
+
+def test_a_kind_that_no_layout_has_is_refused_in_the_words_of_python(ring):
+    for kind in (2, 17, 257, -1):  # the lowest bits of two of them are a token's
+        for stack in ring:
+            frame = stack.out.frame[0]
+            frame.kind = kind
+            with pytest.raises(ValueError, match=r"^no frame has this kind$"):
+                stack.encode(frame)
 
 
 def node_of(kind, tmp_path, **keys):

@@ -15,7 +15,7 @@ from innervate.firmware import compiled, views
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.program import GIVEN
 from innervate.firmware.records import name_of, records_of
-from innervate.firmware.wire import coded_of
+from innervate.firmware.wire import coded_of, names_of
 from innervate.live.board import Coded, Role, roles_of
 from innervate.network import Network
 
@@ -76,23 +76,32 @@ def _gated_with(call: Any, pointer: Any) -> Any:
 
 
 class Coder:
-    """A role's coder in C; its frames have `size_max` bytes at most."""
+    """A role's coder in C.
 
-    def __init__(self, library: Any, name: str, size_max: int) -> None:
+    Args:
+        library: the role's.
+        name: the role's, in C.
+        coded: its frames.
+    """
+
+    def __init__(self, library: Any, name: str, coded: Coded) -> None:
+        self._names = names_of(coded)
         self._encode = getattr(library, f"{name}_encode")
         self._decode = getattr(library, f"{name}_decode")
-        self._data = ctypes.create_string_buffer(size_max)
+        self._data = ctypes.create_string_buffer(coded.size_max)
         self._seen = memoryview(self._data).cast("B")
 
     def encode(self, frame: Any) -> bytes:
         """The bytes of a frame.
 
         Raises:
-            ValueError: there is no such frame; the caller's mistake.
+            ValueError: the kind is none of ours, or a value does not fit; the caller's mistake.
         """
         size = self._encode(frame.ref, self._data)
+        if size < 0:
+            raise ValueError(f"{self._names[-1 - size]} does not fit into its bits")
         if not size:
-            raise ValueError(f"there are no frames of kind {frame.kind}")
+            raise ValueError("no frame has this kind")
         return bytes(self._seen[:size])
 
     def decode(self, data: bytes, frame: Any) -> int:
@@ -135,7 +144,7 @@ def take_place(stack: Any, network: Network) -> str:
     if isinstance(getattr(stack, "item", None), type):
         stack.item = stack.do.Item
     if coded is not None:
-        stack.coder = Coder(library, name_of(role.name), coded.size_max)
+        stack.coder = Coder(library, name_of(role.name), coded)
     return ""
 
 
@@ -148,7 +157,9 @@ def _role_of(stack: Any, network: Network) -> tuple[Role, Coded | None] | None:
     if role.live:
         module, _, name = role.live.partition(":")
         role = getattr(import_module(module), name)(stack.params)
-    role = role._replace(room=stack.out.limit[0], frames=0, frame_bytes=0)
+    # Of those that say themselves what runs on boards it is shown that they stay in their ranges.
+    wide = not network.has("boards")
+    role = role._replace(room=stack.out.limit[0], frames=0, frame_bytes=0, wide=wide)
     if network.has("packets"):
         return role, None  # its live nodes say their frames in another way
     coded = coded_of(role, network)

@@ -71,7 +71,8 @@ class Expressions:
         """The number that a field always is, where its range has but one."""
         owner = self.facts.owner(self.made, node.value)
         field = self.program.records.get(owner, {}).get(node.attr)
-        if field is None or field.length or field.low != field.high:
+        wide = self.program.role.wide  # it may have been set to another
+        if field is None or field.length or field.low != field.high or wide:
             return None
         return str(field.low), ATOM if field.low >= 0 else UNARY
 

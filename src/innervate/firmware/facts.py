@@ -124,7 +124,8 @@ class Facts:
             return NONE
         if field is None:
             return NATURAL
-        return Fact(field.low >= 0, field.low >= 0 and field.high <= 1)
+        natural = field.low >= 0 and not self.program.role.wide  # or it may leave its range
+        return Fact(natural, field.low >= 0 and field.high <= 1)
 
     def owner(self, made: Made, node: ast.expr) -> str:
         """The record that an expression is."""

@@ -14,6 +14,7 @@ TYPES = (
 )  # fmt: skip
 BYTES = {"uint8_t": 1, "int8_t": 1, "uint16_t": 2, "int16_t": 2, "int32_t": 4}
 # Words of C and C++ that would be no names of fields or variables there.
+WIDE = TYPES[-1][0]
 WORDS = frozenset((
     "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
     "char", "class", "compl", "const", "constexpr", "continue", "default", "delete", "do",
@@ -54,8 +55,8 @@ def name_of(name: str) -> str:
     return f"{name}_" if name in WORDS else name
 
 
-def fields_of(declaration: Declaration) -> dict[str, Field]:
-    """The fields of a declaration by name.
+def fields_of(declaration: Declaration, wide: bool = False) -> dict[str, Field]:
+    """The fields of a declaration by name; `wide` = each number with 32 bits.
 
     Raises:
         FirmwareError: the length of an array is no number.
@@ -64,7 +65,8 @@ def fields_of(declaration: Declaration) -> dict[str, Field]:
     for name, length, low, high, unit, meaning in declaration:
         if not isinstance(length, int):
             raise FirmwareError(f"field {name}: its length is {length!r}; C needs a number")
-        found[name] = Field(name, type_of(low, high), length, low, high, unit, meaning)
+        kind = WIDE if wide else type_of(low, high)
+        found[name] = Field(name, kind, length, low, high, unit, meaning)
     return found
 
 
@@ -80,9 +82,9 @@ def records_of(role: Role) -> dict[str, dict[str, Field]]:
         named["frame"] = role.frame
     if role.item is not role.frame:
         named["item"] = role.item
-    found = {record: _ordered(fields_of(declared)) for record, declared in named.items()}
+    found = {what: _ordered(fields_of(given, role.wide)) for what, given in named.items()}
     # Narrow ones first: there are many actions, and what aligns them would be lost.
-    actions = sorted(fields_of(role.action).values(), key=lambda field: BYTES[field.type])
+    actions = sorted(fields_of(role.action, role.wide).values(), key=lambda f: BYTES[f.type])
     return {**found, "action": {field.name: field for field in actions}}
 
 

@@ -259,7 +259,14 @@ class Wire:
         bits = how[0]
         if name == SPARE:
             return [f"place.at += {bits};"]
-        return self._each(form, name, many, f"innervate_put(&place, {bits}, {{place}});")
+        put = f"innervate_put(&place, {bits}, {{place}});"
+        if not self.library.role.wide:
+            return self._each(form, name, many, put)
+        low = -(1 << (bits - 1)) if how[1] else 0
+        high = low + (1 << bits) - 1  # 31 bits at most, so this is a number of C
+        test = f"if ({{place}} < {low} || {{place}} > {high}) {{{{"
+        unfit = [test, f"    return -{1 + names_of(self.coded).index(name)};", "}}"]
+        return self._each(form, name, many, *unfit, put)
 
     def _get(self, form: Form, name: str, many: Any, how: tuple[int, int]) -> list[str]:
         bits, is_signed = how
@@ -274,15 +281,20 @@ class Wire:
                      f"({kind})(size - {CRC_BYTES} - (at >> 3));"]  # fmt: skip
         return front + self._each(form, name, many, text)
 
-    def _each(self, form: Form, name: str, many: Any, text: str) -> list[str]:
+    def _each(self, form: Form, name: str, many: Any, *lines: str) -> list[str]:
         place = f"frame->{name_of(name)}"
         if not many:
-            return [text.format(place=place)]
+            return [line.format(place=place) for line in lines]
         count = many
         if _varies(many):
             count = f"frame->{name_of(self._counter(form, name))}"
         return [f"for (int32_t i = 0; i < {count}; i++) {{",
-                "    " + text.format(place=f"{place}[i]"), "}"]  # fmt: skip
+                *(f"    {line.format(place=f'{place}[i]')}" for line in lines), "}"]  # fmt: skip
+
+
+def names_of(coded: Coded) -> list[str]:
+    """The fields of all its frames; a wide role's encoder gives -1 - i where one has no bits."""
+    return list(dict.fromkeys(name for form in coded.forms for name, *_ in form.fields))
 
 
 def _varies(many: Any) -> bool:

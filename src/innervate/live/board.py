@@ -150,6 +150,8 @@ class Role(NamedTuple):
         sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
         live: "module:function", parameters -> the role as a live node with these has it; "" = the
             same as on a board.
+        wide: all its numbers have 32 bits, whatever is declared, and a coder says which does not
+            fit: so C does with values out of range what Python does.
     """
 
     name: str
@@ -175,6 +177,7 @@ class Role(NamedTuple):
     hooks: str = ""
     sized: str = ""
     live: str = ""
+    wide: bool = False
     watched: Watched = Watched()
     emulated: Emulated | None = None
     program: Program | None = None
