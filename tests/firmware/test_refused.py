@@ -136,6 +136,15 @@ REFUSED = {
     "a += 1": "is no constant and was given no value",
     "state.a = state < 1": "is no number",
     "state.a = unknown + 1": "is no constant and was given no value",
+    "if now:\n    a = 1\nstate.a = a": ":10: a has no value here on some way",
+    "if now:\n    a = 1\nelif timer:\n    b = 2\nelse:\n    a = 3\nstate.a = a": ":14: a has no",
+    "for i in range(now):\n    a = i\nstate.a = a": ":10: a has no value here",
+    "for i in range(now):\n    pass\nstate.a = i": ":10: i has no value here",
+    "for i in range(3):\n    if now:\n        a = 1\n    state.a = a": ":11: a has no value here",
+    "while now:\n    a = 1\n    break\nstate.a = a": ":11: a has no value here",
+    "if now:\n    a = 1\na += 1": ":10: a has no value here",
+    "while True:\n    if now:\n        break\n    a = 1\nstate.a = a": ":12: a has no value here",
+    "state.a = FOUR\nFOUR = 3": ":8: FOUR has no value here",
     "del state.a": "delete is not in the dialect",
 }
 TAKEN = (
@@ -145,7 +154,11 @@ TAKEN = (
     "state.r[0] = state.a + looks(state)", "state.r[0] = bump(state.list, 0) + state.a",
     "state.r[0] = bumps(state) + looks(state)", "state.list[now] = counts(state)",
     "state.list[counts(state)] = now", "state.a += looks(state)", "state.a = counts(state)",
-    "state.list[looks(state)] += 1",
+    "state.list[looks(state)] += 1", "if now:\n    a = 1\nelse:\n    a = 2\nstate.a = a",
+    "if now:\n    return\nelse:\n    a = 2\nstate.a = a",
+    "for i in range(now):\n    if timer:\n        continue\n    a = i\n    state.a = a",
+    "while True:\n    a = 1\n    if now:\n        break\nstate.a = a",
+    "a = 1\nif now:\n    a += 1\nwhile now < a:\n    a = a - 1\nstate.a = a",
 )  # fmt: skip
 
 

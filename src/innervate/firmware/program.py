@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from innervate.dialect import source
 from innervate.firmware.errors import FirmwareError, Refused
+from innervate.firmware.given import without_value
 from innervate.firmware.records import TYPES, Field
 from innervate.live.board import Role
 
@@ -127,6 +128,9 @@ class Program:
         self._open.append(key)
         made = Made(function, types)
         _Reader(self, made).read()
+        own = made.types.keys() - set(made.arguments)
+        if (name := without_value(function.node, own)) is not None:
+            raise made.refuse(name, f"{name.id} has no value here on some way; give it one before")
         self._open.pop()
         self.made[key] = made
         return made
