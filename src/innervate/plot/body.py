@@ -12,6 +12,7 @@ import numpy as np
 from innervate.analysis.spread import spread
 from innervate.network import networks
 from innervate.plot import charts, svg
+from innervate.plot.happened import event_words
 from innervate.plot.lines import traffic_lines
 from innervate.plot.page import element, figure, headline, pictures, section, table, tiles
 from innervate.plot.words import count_words, figure_words, number_of
@@ -165,6 +166,5 @@ def _nodes(result: Any) -> str:
 
 def _events(plan: Any) -> str:
     """What the scenario did to it."""
-    words = networks()[plan.kind].fault_words
-    rows = [(escape(words(plan, fault)),) for fault in plan.faults]
-    return section("Events", table(("what",), rows)) if rows else ""
+    rows = [(f"{f.at_us / 1e6:.3f} s", escape(event_words(plan, f))) for f in plan.faults]
+    return section("Events", table(("at", "what"), rows)) if rows else ""

@@ -11,6 +11,7 @@ from innervate.analysis.spread import spread
 from innervate.analysis.summary import headline
 from innervate.analysis.ways import reach
 from innervate.network import Network, networks
+from innervate.plot.happened import event_words
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
 from innervate.scenario.cables import Fault
 from innervate.sim.cables.world import DEAD
@@ -104,9 +105,8 @@ class DeclaredView(View):
         return headline(self.engine.running.counts(), handled, goes_on)
 
     def words(self, fault: Any) -> str:
-        """What a fault does, as its scenario says it, without the time."""
-        said: str = networks()[self.plan.kind].fault_words(self.plan, fault)
-        return said.split(" s ", 1)[1]
+        """What a fault does, as "node n3 switched off"."""
+        return event_words(self.plan, fault)
 
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""

@@ -103,7 +103,7 @@ def test_it_is_run_and_reported_and_two_runs_are_compared(file, tmp_path, capsys
     assert polars.read_parquet(one / "deliveries.parquet").height == summary["frames"]["arrived"]
     report = (one / "report.html").read_text()
     for word in ("n4", "5 nodes, 5 links", "messages delivered", "reports made",
-                 "Nodes at the end", "passed</span>, tokens", "cut n2 E - n3 W"):  # fmt: skip
+                 "Nodes at the end", "passed</span>, tokens", "cable n2 E - n3 W cut"):  # fmt: skip
         assert word in report, word
     capsys.readouterr()
     called("compare", one, other)

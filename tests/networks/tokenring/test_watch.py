@@ -82,7 +82,7 @@ def test_a_cable_is_cut_by_a_click(look, tmp_path):
         expect(page.locator("#level")).to_have_text("✓ ok")
         click(page, "n0 - n1")
         expect(page.locator("#selected-facts")).to_contain_text("cut")
-        expect(page.locator("#log")).to_contain_text("cut n0 E - n1 W")
+        expect(page.locator("#log")).to_contain_text("cable n0 E - n1 W cut")
         expect(page.locator("#level")).to_have_text("! degraded")
         click(page, "n0 - n1")
         expect(page.locator("#selected-facts")).to_have_text("link, up")
