@@ -51,7 +51,7 @@ def measured(given, seed):
 def test_tables_have_a_row_an_entry(compared):
     (sheet,) = compared.sheets()
     assert sheet.title == "The case; 10 runs each"
-    assert sheet.head == ("", "time (ms)", "loops")
+    assert sheet.head == ("who", "time (ms)", "loops")
     assert sheet.rows == [
         ("quick", "4.5 (1.0 to 8.0)", "2"),
         ("slow", "7.5 (4.0 to 11.0), never in 1", "2"),

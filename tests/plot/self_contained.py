@@ -30,10 +30,14 @@ def plain(page):
 
 
 def loads_nothing(page):
-    """What a page or picture holds, once it is sure that nothing of it is somewhere else."""
+    """What a page or picture holds, once it is sure that nothing of it is somewhere else.
+
+    And that no table has a column without a head, for who listens to it.
+    """
     found = References(page)
     assert [one for one in found.loads if not one.startswith(PICTURE)] == []
     assert not re.search(r"@import|url\((?!#|[\"']?data:)|<\?xml-stylesheet|http-equiv", page)
+    assert all(plain(head).strip() for head in re.findall(r"<th[^>]*>(.*?)</th>", page, re.DOTALL))
     assert set(re.findall(r"https?://([^/\"' )<]+)", page)) <= NAMES
     return found
 

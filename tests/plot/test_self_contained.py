@@ -6,6 +6,7 @@ import tomllib
 import pytest
 
 from innervate import run, scenario
+from innervate.plot import page as pages
 from innervate.plot import report
 from tests.export.test_captures import MESH, RADIO, SKIN
 from tests.plot.self_contained import TAGS, loads_nothing, plain
@@ -29,3 +30,9 @@ def test_a_report_needs_nothing_else_and_can_be_had_again(kind):
     told = next(block for block in blocks if "kind =" in block)
     assert tomllib.loads(told) == tomllib.loads(scenario.dump(done.scenario))
     assert done.summary["fingerprint"] in page
+
+
+@pytest.mark.parametrize("head", [("", "at"), ("what", "")])
+def test_a_table_is_not_made_with_a_column_that_has_no_head(head):
+    with pytest.raises(AssertionError):
+        pages.table(head, [("1", "2 s")])

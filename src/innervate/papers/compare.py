@@ -61,7 +61,7 @@ def experiment(name: str) -> Experiment:
 
 def _legend(job: Job) -> Sheet:
     rows = [(entry.name, entry.what) for entry in entries(job.name)]
-    return Sheet("Who is compared", ("", "what it is"), rows)
+    return Sheet("Who is compared", ("who", "what it is"), rows)
 
 
 def picture(compared: Compared) -> Figure:

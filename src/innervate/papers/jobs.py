@@ -175,7 +175,7 @@ class Compared:
                 (entry.name, *(self.cell(case, entry, column) for column in case.columns))
                 for entry in doing(self.job, case)
             ]
-            head = ("", *(column.head for column in case.columns))
+            head = ("who", *(column.head for column in case.columns))
             made.append(Sheet(f"{case.title}; {len(case.seeds)} runs each", head, rows))
         return made
 

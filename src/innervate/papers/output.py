@@ -225,7 +225,7 @@ def as_page(
     parts.append(_anchored("readings", page.section("Readings", _readings(rows, heading))))
     origin_rows = [[clean(key), clean(value)] for key, value in origin.items()]
     again = page.element("pre", heading.command, "command")
-    parts.append(page.section("Run it again", again + page.table(("", ""), origin_rows)))
+    parts.append(page.section("Run it again", again + page.table(("what", "value"), origin_rows)))
     return page.page(f"innervate: papers {heading.system}", "\n".join(parts))
 
 

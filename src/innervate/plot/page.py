@@ -173,7 +173,8 @@ def tiles(entries: Sequence[tuple[str, str]]) -> str:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:
-    """A table; cells are HTML."""
+    """A table; cells are HTML. Each column has a head, for who listens to the page."""
+    assert all(head), head
     opening = f'<table class="{kind}">' if kind else "<table>"
     top = "".join(f"<th>{cell}</th>" for cell in head)
     body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>\n" for row in rows)

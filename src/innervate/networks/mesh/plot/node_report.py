@@ -10,7 +10,7 @@ from innervate.plot import svg, words
 from innervate.plot.page import details, section, table
 
 OPEN_MAX = 40  # a longer table is folded
-HEAD = ("node", "", "neighbours", "depth", "table", "control bytes", "forwarded", "on the air",
+HEAD = ("node", "role", "neighbours", "depth", "table", "control bytes", "forwarded", "on the air",
         "suspected")  # fmt: skip
 
 

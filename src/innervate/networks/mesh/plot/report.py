@@ -178,7 +178,7 @@ def _crossings(result: Any, crossings: list[Crossing]) -> str:
             words.ms_words((crossing.crossed_us - crossing.warned_us) / 1e3) + " before"
             if warned else "no",
         ))  # fmt: skip
-    head = ("", "at", "robot", "raised by", "monitor knew after", "hops", "overrun", "warned")
+    head = ("number", "at", "robot", "raised by", "monitor knew after", "hops", "overrun", "warned")
     return section("Crossings", page.beginning(head, rows, ", in crossings.parquet"))
 
 
