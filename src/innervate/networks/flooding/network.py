@@ -16,4 +16,5 @@ NETWORK = Network(
     invariants="invariants",
     comparison="comparison",
     foreseen="foreseen:foreseen",
+    template="template:template",
 )
