@@ -122,18 +122,26 @@ def robot_of(folder, shape):
     ('<sphere radius="big"/>', 'a sphere of size "big"; it takes a number'),
     ('<box size="1 1"/>', 'a box of size "1 1"; it takes 3 numbers'),
     ('<box size="1 0 1"/>', 'a box of size "1 0 1"; it takes 3 numbers'),
+    ('<box size="1e308 1 1"/>', 'a box of size "1e308 1 1"; it takes 3 numbers'),
+    ('<sphere radius="inf"/>', 'a sphere of size "inf"; it takes a number'),
+    ('<sphere radius="1000001"/>', 'a sphere of size "1000001"; it takes a number'),
     ('<cylinder radius="1" length="nan"/>', 'a cylinder of size "nan"; it takes a number'),
 ])  # fmt: skip
 def test_shapes_without_a_size_are_refused_by_the_links_name(tmp_path, shape, words):
     with pytest.raises(TopologyError) as caught:
         cells_from_urdf(robot_of(tmp_path, shape), "*", None, 10.0)
-    assert str(caught.value) == f"link arm has {words} above 0"
+    assert str(caught.value) == f"link arm has {words} above 0, up to 1e+06"
 
 
-@pytest.mark.filterwarnings("ignore:overflow")
-def test_a_surface_without_a_finite_area_is_none(tmp_path):
-    box = robot_of(tmp_path, '<box size="1e160 1e160 1"/>')
-    with pytest.raises(TopologyError, match="a mesh of link arm has no surface"):
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("far", "words"), [
+    ("0", "a mesh of link arm has no surface"),
+    ("1e308", r"far\.obj of link arm has points farther than 1e\+06 away"),
+])  # fmt: skip
+def test_a_mesh_is_refused_that_has_no_surface_or_is_larger_than_any_robot(tmp_path, far, words):
+    (tmp_path / "far.obj").write_text(f"v 0 0 0\nv {far} 0 0\nv 0 {far} 0\nf 1 2 3\n")
+    box = robot_of(tmp_path, '<mesh filename="far.obj"/>')
+    with pytest.raises(TopologyError, match=words):
         cells_from_urdf(box, "*", None, 10.0)
 
 

@@ -16,7 +16,7 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 from innervate.topology.errors import TopologyError
-from innervate.topology.urdf import Link, Vector, moved, read_links
+from innervate.topology.urdf import NUMBER_MAX, Link, Vector, moved, read_links
 
 SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb")
 COLLADA = ".dae"  # takes pycollada; such a mesh is read where a link has no other shape
@@ -159,6 +159,7 @@ def _readable(part: Element, suffixes: tuple[str, ...]) -> bool:
 
 def _shape(path: Path, link: Link, part: Element) -> Any:
     """A mesh, m, in the frame of its own <origin>."""
+    import numpy as np
     import trimesh
 
     mesh = part.find("geometry/mesh")
@@ -174,13 +175,17 @@ def _shape(path: Path, link: Link, part: Element) -> Any:
         message = f"{file.name} of link {link.name} is a Collada mesh, which takes pycollada"
         raise TopologyError(f"{message}; install it with: pip install pycollada", "urdf")
     try:
-        made: Any = trimesh.load(file, force="mesh")
+        with np.errstate(all="ignore"):  # of numbers that are refused below
+            made: Any = trimesh.load(file, force="mesh")
     except Exception as error:  # whatever a reader of a dozen formats may raise
         raise TopologyError(
             f"{file.name} of link {link.name} is no mesh: {error}", "urdf"
         ) from None
     if file.suffix.lower() == COLLADA:
         made.apply_scale(_metres(file))
+    if not bool((abs(made.vertices) <= NUMBER_MAX).all()):
+        message = f"{file.name} of link {link.name} has points farther than {NUMBER_MAX:g} away"
+        raise TopologyError(message, "urdf")
     made.apply_scale(_numbers(mesh.get("scale", "1 1 1"), 3, mesh, link))
     return made
 
@@ -205,10 +210,11 @@ def _numbers(text: str, count: int, element: Element, link: Link) -> list[float]
         found = [float(word) for word in text.split()]
     except ValueError:
         found = []
-    least = -math.inf if element.tag == "mesh" else 0.0
-    if len(found) != count or not all(least < x < math.inf and x for x in found):
+    least = -NUMBER_MAX if element.tag == "mesh" else 0.0
+    if len(found) != count or not all(least <= x <= NUMBER_MAX and x for x in found):
         what = f"{count} numbers" if count > 1 else "a number"
         message = f'link {link.name} has a {element.tag} of size "{text}"; it takes {what} above 0'
+        message += f", up to {NUMBER_MAX:g}"
         raise TopologyError(message, "urdf")
     return found
 
