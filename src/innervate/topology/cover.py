@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings, simplefilter
 from xml.etree.ElementTree import Element
 
 from innervate.topology.errors import TopologyError
@@ -159,7 +160,6 @@ def _readable(part: Element, suffixes: tuple[str, ...]) -> bool:
 
 def _shape(path: Path, link: Link, part: Element) -> Any:
     """A mesh, m, in the frame of its own <origin>."""
-    import numpy as np
     import trimesh
 
     mesh = part.find("geometry/mesh")
@@ -175,7 +175,8 @@ def _shape(path: Path, link: Link, part: Element) -> Any:
         message = f"{file.name} of link {link.name} is a Collada mesh, which takes pycollada"
         raise TopologyError(f"{message}; install it with: pip install pycollada", "urdf")
     try:
-        with np.errstate(all="ignore"):  # of numbers that are refused below
+        with catch_warnings():  # NumPy's, of numbers that are refused below
+            simplefilter("ignore", RuntimeWarning)
             made: Any = trimesh.load(file, force="mesh")
     except Exception as error:  # whatever a reader of a dozen formats may raise
         raise TopologyError(
