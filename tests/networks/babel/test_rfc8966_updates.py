@@ -276,6 +276,20 @@ def test_a_1_sixteen_hellos_that_are_missed_leave_none_of_those_before():
     assert bench.node.history[0] == 0b11
 
 
+@pytest.mark.parametrize("ahead", range(-18, 19))
+def test_a_1_history_bit_by_bit(ahead):
+    """As text, newest last; beyond 16 either way it begins anew."""
+    bench = Bench().up(0)
+    for _ in range(15):
+        bench.hello(0)
+    bench.hello(0, skip=1)
+    heard = "1" * 14 + "01"
+    bench.hello(0, skip=ahead)
+    kept = heard[:ahead] if ahead < 0 else heard + "0" * ahead
+    wanted = "1" if abs(ahead) > 16 else kept + "1"
+    assert f"{bench.node.history[0]:016b}" == wanted[-16:].rjust(16, "0")
+
+
 # "if the two differ by more than 16 (modulo 2^16), then the sending node has probably rebooted
 # [...]; the whole associated neighbour table entry is flushed and a new one is created" [A.1]
 def test_a_1_a_neighbour_that_rebooted():

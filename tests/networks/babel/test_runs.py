@@ -69,6 +69,16 @@ def test_data_comes_hop_by_hop():
     assert 0.1 < messages["latency_ms"]["p50"] < messages["latency_ms"]["max"] < 1
 
 
+@pytest.mark.parametrize("urgent_us", [1, 100_000])
+def test_how_long_an_update_may_wait_that_is_triggered(urgent_us):
+    """At least a microsecond, so that all news of a call go out together."""
+    plan = scenarios.plan(scenarios.from_dict({**GRID, "protocol": {"urgent_us": urgent_us}}))
+    assert plan.params["urgent_us"] == urgent_us
+    beyond = 0 if urgent_us == 1 else 100_001
+    with pytest.raises(scenarios.ScenarioError, match=f"^urgent_us must be .*, not {beyond}$"):
+        scenarios.from_dict({**GRID, "protocol": {"urgent_us": beyond}})
+
+
 def test_lossy_links_are_gone_round_by_etx():
     # n3 hears n0 over a bad cable, and over two good ones.
     cables = ["n0-n1", "n1-n2", "n2-n3", "n0-n3"]

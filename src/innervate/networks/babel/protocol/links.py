@@ -14,17 +14,16 @@ from innervate.networks.babel.protocol.constants import (
 
 def hear(node, params, now, port, frame, out):
     """A Hello, perhaps with an IHU: history, txcost, cost [3.4.1, 3.4.2, A.1]."""
-    ahead = (frame.hello_no - node.hello_next[port]) & MASK16
-    is_new = node.neighbour[port] != frame.source or (ahead > 16 and ahead < 65520)
+    ahead = ((frame.hello_no - node.hello_next[port] + 16) & MASK16) - 16
+    is_new = node.neighbour[port] != frame.source or ahead > 16
     if is_new:
         if frame.hello == 0:  # nothing is promised, so that nobody could miss it
             return
         forget_neighbour(node, port)
         ahead = 0
-    if ahead < 17:
-        node.history[port] = (node.history[port] & (MASK16 >> ahead)) << ahead
-    else:
-        node.history[port] = node.history[port] >> (65536 - ahead)  # "undo history"
+    missed = max(ahead, 0)  # "fast-forward"
+    undone = max(-ahead, 0)  # "undo history"
+    node.history[port] = ((node.history[port] >> undone) & (MASK16 >> missed)) << missed
     node.history[port] = ((node.history[port] << 1) | 1) & MASK16
     node.neighbour[port] = frame.source
     node.hello_next[port] = (frame.hello_no + 1) & MASK16
