@@ -10,7 +10,8 @@ from innervate.dialect.checker import broken_rules, functions_of
 
 MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
-NOTED = {"kind", "made_at", "rssi"}  # fields of a frame that no layout has to name
+MEASURED = {"rssi"}  # fields of a frame that are set by who receives it
+NOTED = {"kind", "made_at"} | MEASURED  # those that no layout has to name
 FIELD = "a field is (name, length, low, high, unit, meaning)"
 HANDLERS = {
     "on_start": "(state, params, now, cause, out)",

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from innervate.dialect import outbox
+from innervate.dialect.folder import MEASURED
 from innervate.dialect.outbox import DELIVER, SEND
 from innervate.folders import NetworkError, shown
 from innervate.network import Network
 from innervate.sim.sent import FRAME_BROKEN, KIND_BROKEN
-from innervate.verify.frames import MEASURED, Frames, layouts_of
+from innervate.verify.frames import Frames, layouts_of
 
 Here = Callable[[], tuple[str, int]]
 

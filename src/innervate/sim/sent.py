@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from innervate.dialect.folder import MEASURED
 from innervate.dialect.outbox import DELIVER, SEND
 from innervate.kernel.records import Declaration
 
@@ -17,7 +18,6 @@ WORDS = {
     FRAME_BROKEN: "a frame of {node} has a value out of its declared range",
     KIND_BROKEN: "a frame of {node} is of a kind that has no layout",
 }
-MEASURED = ("rssi",)  # by who receives it
 
 
 def kinds_of(network: Any) -> tuple[int, ...]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from innervate.dialect.folder import MEASURED
 from innervate.dialect.outbox import DELIVER, SEND
 
 MEDIUMS = ("to", "slots")  # what a medium looks at, whatever a layout says
 TIMED = "made_at"  # what latencies are measured by
-MEASURED = ("rssi",)  # by who receives it
 
 
 class Frames:
