@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 from innervate.plot import sweeps
 from innervate.plot.sweeps import Shown, draw, label
@@ -65,6 +66,23 @@ def test_squares_have_their_number_as_far_as_it_can_be_read(most, written, monke
     assert np.array_equal(means, [[4, np.nan, 3], [6, np.nan, np.nan]], equal_nan=True)
     dark = [text.get_text() for text in shown.texts if text.get_color() == "#ffffff"]
     assert dark == (["6"] if written else [])
+
+
+def luminance(colour):
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colour]
+    return np.dot(linear, (0.2126, 0.7152, 0.0722))
+
+
+def test_the_number_in_a_square_can_be_read_whatever_its_shade():
+    """Contrast by WCAG 2 of each number with its square, as drawn, from the least to the most."""
+    columns = {"x": list(range(60)), "y": [float(i) for i in range(60)], "by": [1] * 60}
+    shown = draw(columns, Shown("x", "y", "by", "heat"), {}).axes[0]
+    (image,) = shown.images
+    assert len(shown.texts) == 60
+    for text in shown.texts:
+        ground = luminance(image.to_rgba(float(text.get_text()))[:3])
+        ink = luminance(to_rgb(text.get_color()))
+        assert (max(ink, ground) + 0.05) / (min(ink, ground) + 0.05) >= 4.5, text.get_text()
 
 
 @pytest.mark.parametrize(("name", "words"), [

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.figure import Figure
 
 from innervate.analysis.intervals import Interval, mean_interval
@@ -24,6 +24,8 @@ TITLE_LETTERS = 44  # of a line of the title
 NAME_LETTERS = 24  # of a value; of longer ones the middle is left out
 TICK_LETTERS = 44  # of all names along an axis; more of them stand aslant
 TICKS_MAX = 16  # names of squares along an axis
+INKS = (style.INK, "#ffffff", "#000000")
+READABLE = 4.5  # contrast of small text with its ground, at least
 WRITTEN_MAX = 60  # squares of a heat map that have their number written in them
 GAP = Interval(math.nan, math.nan, math.nan)
 Columns = Mapping[str, Sequence[Any]]
@@ -149,12 +151,11 @@ def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> 
     shades = LinearSegmentedColormap.from_list("house", ["#f3f6fa", "#7fb2d9", "#0a3d66"])
     ax.set_facecolor(style.FAINT)
     image = ax.imshow(means, cmap=shades, origin="lower", aspect="auto")
-    middle = (np.nanmin(means) + np.nanmax(means)) / 2 if np.isfinite(means).any() else 0.0
     if means.size <= WRITTEN_MAX:
         for (row, i), value in np.ndenumerate(means):
-            dark = np.isfinite(value) and value > middle
-            words = f"{value:.3g}" if np.isfinite(value) else "none"
-            ink = "#ffffff" if dark else style.INK
+            there = bool(np.isfinite(value))
+            words = f"{value:.3g}" if there else "none"
+            ink = ink_on(image.to_rgba(value)[:3] if there else to_rgb(style.FAINT))
             ax.text(i, row, words, ha="center", va="center", fontsize=6.5, color=ink)
     for axis, values in ((ax.xaxis, rights), (ax.yaxis, ups)):
         step = -(-len(values) // TICKS_MAX)
@@ -166,6 +167,25 @@ def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> 
     bar = made.colorbar(image, ax=ax)
     bar.set_label(f"{label(y)}, mean")
     bar.outline.set_visible(False)
+
+
+def ink_on(paper: Any) -> str:
+    """The first ink that can be read on a colour (red, green, blue, each 0 to 1).
+
+    By WCAG 2: on any colour white or black has a contrast of 4.58 at least.
+    """
+    return next(ink for ink in INKS if contrast(to_rgb(ink), paper) >= READABLE)
+
+
+def contrast(one: Sequence[float], other: Sequence[float]) -> float:
+    """How well a colour stands out from another, 1 to 21, by WCAG 2."""
+    darker, lighter = sorted((_luminance(one), _luminance(other)))
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def _luminance(colour: Sequence[float]) -> float:
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colour]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
 def _values(columns: Columns, name: str) -> list[Any]:
