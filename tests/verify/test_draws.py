@@ -164,6 +164,12 @@ def test_who_draws_until_it_differs_comes_to_an_end():
     assert case.lines[0].endswith("of events with more than 16 draws only the first 16 were tried")
 
 
+def test_where_there_is_one_to_draw_nothing_is_told_of_it():
+    case = explored(throws(1), [never(1, 1)])
+    assert case.record["draws"] == {"every": [], "some": [], "left_out": 0}
+    assert (case.is_complete, case.record["states"]) == (True, 1)
+
+
 def test_a_draw_out_of_nothing_is_told_with_its_line():
     def on_timer(node, params, now, timer, out):
         rng.draw(node, node.wait)

@@ -76,12 +76,15 @@ class Draws:
         """Find what a draw out of so many gives."""
         if count < 1:
             raise ValueError(f"a draw out of {count}: there is nothing to draw")
+        if count == 1:
+            self.answer = 0
+            return
         place = len(self.made)
         self.sizes.add(count)
         if count > FEW:
             self.some.add(count)
         self.answer = self._script[place] if place < len(self._script) else 0
-        if place >= PLACES and count > 1:
+        if place >= PLACES:
             self._more = self._more or stream(1, "draws of one explored event")
             self.answer = self._more.draw(count)
             self.some.add(count)
@@ -104,7 +107,7 @@ class Draws:
                     todo += [(*given[:place], value) for value in tried(size)[1:]]
             if todo and count == OUTCOMES:
                 self.left_out += 1
-                self.some.update(size for _, _, size in made if size > 1)
+                self.some.update(size for _, _, size in made)
             self._script = ()
             yield step._replace(words=step.words + told(made)) if made else step
 
