@@ -9,12 +9,19 @@ from innervate.dialect import plain
 from innervate.dialect.outbox import SEND
 from innervate.networks.radio.papers.delay import PRACTICAL, Offered
 from innervate.networks.radio.protocol import fields, idle, modes, turn
-from innervate.networks.radio.protocol.constants import DATA, MAIN, NONE
-from innervate.networks.radio.protocol.modes import ACTIVE, CALM, CALM_MOST, EARNED, QUIET
-from innervate.networks.radio.protocol.times import is_few, pass_slots, retry_within
+from innervate.networks.radio.protocol.constants import DATA, MAIN, NONE, OPEN
+from innervate.networks.radio.protocol.modes import (
+    ACTIVE,
+    CALM,
+    CALM_MOST,
+    EARNED,
+    QUIET,
+)
+from innervate.networks.radio.protocol.times import is_few, pass_slots, probe, retry_within
 from innervate.networks.radio.scenario.plan import RadioFault, parameters
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.scenario.actions.channel import KILL
+from tests.networks.radio.runs import radio_plan
 
 Frame = plain.make("Frame", fields.FRAME)
 Params = plain.make("Params", fields.PARAMS)
@@ -137,6 +144,42 @@ def test_slow_radios_that_collided_draw_moments_at_which_the_later_hears_the_ear
     assert len(waits) == 7
     assert apart.min() > params.ta_us + params.dmax_us
     assert max(waits) - min(waits) < retry_within(params, 0)
+
+
+def opening_of(station, params):
+    """The frame by which it opens a sequence."""
+    out = plain.Outbox(Frame, 16)
+    idle.open_now(station, params, 0, out)
+    (sent,) = (f for a, f in zip(out.action, out.frame, strict=False) if a.kind == SEND)
+    return sent
+
+
+@pytest.mark.parametrize(("ta", "wide", "packets"), [(SLOW_US, 0, 1), (SLOW_US, 1, 0), (0, 0, 0)])
+def test_slow_radios_that_collided_try_again_with_a_packet_while_bounds_hold(ta, wide, packets):
+    params, station = params_of(ta, per_turn=4), member(queued=3)
+    station.collided, station.wide = 1, wide
+    sent = opening_of(station, params)
+    assert (sent.kind, sent.count, station.pending) == (OPEN, packets, packets)
+    assert sent.slots * params.slot_us >= probe(params, wide)  # two of them overlap everywhere
+    assert sent.more == 1
+    assert station.mode == modes.SEND_OPEN
+
+
+def test_tries_that_collide_again_do_not_make_a_station_leave_the_round():
+    params, station = params_of(), member(queued=1)
+    for _ in range(5):
+        opening_of(station, params)
+        assert station.pending == 1
+        idle.retry(station, params, 0, 1, plain.Outbox(Frame, 16))
+    assert (station.pending, station.queued, station.fails) == (0, 1, 1)
+
+
+def test_of_two_that_collided_one_needs_no_turn():
+    plan = radio_plan(2, 25, SLOW_US, 1)
+    sent = np.sort(simulate(plan).sent, order="time")
+    clean = sent[sent["count"] == 1][2:]
+    assert clean["kind"].tolist() == [OPEN, DATA]
+    assert len(set(clean["node"].tolist())) == 2
 
 
 def test_quick_radios_pass_three_slots_as_before():

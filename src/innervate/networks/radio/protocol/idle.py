@@ -40,7 +40,6 @@ from innervate.networks.radio.protocol.times import (
     most_delay,
     probe,
     retry_within,
-    split_into,
 )
 
 LONELY_FREE = 3  # openings into silence before the wait grows
@@ -110,8 +109,9 @@ def open_now(station, params, now, out):
     probe_slots = (probe(params, station.wide) + params.slot_us - 1) // params.slot_us
     count = 0
     frame.slots = probe_slots
-    if not station.collided:
-        count = load_packets(station, frame, params.per_turn)
+    most = loads(station, params)
+    if most:
+        count = load_packets(station, frame, most)
         frame.slots = max(frame.slots, probe_slots)
     frame.kind = OPEN
     rest_round(station, params)
@@ -125,7 +125,7 @@ def open_now(station, params, now, out):
         station.live[station.pos] = QUIET
     frame.next = ALONE
     size = wanted_window(station, params)
-    if count == 0 and split_into(params) > 2:
+    if station.collided and is_slow(params):
         size = max(size, 2)  # there was a collision: more than one will ask
     size = max(size, 1) + count_kept(station)
     if size > 1:
@@ -143,6 +143,18 @@ def open_now(station, params, now, out):
     station.mode = SEND_OPEN
 
 
+def loads(station, params):
+    """How many packets our opening may carry.
+
+    Behind a collision slow radios take one: a probe is about as long, and a turn for it costs a
+    turnaround more. Whoever knows that bounds are wrong may take what others are told for an
+    answer, and quick radios find each other sooner with short probes.
+    """
+    if not station.collided:
+        return params.per_turn
+    return 1 if is_slow(params) and station.wide == 0 else 0
+
+
 def take_place(station, params):
     """Our place, or a free one; what to say of it in an opening."""
     if station.pos == NONE:
@@ -157,7 +169,10 @@ def take_place(station, params):
 def retry(station, params, now, tail, out):
     """Our opening collided: with `tail` wait for the others' end, else draw the wait now."""
     report(out, REPORT_COLLISION, 0, 0)
+    fails = station.fails
     disprove(station, HEARD_TAIL if tail else NOT_HEARD, out)
+    if station.collided:
+        station.fails = fails  # of a try: no sign that nobody receives us
     leave_sequence(station, params, now, 0)
     station.collided = 1
     station.tail = tail
