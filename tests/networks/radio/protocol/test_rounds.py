@@ -9,15 +9,16 @@ from innervate.dialect import plain
 from innervate.dialect.outbox import SEND
 from innervate.networks.radio.papers.delay import PRACTICAL, Offered
 from innervate.networks.radio.protocol import fields, idle, modes, turn
-from innervate.networks.radio.protocol.constants import DATA, MAIN, NONE, OPEN
+from innervate.networks.radio.protocol.constants import DATA, MAIN, NONE, OPEN, REPORT
 from innervate.networks.radio.protocol.modes import (
     ACTIVE,
     CALM,
     CALM_MOST,
     EARNED,
+    FLOWING,
     QUIET,
 )
-from innervate.networks.radio.protocol.times import is_few, pass_slots, probe, retry_within
+from innervate.networks.radio.protocol.times import asking, is_few, pass_slots, probe, retry_within
 from innervate.networks.radio.scenario.plan import RadioFault, parameters
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.scenario.actions.channel import KILL
@@ -92,6 +93,52 @@ def test_a_round_ends_without_packets_and_does_not_begin_while_newcomers_come(go
     sent = turn_of(station, params_of())
     assert (sent.slots, sent.more) == (2, 0)
     assert station.live[0] == QUIET  # it keeps its place, and asks in a window
+
+
+@pytest.mark.parametrize(
+    ("flow", "calm", "per_turn", "goes_on"),
+    [(FLOWING, CALM_MOST, 4, 1), (FLOWING - 1, CALM_MOST, 4, 0), (FLOWING, CALM_MOST - 1, 4, 0),
+     (FLOWING, CALM_MOST, 1, 0)],
+)  # fmt: skip
+def test_many_keep_their_turns_while_packets_flow(flow, calm, per_turn, goes_on):
+    params = params_of(per_turn=per_turn)
+    station = member(20, credit=modes.EARNED_MOST, calm=calm)
+    station.flow = flow + 11  # of which this turn takes so many
+    sent = turn_of(station, params)
+    assert (sent.count, sent.next, sent.more, station.flow) == (0, 1, goes_on, flow)
+
+
+@pytest.mark.parametrize(("places", "packets"), [(13, 8), (13, 4), (20, 14), (20, 8)])
+def test_packets_are_worth_the_more_the_fewer_places_there_are(places, packets):
+    """A round of so many places with so many packets, one in a turn, makes up for its turns."""
+    params, station = params_of(per_turn=4), member(places)
+    for _ in range(20):
+        for place in range(places):
+            modes.note_flow(station, params, 1 if place < packets else 0)
+    assert (station.flow >= FLOWING) == (packets > places / 2)
+
+
+def test_a_window_for_kept_places_takes_from_the_flow():
+    params, station = params_of(per_turn=4), member(20)
+    for place in range(20):
+        station.live[place] = QUIET
+    station.flow = FLOWING
+    modes.age_kept(station, params)
+    assert station.flow == FLOWING - asking(params, 20) // params.slot_us
+    for _ in range(20):
+        modes.age_kept(station, params)
+    assert station.flow == 0
+
+
+def test_twenty_with_full_turns_pass_them_on_instead_of_asking_in_windows():
+    def sent_of(load):
+        sent = simulate(Offered(PRACTICAL, 4, 5, 20, load, 1000).plan(1), checks=False).sent
+        late = sent[sent["time"] > sent["time"].max() // 2]
+        return [int((late["kind"] == kind).sum()) for kind in (REPORT, DATA)]
+
+    (reports, turns), (asked, used) = sent_of(0.9), sent_of(0.45)
+    assert turns > 80 * max(reports, 1)
+    assert used < 8 * asked
 
 
 def test_who_leaves_does_not_stay_in_the_round():

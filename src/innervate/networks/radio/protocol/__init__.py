@@ -24,9 +24,10 @@ round: every data frame names the next place, and between two there is a turnaro
 nothing else. Windows for newcomers open behind a round. In a window each newcomer sends one CR-R in
 a random minislot; the report says which held one. Those are places now; several in one split.
 With slow radios a place is kept when the queue is empty. Where few have places each has a turn in
-every round, two slots without a packet, until nobody has sent for long (decision 0048). Where many
-have (decision 0039) such a place has no turn, and the minislot of its number in each window that no
-report announced; newcomers' stand behind those.
+every round, two slots without a packet, until nobody has sent for long (decision 0048); where many
+have, too, while turns of several packets are mostly used (decision 0062). Else (decision 0039) such
+a place has no turn, and the minislot of its number in each window that no report announced;
+newcomers' stand behind those.
 
 `station.py` is what both share; `modes.py`, `times.py`, `bounds.py`, `idle.py`, `turn.py`,
 `window.py`, `reporter.py`, `follow.py` belong to practical mode, `paper_idle.py`,
@@ -85,7 +86,7 @@ nobody left, by `finish` to `IDLE`.
 |               |                               | collision: `wait_again`           |              |
 | `IDLE`        | a burst ends: a frame         | `schedule`                        |              |
 | `SEND_OPEN`   | radio listens: carrier        | `retry`: others collided with us; | IDLE         |
-|               |                               | probes from now on                |              |
+|               |                               | quick radios: probes from now on  |              |
 | `SEND_OPEN`   | radio listens: silence        | `opened`                          | LEAD         |
 | `LEAD`        | `CRR`                         | `hear_slot`: proof; a good        |              |
 |               |                               | minislot, if bounds hold          |              |
@@ -264,6 +265,9 @@ Constants and settings
 |                                              | `is_few` reckons with                             |
 | `CALM = 2`                                   | windows without newcomers: all who send have      |
 |                                              | places, and if `is_few` the round goes on         |
+| `WORTH = 30`, `FLOWING = 500`,               | slots that packets are worth, less turns and      |
+| `FLOW_MOST = 1000`                           | windows: from `FLOWING` on, with `CALM_MOST`, the |
+|                                              | round of many goes on, too (decision 0062)        |
 | `KEPT = 20`                                  | places that can be kept: one less than the        |
 |                                              | minislots of the largest window                   |
 | `ACTIVE = 1`, `QUIET = 2`, `QUIET_MOST = 99` | of a place: it has turns; it is kept, one more    |

@@ -27,6 +27,7 @@ from innervate.networks.radio.protocol.modes import (
     earn,
     following,
     is_passed_over,
+    note_flow,
     note_joined,
     prove,
     rest,
@@ -131,8 +132,10 @@ def is_skipped(station, sender, behind):
 def count_turn(station, params, packets):
     """Somebody else has had a turn."""
     station.turns = min(station.turns + 1, TURNS_COUNTED)
-    if packets and is_slow(params):
-        earn(station, packets)
+    if is_slow(params):
+        note_flow(station, params, packets)
+        if packets:
+            earn(station, packets)
 
 
 def note_turn(station, params, place, more):

@@ -12,7 +12,14 @@ from innervate.networks.radio.protocol.constants import (
     WINDOWS,
 )
 from innervate.networks.radio.protocol.station import delivered
-from innervate.networks.radio.protocol.times import is_few, is_slow, keeps, split_into
+from innervate.networks.radio.protocol.times import (
+    asking,
+    is_few,
+    is_slow,
+    keeps,
+    pass_slots,
+    split_into,
+)
 
 # Listening.
 IDLE = 0  # not in a sequence; opens one when it has a packet and may
@@ -30,6 +37,9 @@ CROWD_MOST = 1023
 BUSY_MOST = 15
 EARNED = 48  # of a packet; a turn without one costs the square of the places
 EARNED_MOST = 1600
+WORTH = 30  # turns without a packet that one packet a turn is worth, shared by the places
+FLOWING = 500  # slots: from here on many places keep their turns, too
+FLOW_MOST = 1000
 CALM = 2  # windows without newcomers: all who send have places
 CALM_MOST = 7
 BUSY = 10  # from here on it is worth a minislot for each to keep places over an idle channel
@@ -59,6 +69,7 @@ def clear_round(station):
     station.cur = NONE
     station.turns = 0
     station.calm = 0
+    station.flow = 0
 
 
 def rest(station, params, place):
@@ -110,11 +121,33 @@ def goes_on(station, params):
     """1 if slow radios hand on turns without packets: few have places, and nobody else sends."""
     if not is_slow(params) or station.credit == 0 or station.calm < CALM:
         return False
-    return is_few(params, count_places(station))
+    return is_few(params, count_places(station)) or is_flowing(station, params)
 
 
-def age_kept(station):
+def is_flowing(station, params):
+    """1 if so many packets come that a round of many places is quicker than windows, too.
+
+    Only where a turn may have several packets: a longer round carries no less then.
+    """
+    if params.per_turn == 1 or station.calm < CALM_MOST:
+        return False
+    return station.flow >= FLOWING
+
+
+def note_flow(station, params, packets):
+    """Slow radios: a turn is over, whoever had it. Packets are worth the time between them."""
+    turn = params.ta_us // params.slot_us + pass_slots(params)
+    if packets:
+        worth = packets * (WORTH * turn // max(count_places(station), 1))
+        station.flow = min(station.flow + worth, FLOW_MOST)
+        turn = turn - pass_slots(params)
+    station.flow = max(station.flow - turn, 0)
+
+
+def age_kept(station, params):
     """A window for kept places begins: they are one window older, and free when too old."""
+    spent = asking(params, count_kept(station)) // params.slot_us
+    station.flow = max(station.flow - spent, 0)
     for i in range(KEPT):
         if station.live[i] >= QUIET:
             station.live[i] = station.live[i] + 1

@@ -110,7 +110,7 @@ def opened(station, params, now, out):
 
 def lead_first(station, params, now, window, ack, out):
     """Lead a window that no report announced."""
-    age_kept(station)
+    age_kept(station, params)
     station.kept = min(count_kept(station), window)
     station.rest = 0
     station.span = window - station.kept

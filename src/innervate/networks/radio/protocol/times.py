@@ -83,8 +83,12 @@ def is_few(params, places):
     round carries no less then.
     """
     turn = params.ta_us + pass_slots(params) * params.slot_us
-    asked = 3 * params.ta_us + ASKING_SLOTS * params.slot_us + (places + 1) * params.minislot_us
-    return 2 * places * turn <= (5 if params.per_turn > 1 else 4) * asked
+    return 2 * places * turn <= (5 if params.per_turn > 1 else 4) * asking(params, places)
+
+
+def asking(params, places):
+    """What a window for so many places takes, its report and what the turn behind that waits."""
+    return 3 * params.ta_us + ASKING_SLOTS * params.slot_us + (places + 1) * params.minislot_us
 
 
 def keeps(params):

@@ -29,6 +29,7 @@ from innervate.networks.radio.protocol.modes import (
     earn,
     goes_on,
     next_turn,
+    note_flow,
     rest,
     spend,
     wanted_window,
@@ -114,6 +115,7 @@ def is_due(station, params, size):
 def stays(station, params, count, alone):
     """1 if we keep our turns without having more packets; `count` are in this one."""
     if is_slow(params):
+        note_flow(station, params, count)
         if count:
             earn(station, count)
         else:

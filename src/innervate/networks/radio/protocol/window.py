@@ -30,7 +30,7 @@ from innervate.networks.radio.protocol.turn import enter_turn
 
 def enter_first(station, params, now, window, ack, out):
     """A window that no report announced: kept places have their own minislots in it."""
-    age_kept(station)
+    age_kept(station, params)
     kept = min(count_kept(station), window)
     station.slot = NONE
     if 0 <= station.pos < kept and station.live[station.pos] >= QUIET:
