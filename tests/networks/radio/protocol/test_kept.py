@@ -129,7 +129,7 @@ def test_a_newcomer_in_the_minislot_of_a_place_gets_none():
 def test_a_place_that_nobody_uses_is_free_again():
     station = station_in(1, queued=0)
     for _ in range(QUIET_MOST - QUIET + 1):
-        modes.age_kept(station)
+        modes.age_kept(station, params_of())
     assert station.pos == NONE
     assert modes.count_kept(station) == 0
     assert modes.first_free(station, params_of()) == 0

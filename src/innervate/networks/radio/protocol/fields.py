@@ -61,7 +61,7 @@ PRACTICAL = (
     ("act", 0, 0, 1, "flag", "the act timer means something"),
     ("decoded", 0, 0, 1, "flag", "the burst that ends now was a frame"),
     ("tail", 0, 0, 1, "flag", "the carrier now is the rest of a collision of ours"),
-    ("collided", 0, 0, 1, "flag", "there was a collision: what an opening carries is up to `loads`"),
+    ("collided", 0, 0, 1, "flag", "there was a collision: an opening carries what `loads` says"),
     ("lonely", 0, 0, 31, "tries", "openings without hearing anybody"),
     ("fails", 0, 0, 255, "packets", "not proved, in a row"),
     ("pos", 0, -1, 119, "position", "our place in the round; -1 none"),
