@@ -8,7 +8,7 @@ from innervate.live.receipts import FINAL
 from tests.livesim.checks import Messages
 from tests.livesim.host import TERM
 from tests.livesim.stage import GRACE_S, Stage
-from tests.livesim.world import SECOND, inside
+from tests.livesim.world import SECOND, PowerCut, inside
 
 AGAIN_S = 45.0  # so long after all is whole again everybody reaches everybody
 ENDS_S = 60.0  # a message has its end, if its sender lives
@@ -155,8 +155,11 @@ class Mesh(Stage):
         key = (host.number, life.number, dest, priority)
         sent.place = self.places[key] = self.places.get(key, 0) + 1
         self.messages.sent[sent.ident] = sent  # it may be there before we know
-        receipt = inside(life, lambda: life.node.send_message(
-            dest, sent.payload, priority=priority, in_order=sent.in_order))  # fmt: skip
+        try:
+            receipt = inside(life, lambda: life.node.send_message(
+                dest, sent.payload, priority=priority, in_order=sent.in_order))  # fmt: skip
+        except PowerCut:  # while the node noted its numbers: nobody is there to be told
+            return None
         sent.receipt = receipt if dest != ALL else None
         self.messages.accepted(sent)
         return sent
