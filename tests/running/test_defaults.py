@@ -74,7 +74,7 @@ def test_it_is_told_drawn_and_written(done, bare, tmp_path):
     assert latency.startswith("Latency: half within ")
     page = done.report()
     assert page.count("<figure>") > 3
-    assert "cut pc.1" in page
+    assert "cable pc.1 - p0 r0 c3 E cut" in page
     assert "<h1>" in done._repr_html_()
     for figure in ("delivered", "latency"):
         assert done.plot(figure).axes

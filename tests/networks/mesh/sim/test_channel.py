@@ -49,8 +49,9 @@ def test_one_frame_takes_a_turnaround_and_its_slots_and_everybody_hears_it():
 def test_who_has_nobody_to_hear_it_is_never_told():
     result = run(team(1, [(AT, 0, NOONE, 5)]))
     assert len(rows_of(result, REPORT_SENT)) == 0
-    (row,) = result.sent  # from then on it only probes whether somebody is there
-    assert row["receivers"] == 0
+    assert (result.sent["receivers"] == 0).all()
+    waits = np.diff(result.sent["time"])
+    assert 10 * waits[0] < waits[-3:].min()  # it goes on trying, ever less often
 
 
 @pytest.mark.parametrize("n", [2, 3, 10, 25])
@@ -82,7 +83,7 @@ def test_acknowledgements_that_find_no_room_are_left_out(monkeypatch):
 
 def test_frame_errors_cost_repetitions_not_frames():
     offers = [(AT + 100_000 * k, k % 3, NOONE, 9) for k in range(15)]
-    result = run(team(3, offers, chance=32_768 * 4 // 5, duration_s=4.0))
+    result = run(team(3, offers, chance=32_768 // 2, duration_s=4.0))
     assert len(rows_of(result, REPORT_SENT)) == 15
     assert len(result.sent) > 15
 
