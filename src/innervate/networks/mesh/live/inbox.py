@@ -137,7 +137,7 @@ class Inbox:
             self._acknowledge(sender, seq)
         elif is_kept:  # it came before, and may have been too late for its turn
             self.orderly.again(Message(sender, seq, ordered, b"", boot))
-        elif piece.is_last and not is_kept:
+        elif piece.is_last:
             self.refuse(sender, seq, piece)
 
     def _up(self, message: Message) -> None:
