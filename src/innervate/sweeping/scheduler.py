@@ -23,6 +23,7 @@ from innervate.sweeping.work import Done, Job, Outcome, run_batch
 BATCH_S = 0.25  # about how long a batch takes: what a kill may cost, and often enough for a display
 BATCH_MAX = 500
 DEATHS_MAX = 3
+NAMED_MAX = 8  # figures that an error names
 
 
 @dataclass(slots=True)
@@ -161,7 +162,7 @@ class Scheduler:
         for option, measure in self._named:
             if measure and measure not in self.plan.keys and not _may_have(figures, measure):
                 close = nearest(measure, list(figures))
-                hint = close if "did you" in close else nearest("", sorted(figures)[:8])
+                hint = close if "did you" in close else nearest("", some(figures))
                 raise SweepError(f'{option}: runs have no figure "{measure}"{hint}')
         for option, measure in self._numbers:
             if isinstance(figures.get(measure), str | bool):
@@ -290,6 +291,13 @@ class Scheduler:
             return None
         took, count = time.perf_counter() - self._first_ran[0], self.ran - self._first_ran[1]
         return took / count * (self.total - self.done)
+
+
+def some(names: Iterable[str]) -> list[str]:
+    """A few names in order, and how many more there are."""
+    known = sorted(names)
+    more = len(known) - NAMED_MAX
+    return known if more <= 0 else [*known[:NAMED_MAX], f"and {more} more"]
 
 
 def _may_have(figures: dict[str, Any], measure: str) -> bool:
