@@ -45,6 +45,14 @@ def test_a_line_for_each_point_and_how_many_more_there_are():
         assert len({len(line) for line in lines[: most + 1]}) == 1
 
 
+def test_what_somebody_asked_for_is_shown_where_it_never_happened_and_beyond_three():
+    asked = ("a", "b.ms", "c", "broken.since_s", "d")
+    made = swept(1, {"point": 0, "stations": 2, "a": 1.0, "b.ms": None, "c": 3.0, "d": 4.0})
+    heads, row = (line.split() for line in sweeping.result_lines(made, asked))
+    assert heads == ["stations", "runs", *asked]
+    assert row == ["2", "1", "1", "-", "3", "-", "4"]
+
+
 def test_runs_that_are_not_well_are_counted_with_the_first_of_each_kind():
     levels = ["ok", "degraded", "down", "degraded", "ok"]
     rows = [{"point": 0, "stations": 2, "seed": 40 + i, "headline.level": level, "x": 1.0,

@@ -85,13 +85,14 @@ def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     shown = done.to_show(wanted)
     heads = [*done.plan.keys, "runs", *shown]
     rows = [heads]
-    table = done.points(shown)
-    figures = {(row["point"], row["measure"]): row for row in table.iter_rows(named=True)}
+    there = [name for name in shown if name in done.results.columns]  # others never happened
+    table = done.points(there).iter_rows(named=True) if there else ()
+    figures = {(row["point"], row["measure"]): row for row in table}
     counts = dict(done.results.group_by("point").len().iter_rows())
     for point in done.plan.points[:POINTS_MAX]:
         cells = [_cell(value) for value in point.columns.values()]
         count = counts.get(point.index, 0)
-        means = [mean_words(figures[point.index, name], count) for name in shown]
+        means = [mean_words(figures.get((point.index, name)), count) for name in shown]
         rows.append([*cells, str(count), *means])
     widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
     lines = ["  ".join(f"{c:>{w}}" for c, w in zip(row, widths, strict=True)) for row in rows]
@@ -132,9 +133,9 @@ def failed_lines(done: Sweep) -> list[str]:
     return lines
 
 
-def mean_words(row: dict[str, Any], count: int) -> str:
+def mean_words(row: dict[str, Any] | None, count: int) -> str:
     """Mean and half the interval's width, and of how many if not of all: "17.2 +- 0.6 of 3"."""
-    if not row["runs"]:
+    if row is None or not row["runs"]:
         return "-"
     half = (row["high"] - row["low"]) / 2
     width = f" +- {half:.2g}" if row["runs"] > 1 else ""

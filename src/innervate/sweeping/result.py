@@ -85,9 +85,10 @@ class Sweep:
         return f"<p>{escape(repr(self))}</p>{points._repr_html_()}"
 
     def to_show(self, wanted: Sequence[str] = ()) -> list[str]:
-        """The measures that somebody sees first: those wanted that there are, or a few."""
+        """The measures that somebody sees first: all those wanted, with a value or not; or a few."""
+        asked = [one for one in wanted if one not in self.plan.keys]
         there = self.measures
-        return [one for one in wanted or SHOWN if one in there][:SHOWN_MAX] or there[:SHOWN_MAX]
+        return asked or ([one for one in SHOWN if one in there] or there)[:SHOWN_MAX]
 
     @property
     def provenance(self) -> dict[str, Any]:
