@@ -49,6 +49,16 @@ def test_pairs_differ_in_the_key_and_what_goes_with_it_and_in_nothing_else(paire
     assert pairs["protocol.rule"] == pairs["touch.x"] == wanted
 
 
+def test_figures_of_what_never_happened_are_numbers_all_the_same():
+    """So that one's own arithmetic on a column does not end where nothing came."""
+    made = table((0, 0, None), (1, 0, None))
+    compared = made.compare("protocol.k", 2, 3, "x")
+    for found, name in ((made.points("x"), "mean"), (made.quantiles("x", [0.5]), "q0.5"),
+                        (compared, "difference"), (compared, "low")):  # fmt: skip
+        assert found.schema[name] == polars.Float64
+        assert (found[name] * 2).null_count() == found.height
+
+
 def test_of_measures_a_few_are_shown_or_all_that_somebody_asked_for():
     made = table((0, 0, 1.0))
     assert made.to_show() == list(SHOWN[:SHOWN_MAX])

@@ -29,6 +29,7 @@ SHOWN = (
     "delivery_ratio", "latency_ms.p50",
 )  # fmt: skip
 SHOWN_MAX = 3
+COMPARED = ("mean_one", "mean_other", "difference", "low", "high")  # of two variants
 
 
 @dataclass(eq=False, repr=False)
@@ -85,7 +86,7 @@ class Sweep:
         return f"<p>{escape(repr(self))}</p>{points._repr_html_()}"
 
     def to_show(self, wanted: Sequence[str] = ()) -> list[str]:
-        """The measures that somebody sees first: all those wanted, with a value or not; or a few."""
+        """The measures that somebody sees first: all those wanted, valued or not; or a few."""
         asked = [one for one in wanted if one not in self.plan.keys]
         there = self.measures
         return asked or ([one for one in SHOWN if one in there] or there)[:SHOWN_MAX]
@@ -131,7 +132,7 @@ class Sweep:
             values = self._values(point.index, measure)
             found = {f"q{s:g}": quantile(values, s) if values else None for s in shares}
             rows.append({"point": point.index, **point.columns, "runs": len(values)} | found)
-        return tables.frame(rows)
+        return tables.frame(rows, numbers=[f"q{s:g}" for s in shares])
 
     def compare(
         self, key: str, one: Any, other: Any, measure: str, level: float = LEVEL
@@ -166,7 +167,7 @@ class Sweep:
             for a, b in product(ones[place], others[place]):
                 rest = {k: v for k, v in a.columns.items() if k != key}
                 rows.append(rest | self._pairs(a.index, b.index, measure, level))
-        return tables.frame(rows)
+        return tables.frame(rows, numbers=COMPARED)
 
     def _variant(self, key: str, value: Any) -> dict[Any, list[Point]]:
         """The points that have this value, by the stream of their seeds and the other settings."""
@@ -233,12 +234,11 @@ class Sweep:
     def _pairs(self, a: int, b: int, measure: str, level: float) -> dict[str, Any]:
         one, other = (self._by_repeat(index, measure) for index in (a, b))
         both = [repeat for repeat in one if repeat in other]
-        names = ("mean_one", "mean_other", "difference", "low", "high")
         if not both:
-            return {"pairs": 0} | dict.fromkeys(names)
+            return {"pairs": 0} | dict.fromkeys(COMPARED)
         found = mean_interval([other[r] - one[r] for r in both], level)
         means = (sum(side[r] for r in both) / len(both) for side in (one, other))
-        return {"pairs": len(both)} | dict(zip(names, (*means, *found), strict=True))
+        return {"pairs": len(both)} | dict(zip(COMPARED, (*means, *found), strict=True))
 
     def _by_repeat(self, index: int, measure: str) -> dict[int, float]:
         mine = self.results.filter(self.results["point"] == index)

@@ -86,13 +86,19 @@ def timings(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataF
     return frame(rows, ("point", "repeat", "wall_s", "began_s"))
 
 
-def frame(rows: Iterable[dict[str, Any]], first: Iterable[str] = ()) -> polars.DataFrame:
+def frame(
+    rows: Iterable[dict[str, Any]], first: Iterable[str] = (), numbers: Sequence[str] = ()
+) -> polars.DataFrame:
     """A frame of rows that need not have the same keys: null where one is missing.
 
     Columns stand in the order of `first`, then in the order in which rows bring them. A column of
-    whole numbers is Int64, of numbers Float64, of truths Boolean, else String.
+    whole numbers is Int64, of numbers Float64, of truths Boolean, else String; those of `numbers`
+    are Float64 even if there is no value in them.
     """
-    return _frame(_columns(rows, first))
+    import polars
+
+    made = _frame(_columns(rows, first))
+    return made.with_columns(polars.col(*numbers).cast(polars.Float64)) if numbers else made
 
 
 def _columns(rows: Iterable[dict[str, Any]], first: Iterable[str]) -> Columns:
@@ -157,7 +163,8 @@ def points(
     """
     keys = plan_points[0].columns if plan_points else ()
     rows = _of_points(table, plan_points, wanted, level)
-    return frame(rows, ("point", *keys, "measure", "runs", *_figures([], level)))
+    figures = tuple(_figures([], level))
+    return frame(rows, ("point", *keys, "measure", "runs", *figures), figures)
 
 
 def _of_points(
