@@ -94,6 +94,17 @@ def test_of_all_that_was_sent_one_alarm_that_came_is_something():
     assert headline(all_well(), Traffic(decided=3, crossings=2)).level == DOWN
 
 
+def test_what_came_too_late_to_count_is_something_that_gets_through():
+    """An old message that is still on its way keeps all that are younger out of the count."""
+    lost = Traffic(crossings=1, flows=True)
+    found = headline(all_well(), lost)
+    assert (found.level, found.text) == (
+        DEGRADED, "The monitor never learned of the only crossing of the fence."
+    )  # fmt: skip
+    assert headline(all_well(), Traffic(decided=2, flows=True)).level == DEGRADED
+    assert headline(all_well(), lost._replace(flows=False)).level == DOWN
+
+
 def test_a_dead_node_is_said_although_all_was_delivered():
     found = headline(chain(DOWNHILL, LINE, off=(3,)), WELL)
     assert found.level == DEGRADED

@@ -81,11 +81,14 @@ def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") 
 
 def _is_down(ways: Ways, traffic: Traffic) -> bool:
     """True if nothing gets through: nothing of all that was sent, or nothing from now on."""
-    sent = traffic.decided + traffic.crossings
-    if not ways.on.any() or (sent and not traffic.delivered and not traffic.learned):
+    if not ways.on.any():
+        return True
+    if traffic.flows:
+        return False
+    if traffic.decided + traffic.crossings and not traffic.delivered + traffic.learned:
         return True
     served = ways.on & ~ways.without & ~ways.leads
-    return not served.any() and len(ways.on) > 1 and not traffic.flows
+    return not served.any() and len(ways.on) > 1
 
 
 def _undelivered(traffic: Traffic) -> list[str]:
