@@ -5,6 +5,7 @@ from types import SimpleNamespace as Of
 
 import pytest
 
+import innervate
 from innervate.networks.mesh.plot import node_report, words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
@@ -39,6 +40,21 @@ def alarms(sent, came):
 ])  # fmt: skip
 def test_how_many_crossings_the_monitor_learned_of(sent, came, said):
     assert words._alarms(alarms(sent, came)) == said
+
+
+def test_a_crossing_too_shortly_before_the_end_is_told_though_it_counts_in_nothing():
+    """A robot is outside, the monitor is off, and no figure says so yet."""
+    run = innervate.run({
+        "kind": "mesh", "nodes": 3, "duration_s": 12, "radio": {"profile": "ideal"},
+        "placement": {"layout": "line"}, "fence": {"polygon": [[0, -9], [40, -9], [40, 9], [0, 9]]},
+        "robot": [{"node": 2, "waypoints": [[20, 0], [20, 15]], "start_s": 2.5}],
+        "event": [{"at_s": 10, "action": "kill", "node": "monitor"}],
+    })  # fmt: skip
+    assert run.summary["alarms"]["sent"] == 0
+    assert words.sentences(run.result, run.summary)[0] == (
+        "Not counted: 1 crossing too shortly before the end to say that the monitor never learned "
+        "of it."
+    )
 
 
 def messages(ratio, joined=10, of_joined=1.0, p50=4.0):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.protocol import constants as c
 from innervate.plot.words import figure_words, ms_words, number_of, share_words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
@@ -90,6 +91,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     """What happened, for somebody who knows nothing of it; alarms first, they matter most."""
     found = [
         *_alarms(summary["alarms"]),
+        *_undecided(sum(crossing.open for crossing in all_crossings(result))),
         *_messages(summary),
         *_uncounted(summary["messages"]),
         *_discovery(summary["discovery"], summary["nodes"]),
@@ -120,6 +122,15 @@ def _alarms(alarms: Mapping[str, Any]) -> list[str]:
         f"{crossings} of the fence, and the monitor learned {many}: {slowest} {latency}, "
         f"no robot got farther out than {figure_words(overrun, 2)} m by then."
     ]
+
+
+def _undecided(count: int) -> list[str]:
+    """Crossings that no figure and no headline has in it: a robot may well be outside."""
+    if not count:
+        return []
+    them = "it" if count == 1 else "them"
+    return [f"Not counted: {number_of(count, 'crossing')} too shortly before the end to say that "
+            f"the monitor never learned of {them}."]  # fmt: skip
 
 
 def _messages(summary: Mapping[str, Any]) -> list[str]:
