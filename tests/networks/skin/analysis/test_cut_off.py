@@ -169,7 +169,7 @@ def test_the_observer_agrees_with_a_search_along_the_cables():
          "every other cell has a way to the PC."),
         (SkinFacts(9, seeking=(4, 2), never=(4,)), DEGRADED,
          "1 of 9 cells (4) never got a way to the PC; 1 of 9 cells (2) has no way to the PC, "
-         "although cables join it with it; every other cell has a way to the PC."),
+         "although cables join it with the PC; every other cell has a way to the PC."),
         (SkinFacts(2, cut_off=(0,), off=(1,)), DOWN,
          "1 of 2 cells (0) is cut off: no cable joins it with the PC any more; "
          "1 of 2 cells (1) is switched off."),

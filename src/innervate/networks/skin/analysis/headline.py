@@ -88,7 +88,8 @@ def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
     if old and not facts.pc_off:
         who, verb, them = _who(facts, old, label)
         have = "has" if verb == "is" else "have"
-        found.append(f"{who} {have} no way to the PC, although cables join {them} with it")
+        joined = "it with the PC" if them == "it" else "them with it"
+        found.append(f"{who} {have} no way to the PC, although cables join {joined}")
     if facts.silent:
         who, verb, _ = _who(facts, facts.silent, label)
         found.append(f"{who} {'does' if verb == 'is' else 'do'} not answer")
