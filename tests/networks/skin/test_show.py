@@ -90,7 +90,7 @@ def run_of(events, **more):
                "wall_s": 0.126, "seed": 3, "broken": [], "warnings": ["odd"],
                "headline": {"level": "good", "text": "all well."}} | more  # fmt: skip
     plan = Of(faults=list(range(events)), graph=Of(cells=40, interfaces=2))
-    return Of(skin=summary, plan=plan)
+    return Of(skin=summary, plan=plan, result=Of(has_deliveries=True))
 
 
 @pytest.mark.parametrize(("events", "more"), [

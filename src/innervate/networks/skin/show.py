@@ -20,7 +20,8 @@ def summary_lines(run: Run) -> list[str]:
     summary = run.skin
     said = words.headline_line(summary["headline"])
     warned = [f"Warning: {text}." for text in summary["warnings"]]
-    return [_first(run), said, *warned, *event_lines(run), *_broken(summary), *state_lines(summary)]
+    state = [*_broken(summary), *state_lines(summary), *skin_words.unkept(run.result)]
+    return [_first(run), said, *warned, *event_lines(run), *state]
 
 
 def _first(run: Run) -> str:

@@ -7,6 +7,7 @@ import pytest
 
 from innervate import run
 from innervate.networks.skin.plot.digest import Digest
+from innervate.networks.skin.show import summary_lines
 from innervate.plot import report
 from innervate.sim.driver import Simulation
 
@@ -88,6 +89,17 @@ def test_pictures_of_the_worst_event(cut):
     assert before.text == after.text == "all samples came"
     lost = int(re.match(r"nothing from (\d+) of 30 cells", during.text)[1])
     assert 0 < lost <= cut.summary["recoveries"][0]["cut_cells"]
+
+
+def test_samples_that_were_not_kept_are_told_where_they_are_missed():
+    """Of very many samples there is neither a table nor a picture of touch."""
+    skin = {"kind": "skin", "duration_s": 0.5, "patch": [{"rows": 2, "columns": 2}],
+            "interface": [{"row": 0, "column": 0}]}  # fmt: skip
+    said = "Samples were counted, not kept: no received.parquet, no pictures of touch"
+    for rate_hz, kept, missed in ((20, False, True), (20, True, False), (0, None, False)):
+        done = run(skin | {"data": {"rate_hz": rate_hz}}, received=kept)
+        assert (said in read(report.render(done))) == missed
+        assert any(line.startswith(said) for line in summary_lines(done)) == missed
 
 
 def test_a_cut_cable_and_lost_cells_are_marked_by_shape(cut, parse):

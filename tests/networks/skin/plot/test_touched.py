@@ -64,7 +64,7 @@ def test_without_a_touch_there_is_no_ring(parse, pressed):
 @pytest.mark.parametrize(("wide", "columns"), [(True, "two"), (False, "three")])
 def test_images_of_a_wide_skin_stand_by_twos(wide, columns):
     digest = Of(images=lambda: [image(1_000)], plan=Of(data_period_us=4_000, touch=PRESSED),
-                sheet=Of(wide=wide))  # fmt: skip
+                sheet=Of(wide=wide), result=Of(has_deliveries=True))  # fmt: skip
     shown = report._touch(digest)
     assert f'<div class="pictures {columns}">' in shown
     assert "Every cell measures once in 4 ms; shown is what came in 1.25 times that." in shown

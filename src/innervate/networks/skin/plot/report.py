@@ -14,6 +14,7 @@ from innervate.plot.theme import SHADES
 
 SENTENCES_MAX = 3
 BROKEN_MAX = 12
+TOUCH = "Touch as the PC received it"
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
@@ -118,14 +119,11 @@ def _recovery(digest: Digest) -> str:
 def _touch(digest: Digest) -> str:
     images = digest.images()
     if not images:
-        return ""
+        return section(TOUCH, page.paragraphs(skin_words.unkept(digest.result)))
     period = words.ms_words(digest.plan.data_period_us / 1e3)
     text = f"Every cell measures once in {period}; shown is what came in 1.25 times that."
     shown = pictures([panel(one) for one in images], "two" if digest.sheet.wide else "three")
-    return section(
-        "Touch as the PC received it",
-        element("p", text, "note") + shown + keys(touch_legend(digest)),
-    )
+    return section(TOUCH, element("p", text, "note") + shown + keys(touch_legend(digest)))
 
 
 def touch_legend(digest: Digest) -> list[tuple[svg.Drawing, str]]:

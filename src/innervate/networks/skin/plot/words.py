@@ -26,6 +26,14 @@ MISSED = {
 }
 
 
+def unkept(result: Any) -> list[str]:
+    """That samples came of which none was kept, and how to keep them; nothing if all is there."""
+    if result.has_deliveries or not result.plan.data_period_us:
+        return []
+    return ["Samples were counted, not kept: no received.parquet, no pictures of touch; of more "
+            "than 1,000,000 only innervate.run(..., received=True) keeps them."]  # fmt: skip
+
+
 def early_words(lost: int, early: int) -> str:
     """How many of the lost samples are no loss to the headline; "" = none."""
     if not early:
