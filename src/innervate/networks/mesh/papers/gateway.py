@@ -26,7 +26,8 @@ TITLE = "1.1: the gateway dies"
 CAPTION = (
     "30 nodes; the gateway is switched off at some moment of a discovery period. Everyone sends "
     "one message to the gateway (a: whoever it is) and one to another node (b) every 10 s; 'many': "
-    "every 2 s. c: until the last node has the new gateway's table."
+    "every 2 s. c: until the last node has the new gateway's table. Standbys wait for requests "
+    "(guard_s = 0); what they do if nothing is said, to ask the gateway, takes about a second."
 )
 DIES_S = 22.0  # at the earliest; up to a discovery period later
 PERIOD_S = 10
