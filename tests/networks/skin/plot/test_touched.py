@@ -70,8 +70,11 @@ def test_images_of_a_wide_skin_stand_by_twos(wide, columns):
     assert "Every cell measures once in 4 ms; shown is what came in 1.25 times that." in shown
     assert "0 to 4 N" in shown
     assert "where the touch really is" in shown
+    assert "Nothing touches" not in shown
     digest.plan.touch = None
-    assert "where the touch really is" not in report._touch(digest)
+    bare = report._touch(digest)
+    assert "where the touch really is" not in bare
+    assert "1.25 times that. Nothing touches this skin." in bare
     digest.images = list
     assert report._touch(digest) == ""
 

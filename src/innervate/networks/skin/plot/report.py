@@ -122,6 +122,8 @@ def _touch(digest: Digest) -> str:
         return section(TOUCH, page.paragraphs(skin_words.unkept(digest.result)))
     period = words.ms_words(digest.plan.data_period_us / 1e3)
     text = f"Every cell measures once in {period}; shown is what came in 1.25 times that."
+    if digest.plan.touch is None:
+        text += " Nothing touches this skin."
     shown = pictures([panel(one) for one in images], "two" if digest.sheet.wide else "three")
     return section(TOUCH, element("p", text, "note") + shown + keys(touch_legend(digest)))
 
