@@ -118,6 +118,29 @@ def test_names_stand_beside_lines_and_not_over_each_other():
     assert axes_names(draw(columns, Shown("on", "y"), {})) == ["false", "true"]
 
 
+CROWDED = {  # lines that leave no room between them, as examples/team-size.toml draws
+    "csma-cd-r": (0.712, 0.712, 0.712, 0.712), "csma-cd-d2": (0.557, 0.544, 0.514, 0.412),
+    "dcf": (0.178, 0.275, 0.323, 0.35), "tdma": (0.712, 0.712, 0.712, 0.712),
+}  # fmt: skip
+ROOMY = {"csma-cd-r": (0.7, 0.7, 0.7, 0.7), "dcf": (0.1, 0.1, 0.1, 0.1)}
+
+
+@pytest.mark.parametrize(("lines", "beside"), [(CROWDED, True), (ROOMY, False)])
+def test_names_of_a_few_lines_stand_inside_where_they_cover_none(lines, beside):
+    columns = {
+        "stations": [2, 5, 10, 20] * len(lines),
+        "throughput": [value for values in lines.values() for value in values],
+        "protocol.mac": [mac for mac in lines for _ in range(4)],
+    }
+    made = draw(columns, Shown("stations", "throughput", "protocol.mac"), {})
+    made.draw_without_rendering()
+    (ax,) = made.axes
+    box = ax.get_legend().get_window_extent()
+    assert (box.x0 > ax.get_window_extent().x1) == beside
+    paths = [line.get_transform().transform_path(line.get_path()) for line in ax.lines]
+    assert not any(path.intersects_bbox(box, filled=False) for path in paths)
+
+
 def axes_names(made):
     return [text.get_text() for text in made.axes[0].get_xticklabels()]
 

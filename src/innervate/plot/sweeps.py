@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 
 from innervate.analysis.intervals import Interval, mean_interval
 from innervate.plot import style
@@ -72,6 +73,8 @@ def draw(columns: Columns, shown: Shown, over: Mapping[str, int] | None) -> Figu
         ax.set_title("\n".join(wrap(title, TITLE_LETTERS)))
         notes = _notes(columns, shown, over or {})
         ax.set_xlabel("\n".join([ax.get_xlabel(), *(w for n in notes for w in wrap(n, LETTERS))]))
+        if kind != "heat":
+            _legend(made, ax, by)
         return made
 
 
@@ -117,7 +120,6 @@ def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
     _name_places(ax, places, numbers)
     ax.set_xlabel(label(x))
     ax.set_ylabel(f"{label(y)}\nmean, 95 % interval")
-    _legend(ax, by)
 
 
 def _from_first_to_last(places: list[Any], groups: Mapping[Any, list[float]]) -> list[Any]:
@@ -136,7 +138,6 @@ def _dots(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
         ax.plot([a for a, _ in kept], [b for _, b in kept], **(look | {"ls": "", "alpha": 0.6}))
     ax.set_xlabel(label(x))
     ax.set_ylabel(label(y))
-    _legend(ax, by)
 
 
 def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
@@ -246,14 +247,26 @@ def _slant(ax: Axes) -> None:
             text.set_rotation_mode("anchor")
 
 
-def _legend(ax: Axes, by: str) -> None:
+def _legend(made: Figure, ax: Axes, by: str) -> None:
+    """The lines' names: inside if they are few and cover nothing, else beside the figure."""
     if not by:
         return
     looks: dict[str, Any] = {"title": label(by), "title_fontsize": 6.8, "alignment": "left"}
-    if len(ax.get_legend_handles_labels()[1]) > LEGEND_INSIDE:
+    few = len(ax.get_legend_handles_labels()[1]) <= LEGEND_INSIDE
+    if not few or _covers(made, ax, ax.legend(loc="best", **looks)):
         ax.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), **looks)
-    else:
-        ax.legend(loc="best", **looks)
+
+
+def _covers(made: Figure, ax: Axes, legend: Legend) -> bool:
+    """Whether lines or dots lie under a legend."""
+    made.draw_without_rendering()
+    box = legend.get_window_extent()
+    for line in ax.lines:
+        path = line.get_transform().transform_path(line.get_path())
+        dots = line.get_linestyle() == "None"
+        if box.count_contains(path.vertices) if dots else path.intersects_bbox(box, filled=False):
+            return True
+    return False
 
 
 def _text(value: Any) -> str:
