@@ -271,3 +271,18 @@ def test_interrupted_papers_can_be_taken_up_again(sh, monkeypatch):
 def test_papers_and_figures_that_are_not_there(sh, tokens):
     assert sh("papers", *tokens, "--out", "figures") == 2
     assert "choose from:" in sh.err
+    assert "figures and table into" not in sh.err
+    assert not Path("figures").exists()
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    (None, "page.md: No such file or directory; name another page"),
+    ("nothing", "page.md has no place for radio-fig1; add <!-- radio-fig1: made by"),
+])  # fmt: skip
+def test_a_page_without_a_place_for_tables_is_refused_before_the_work(sh, text, words):
+    if text is not None:
+        Path("page.md").write_text(text)
+    tokens = ("radio", "--quick", "--only", "fig1", "--page", "page.md")
+    assert sh("papers", *tokens, "--out", "figures") == 2
+    assert words in sh.err
+    assert not Path("figures").exists()

@@ -21,7 +21,10 @@ def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) ->
         page: of Markdown, whose tables are made anew.
         how: quick, only, redraw of `innervate.papers.main`.
     """
+    from innervate.papers.book import into_page, ready_for  # draws: not before it is wanted
+
     room: Any = import_module("innervate.papers")
+    ready_for(system, page, how["only"])
     with Display() as display:
         display.begin(f"papers {system}: figures and table into {out}", line=True)
 
@@ -37,7 +40,7 @@ def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) ->
             )
             return errors.INTERRUPTED
     if page is not None:
-        import_module("innervate.papers.book").into_page(page, system, out, how["only"])
+        into_page(page, system, out, how["only"])
     for line in verdict_lines(made.with_suffix(".csv")):
         print(line)
     print(f"Look at them in a browser: {made}")

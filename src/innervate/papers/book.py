@@ -104,6 +104,17 @@ def into_page(page: Path, system: str, folder: Path, only: Iterable[str] = ()) -
         output.insert(page, f"{system}-{name}", tables.read_text(encoding="utf-8"))
 
 
+def ready_for(system: str, page: Path | None, only: Iterable[str] = ()) -> None:
+    """That `main` and `into_page` can be done, as far as it shows before hours of work.
+
+    Raises:
+        PapersError: there is no such paper or figure, no such page, or it has no marks for one.
+    """
+    for name in _chosen(book_of(system), only):
+        if page is not None:
+            output.around(page, f"{system}-{name}")
+
+
 def _command(system: str, quick: bool, only: Sequence[str]) -> str:
     words = ["innervate papers", system, *(["--quick"] if quick else [])]
     return " ".join([*words, *(f"--only {name}" for name in only)])

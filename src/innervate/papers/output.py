@@ -133,6 +133,16 @@ def insert(page: Path, name: str, text: str) -> None:
     Raises:
         PapersError: there is no such page, or it has no such marks.
     """
+    before, after = around(page, name)
+    _put(page, f"{before}\n{text}\n{after}")
+
+
+def around(page: Path, name: str) -> tuple[str, str]:
+    """A page up to its first mark of this name, and from its last one on.
+
+    Raises:
+        PapersError: there is no such page, or it has no such marks.
+    """
     first, last = f"<!-- {name}: made by innervate papers -->", f"<!-- end of {name} -->"
     try:
         old = page.read_text(encoding="utf-8")
@@ -141,8 +151,9 @@ def insert(page: Path, name: str, text: str) -> None:
     before, found, rest = old.partition(first)
     _, end, after = rest.partition(last)
     if not found or not end:
-        raise PapersError(f"{page} has no place for {name}; add {first} and {last}")
-    _put(page, f"{before}{first}\n{text}\n{end}{after}")
+        raise PapersError(f"{page} has no place for {name}; add {first} and {last}, "
+                          "or leave out --page")  # fmt: skip
+    return f"{before}{first}", f"{end}{after}"
 
 
 def provenance(heading: Heading, wall_s: float) -> dict[str, str]:
