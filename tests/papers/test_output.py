@@ -1,5 +1,6 @@
 """What is written of a paper: tables word for word, and where on its page things stand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -150,6 +151,9 @@ def test_a_page_has_all_of_it(tmp_path, width, is_narrow):
     assert ("<figure class=narrow>" in page) == is_narrow
     assert '<section id="fig3">' in page
     assert "<h1>A &lt;toy&gt;</h1>" in page
+    assert page.index(output.QUICK) < page.index("<h2>Does not hold</h2>")
+    whole = output.as_page(tmp_path, replace(HEADING, quick=False), [FIGURE], MADE, ORIGIN)
+    assert output.QUICK not in whole
     assert '<li><a href="#fig3">3</a>: never *more*</li>' in page  # does not hold
     assert '<span class="good">2 hold</span>, <span class="bad">1 not</span>' in page
     assert page.index("Counts") < page.index("4 sets of runs, by their settings")

@@ -21,6 +21,7 @@ from innervate.plot.svg import clean
 from innervate.trace.provenance import checkout
 
 PACKAGES = ("numba", "numpy", "matplotlib")
+QUICK = "Of few seeds and settings (--quick): with all of them some verdicts may be others."
 _LAYOUT = """<style>
 figure img{display:block;width:100%;height:auto;background:#fff;border-radius:6px;padding:8px;
 margin:.5em 0}
@@ -223,6 +224,7 @@ def as_page(
         page.element("p", f"{heading.authors}, redrawn by innervate", "over"),
         page.element("h1", heading.title),
         page.element("p", summary(rows)),
+        page.element("p", QUICK, "note") if heading.quick else "",
         page.section("Does not hold", _failed(sections, heading.readings)),
         page.section("Contents", _contents(sections, heading.readings)),
     ]
