@@ -61,7 +61,8 @@ def messages(ratio, joined=10, of_joined=1.0, p50=4.0):
     return words._messages({
         "messages": {"counted": 10}, "delivery_ratio": ratio,
         "latency_ms": {"p50": p50, "p99": 9.0},
-        "connected": {"sent": joined, "delivery_ratio": of_joined},
+        "connected": {"sent": joined, "delivered": round(joined * (of_joined or 0.0)),
+                      "delivery_ratio": of_joined},
     })  # fmt: skip
 
 
@@ -69,8 +70,8 @@ def test_how_many_messages_came_and_which_had_no_chance():
     assert messages(None) == []
     times = ", half within 4 ms, 99 % within 9 ms."
     assert messages(1.0, joined=8) == ["10 messages: every one was delivered" + times]
-    assert messages(0.7) == ["10 messages: 7 delivered (70 %)" + times]
-    assert messages(0.0, p50=None) == ["10 messages: 0 delivered (0 %)."]
+    assert messages(0.7, of_joined=0.7) == ["10 messages: 7 delivered (70 %)" + times]
+    assert messages(0.0, of_joined=0.0, p50=None) == ["10 messages: 0 delivered (0 %)."]
     _, apart = messages(0.7, joined=8, of_joined=0.875)
     assert apart == ("Of those, 2 had no chance: sender and recipient were not connected, or off; "
                      "of the others 87.5 % were delivered.")  # fmt: skip
@@ -78,6 +79,15 @@ def test_how_many_messages_came_and_which_had_no_chance():
     assert messages(0.0, joined=0, of_joined=None)[1] == (
         "None had a chance: sender and recipient were not connected, or off."
     )
+
+
+def test_who_came_over_poor_links_is_not_said_to_have_had_no_chance():
+    _, apart = messages(0.9, joined=6)
+    assert apart == ("1 of the 4 whose sender and recipient no good links joined, or of which one "
+                     "was off, did not come; of the others 100 % were delivered.")  # fmt: skip
+    _, apart = messages(0.3, joined=0, of_joined=None)
+    assert apart == ("7 of the 10 whose sender and recipient no good links joined, or of which one "
+                     "was off, did not come.")  # fmt: skip
 
 
 @pytest.mark.parametrize(("off", "counted", "said"), [

@@ -147,17 +147,29 @@ def _messages(summary: Mapping[str, Any]) -> list[str]:
         begin += f"{came:,} delivered ({share_words(ratio)})"
     if latency["p50"] is not None:
         begin += f", half within {ms_words(latency['p50'])}, 99 % within {ms_words(latency['p99'])}"
-    found = [begin + "."]
-    joined = summary["connected"]
-    if missing and not joined["sent"]:
-        found.append("None had a chance: sender and recipient were not connected, or off.")
-    elif missing and joined["sent"] < decided:
-        apart = decided - joined["sent"]
-        found.append(
-            f"Of those, {apart:,} had no chance: sender and recipient were not connected, or off; "
-            f"of the others {share_words(joined['delivery_ratio'] or 0.0)} were delivered."
-        )
-    return found
+    return [begin + ".", *_apart(decided, came, summary["connected"])]
+
+
+def _apart(decided: int, came: int, joined: Mapping[str, Any]) -> list[str]:
+    """How many of the messages that did not come had no good links to come by, or nobody there.
+
+    Some come all the same, over links that are not good.
+    """
+    apart = decided - joined["sent"]
+    lost = apart - (came - joined["delivered"])
+    if not lost:
+        return []
+    if lost < apart:
+        said = (f"{lost:,} of the {apart:,} whose sender and recipient no good links joined, or "
+                "of which one was off, did not come")  # fmt: skip
+    elif joined["sent"]:
+        said = f"Of those, {apart:,} had no chance: sender and recipient were not connected, or off"
+    else:
+        return ["None had a chance: sender and recipient were not connected, or off."]
+    if joined["sent"]:
+        ratio = joined["delivery_ratio"] or 0.0
+        said += f"; of the others {share_words(ratio)} were delivered"
+    return [f"{said}."]
 
 
 def _uncounted(messages: Mapping[str, Any]) -> list[str]:
