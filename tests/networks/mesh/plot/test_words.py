@@ -7,6 +7,7 @@ import pytest
 
 import innervate
 from innervate.networks.mesh.plot import node_report, words
+from innervate.networks.mesh.protocol.constants import WHOLE_GRAPH
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PLAN = Of(names=["mast", "n1", "n2"], ranks=[0, 1, -1])
@@ -112,6 +113,8 @@ def test_what_the_first_round_found(tables_s, with_tables, end):
              "with_tables": with_tables}  # fmt: skip
     begin = "The first round found 50 % of the good links within 1.23 s"
     assert words._discovery(found, 12) == [begin + end]
+    graph = re.sub("its table|a table", "the graph", end)
+    assert words._discovery(found, 12, WHOLE_GRAPH) == [begin + graph]
     assert words._discovery({"recall": None}, 12) == ["No discovery round was completed."]
 
 
@@ -128,7 +131,7 @@ def test_who_became_gateway_last():
 @pytest.mark.parametrize(("doubled", "looped", "said"), [
     (0, 0, "No message came twice; none met a node twice on the way."),
     (1, 0, "1 message came twice; none met a node twice on the way."),
-    (0, 1200, "No message came twice; 1,200 met a node twice on the way."),
+    (0, 1200, "No message came twice; 1,200 packets met a node twice on the way."),
 ])  # fmt: skip
 def test_what_came_twice(doubled, looped, said):
     assert words._trouble({"duplicates": doubled, "looped": looped}) == said

@@ -94,7 +94,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
         *_undecided(sum(crossing.open for crossing in all_crossings(result))),
         *_messages(summary),
         *_uncounted(summary["messages"]),
-        *_discovery(summary["discovery"], summary["nodes"]),
+        *_discovery(summary["discovery"], summary["nodes"], result.plan.params["mode"]),
         *_gateways(result.plan, summary),
         _trouble(summary),
     ]
@@ -184,19 +184,20 @@ def _uncounted(messages: Mapping[str, Any]) -> list[str]:
     return [f"Not counted: {', '.join(said)}."] if said else []
 
 
-def _discovery(found: Mapping[str, Any], nodes: int) -> list[str]:
+def _discovery(found: Mapping[str, Any], nodes: int, mode: int = c.TABLES) -> list[str]:
     if found["recall"] is None:
         return ["No discovery round was completed."]
     line = (
         f"The first round found {share_words(found['recall'])} of the good links "
         f"within {figure_words(found['complete_s'])} s"
     )
+    its, one = ("the graph", "the graph") if mode == c.WHOLE_GRAPH else ("its table", "a table")
+    all_, count = found["with_tables"] == nodes, found["with_tables"]
     if found["tables_s"] is not None:
-        all_, count = found["with_tables"] == nodes, found["with_tables"]
-        who = "every node had its table" if all_ else f"{count:,} of {nodes:,} nodes had a table"
+        who = f"every node had {its}" if all_ else f"{count:,} of {nodes:,} nodes had {one}"
         line += f"; {who} {figure_words(found['tables_s'])} s after the first request"
-    elif found["with_tables"] is not None:
-        line += f"; {found['with_tables']:,} of {nodes:,} nodes got a table"
+    elif count is not None:
+        line += f"; {count:,} of {nodes:,} nodes got {one}"
     return [line + "."]
 
 
@@ -217,5 +218,5 @@ def _gateways(plan: Any, summary: Mapping[str, Any]) -> list[str]:
 def _trouble(summary: Mapping[str, Any]) -> str:
     doubled, looped = summary["duplicates"], summary["looped"]
     first = f"{number_of(doubled, 'message')} came twice" if doubled else "No message came twice"
-    second = f"{looped:,}" if looped else "none"
+    second = number_of(looped, "packet") if looped else "none"
     return f"{first}; {second} met a node twice on the way."
