@@ -265,6 +265,15 @@ KEYS = (
 )  # fmt: skip
 
 
+@pytest.mark.parametrize(("nodes", "remedy"), [(1, "leave it out"), (2, "make it smaller")])
+def test_a_degree_that_nodes_cannot_have_is_refused_with_what_helps(
+    nodes: int, remedy: str
+) -> None:
+    text = f'kind = "mesh"\nnodes = {nodes}\n[radio]\nmean_degree = 8\n'
+    with pytest.raises(ScenarioError, match=f"but there are {nodes - 1} others; {remedy}"):
+        plan(loads(text))
+
+
 @settings(max_examples=250, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(KEYS), words), max_size=5))
 def test_any_value_of_any_key_is_a_scenario_or_one_line(pairs: list[tuple[str, Any]]) -> None:

@@ -143,7 +143,7 @@ def _radio(model: MeshScenario) -> Iterator[Finding]:
             yield (
                 ("radio", "mean_degree"),
                 f"radio.mean_degree = {model.radio.mean_degree:g}, but there are {count - 1} "
-                "others; make it smaller",
+                f"others; {'make it smaller' if count > 1 else 'leave it out'}",
             )
         if model.placement.layout != "random" and not model.node:
             yield (
