@@ -27,9 +27,9 @@ def test_a_receiver_leaves_the_frame_as_it_is_on_the_air(field, broken):
     protocol = SimpleNamespace(on_start=on_start, on_frame=on_frame, TIMERS=1, OUTBOX=2)
     made = declared.Net(protocol, fields, graph_of("pair"), {})
     made.on_air = True
-    step = made.arrive(made.begin(declared.Budget()).state, 1)
+    _, found = made.arrive(made.begin(declared.Budget()).state, 0)
     said = "a receiver changed the frame that the others are handed, too"
-    assert step.broken == (said if broken else "")
+    assert found == (said if broken else "")
 
 
 def talks(has_carrier=True, is_told=False):
@@ -53,7 +53,6 @@ def talks(has_carrier=True, is_told=False):
     made = declared.Net(SimpleNamespace(**parts), FIELDS, graph_of("pair"), {})
     made.on_air = True
     made.own = {"it says nothing twice": lambda node, params, now: node.count < 2}
-    made.ends_of = lambda number, port: [0]  # two cables of a pair are one way on the air
     return declared.explore(made, declared.Budget(0, 0, 0), 50, lambda *_: False, "a pair")
 
 
@@ -73,3 +72,21 @@ def test_who_does_not_listen_is_not_told():
     tally, story = talks(has_carrier=False)
     assert (tally.states, story.title) == (2, declared.STUCK)
     assert story.sentences == ["n1 hears a frame of n0."]
+
+
+@pytest.mark.parametrize(("graph", "ways"), [
+    ("pair", [(0, 1), (1, 0)]), ("line", [(0, 1), (1, 0), (1, 2), (2, 1)]),
+    ("n0-n1 n0-n1 n0-n2", [(0, 1), (0, 2), (1, 0), (2, 0)]),
+])  # fmt: skip
+def test_a_frame_on_the_air_comes_once_to_each_who_hears_it(graph, ways):
+    def on_start(node, params, now, cause, out):
+        send(out, 0, 0, 0)
+
+    protocol = SimpleNamespace(on_start=on_start, TIMERS=1, OUTBOX=2)
+    made = declared.Net(protocol, FIELDS, graph_of(graph), {})
+    made.on_air = True
+    state = made.begin(declared.Budget()).state
+    graph = made.graph
+    assert [len(frames) for frames in state.ways if frames] == [1] * len(ways)
+    assert sorted((end // 4, graph.node_of(graph.peer[end]))
+                  for end, frames in enumerate(state.ways) if frames) == ways  # fmt: skip

@@ -205,7 +205,7 @@ def test_every_kind_of_event_draws():
         drew = {words.partition(", ")[0] for words in seen if f"draws {value} out of 3" in words}
         assert drew == kinds
     assert {words.replace("n1", "n0") for words in kinds} == {
-        "A frame from n0 W is lost", "A frame of n0 finds the channel busy and is given up",
+        "n0 does not hear a frame of n0", "A frame of n0 finds the channel busy and is given up",
         "A frame of n0 goes out", "A frame of n0 has ended", "n0 hears a frame of n0",
         "n0 is given 1 by its user", "n0 loses its memory",
     }  # fmt: skip

@@ -58,7 +58,7 @@ def test_the_oldest_frame_comes_in_as_it_was_sent(net):
     way = net.graph.end(0, 0)
     sent = state._replace(ways=tuple(((4, 5, (6, 7)), (1, 3, (0, 0))) if end == way else ()
                                      for end in range(len(state.ways))))  # fmt: skip
-    after = net.arrive(sent, way)
+    after, broken = net.arrive(sent, way)
     peer = net.graph.peer[way]
     assert seen == [(net.graph.node_of(peer), net.graph.port_of(peer), 4, 5, (6, 7))]
-    assert (after.state.ways[way], after.broken) == (((1, 3, (0, 0)),), "")
+    assert (after.ways[way], broken) == (((1, 3, (0, 0)),), "")

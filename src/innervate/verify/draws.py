@@ -96,8 +96,8 @@ class Draws:
         count = 0
         while todo and count < OUTCOMES:
             self._script = todo.popleft()
-            self.made, self._more = [], None
-            step, made = make(*what), self.made
+            step = self._outcome(make, *what)
+            made = self.made
             count += 1
             given = tuple(value for _, value, _ in made)
             is_spent = any(value and size > FEW for _, value, size in made[: len(self._script)])
@@ -109,7 +109,20 @@ class Draws:
                 self.left_out += 1
                 self.some.update(size for _, _, size in made)
             self._script = ()
-            yield step._replace(words=step.words + told(made)) if made else step
+            yield step
+
+    def again(self, drawn: tuple[int, ...], make: Callable[..., Step], *what: Any) -> Step:
+        """An event as it was, its draws given; those behind them give 0."""
+        self._script = drawn
+        step = self._outcome(make, *what)
+        self._script = ()
+        return step
+
+    def _outcome(self, make: Callable[..., Step], *what: Any) -> Step:
+        """An event as the script has it, and in words what was drawn."""
+        self.made, self._more = [], None
+        step = make(*what)
+        return step._replace(words=step.words + told(self.made)) if self.made else step
 
     def as_dict(self) -> dict[str, Any]:
         """What was tried, for --json."""

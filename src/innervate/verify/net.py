@@ -19,14 +19,20 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.topology import PORTS, Graph
 from innervate.verify.draws import Draws
 from innervate.verify.frames import Frames
-from innervate.verify.states import Budget, Node, State, Step, sent
+from innervate.verify.states import After, Budget, Move, Node, State, Step, happen, sent
 from innervate.verify.telling import ERRORS, first_broken, where
 from innervate.verify.values import ahead, put, values, with_one
 
 OUTBOX = 16
 COLD, MEMORY_LOST = 0, 1
 NEVER = 1 << 62  # us
+ALL_ON = "All nodes are switched on"
 OF_RECEIVER = {"made_at", "rssi"}  # fields of a frame that each receiver may have its own of
+
+
+def next_timer(timer: tuple[int, int]) -> tuple[int, int]:
+    """By what timers come: when they are due, then their number."""
+    return timer[1], timer[0]
 
 
 class Net:
@@ -86,44 +92,75 @@ class Net:
             state, broken = self.call(state, number, 0, self.do.on_start, COLD)
             if broken:
                 return Step(f"{self.graph.label(number)} is switched on", state, broken)
-        return Step("All nodes are switched on", state, "")
+        return Step(ALL_ON, state, "")
 
     def steps(self, state: State) -> Iterator[Step]:
         """All that can happen next, with all that it can draw."""
-        each = self.draws.outcomes
+        for move in self.moves(state):
+            yield from self.draws.outcomes(happen, move)
+
+    def moves(self, state: State) -> Iterator[Move]:
+        """All that can happen next, not yet done."""
+        label, end_label = self.graph.label, self.graph.label_end
         loss, restart, given = state.left
         for end, frames in enumerate(state.ways):
             if frames:
-                yield from each(self.arrive, state, end)
+                yield Move(self.words_of_arrival(end), self.arrive, (state, end))
                 if loss:
                     rest = with_one(state.ways, end, frames[1:])
                     gone = state._replace(ways=rest, left=(loss - 1, restart, given))
-                    yield from each(self.missed, gone, end)
+                    what = f"A frame from {end_label(end)} is lost"
+                    if self.on_air:
+                        what = f"{self.receiver(end)} does not hear a frame of {self.sender(end)}"
+                    yield Move(what, self.missed, (gone, end))
         for number, node in enumerate(state.nodes):
+            who = label(number)
             yield from self.due(state, number)
             if node.airing:
-                yield from each(self.fall_silent, state, number)
+                yield Move(f"A frame of {who} has ended", self.fall_silent, (state, number))
             if node.down:
-                yield from each(self.leave, state, number, 1)
+                yield Move(f"A frame of {who} goes out", self.leave, (state, number, 1))
                 if loss:
                     busy = state._replace(left=(loss - 1, restart, given))
-                    yield from each(self.leave, busy, number, 0)
+                    what = f"A frame of {who} finds the channel busy and is given up"
+                    yield Move(what, self.leave, (busy, number, 0))
             if restart:
                 lost = state._replace(left=(loss, restart - 1, given))
-                yield from each(self.forget, lost, number)
+                yield Move(f"{who} loses its memory", self.forget, (lost, number))
             if given:
                 fewer = state._replace(left=(loss, restart, given - 1))
-                for one in self.given:
-                    yield from each(self.give, fewer, number, *one)
+                for kind, item in self.given:
+                    what = f"{who} is given {kind}{self.told_of(kind, item)} by its user"
+                    yield Move(what, self.give, (fewer, number, kind, item))
 
-    def forget(self, state: State, number: int) -> Step:
+    def words_of_arrival(self, end: int) -> str:
+        """That the oldest frame from an end comes in."""
+        if self.on_air:
+            return f"{self.receiver(end)} hears a frame of {self.sender(end)}"
+        return f"{self.receiver(end)} gets a frame from {self.graph.label_end(end)}"
+
+    def receiver(self, end: int) -> str:
+        """Who is at the other side of an end."""
+        return self.graph.label(self.graph.node_of(self.graph.peer[end]))
+
+    def sender(self, end: int) -> str:
+        """Whose end it is."""
+        return self.graph.label(self.graph.node_of(end))
+
+    def told_of(self, kind: int, item: dict[str, Any]) -> str:
+        """What an item holds, where users have others of its kind."""
+        if sum(one == kind for one, _ in self.given) < 2:
+            return ""
+        held = ", ".join(f"{name} {value}" for name, value in item.items())
+        return f" ({held or 'empty'})"
+
+    def forget(self, state: State, number: int) -> After:
         """A node loses its memory, and begins again."""
         blank = Node(state.nodes[number].values, ())
         lost = state._replace(nodes=with_one(state.nodes, number, blank))
-        after, broken = self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
-        return Step(f"{self.graph.label(number)} loses its memory", after, broken)
+        return self.call(lost, number, 0, self.do.on_start, MEMORY_LOST)
 
-    def arrive(self, state: State, end: int) -> Step:
+    def arrive(self, state: State, end: int) -> After:
         """The oldest frame from an end comes to the other."""
         first, *rest = state.ways[end]
         peer = self.graph.peer[end]
@@ -131,15 +168,12 @@ class Net:
         put(self.frame, self.fields.FRAME, first)
         gone = state._replace(ways=with_one(state.ways, end, tuple(rest)))
         if self.on_air:
-            return self.heard(gone, number, end)
-        after, broken = self.call(gone, number, 0, self.do.on_frame, port, self.frame)
-        what = f"{self.graph.label(number)} gets a frame from {self.graph.label_end(end)}"
-        return Step(what, after, broken)
+            return self.heard(gone, number)
+        return self.call(gone, number, 0, self.do.on_frame, port, self.frame)
 
-    def heard(self, state: State, number: int, end: int) -> Step:
+    def heard(self, state: State, number: int) -> After:
         """A frame on the air: a carrier alone, the frame, silence."""
         frame = values(self.frame, self.fields.FRAME, OF_RECEIVER)
-        what = f"{self.graph.label(number)} hears a frame of {self.graph.label(end // PORTS)}"
         after, broken = state, ""
         if self.has_carrier:
             after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 1)
@@ -151,71 +185,70 @@ class Net:
                 broken = broken or "a receiver changed the frame that the others are handed, too"
         if not broken and self.has_carrier:
             after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
-        return Step(what, after, broken)
+        return after, broken
 
-    def fall_silent(self, state: State, number: int) -> Step:
+    def fall_silent(self, state: State, number: int) -> After:
         """A frame of a node's own has ended, and it is told."""
         node = state.nodes[number]
         over = node._replace(airing=node.airing - 1)
         ended = state._replace(nodes=with_one(state.nodes, number, over))
-        after, broken = self.call(ended, number, 0, self.do.on_carrier, 0, 0)
-        return Step(f"A frame of {self.graph.label(number)} has ended", after, broken)
+        return self.call(ended, number, 0, self.do.on_carrier, 0, 0)
 
-    def missed(self, state: State, end: int) -> Step:
+    def missed(self, state: State, end: int) -> After:
         """A frame is lost; on the air its receiver hears that there was something."""
-        what = f"A frame from {self.graph.label_end(end)} is lost"
         if not self.has_carrier:
-            return Step(what, state, "")
+            return state, ""
         number = self.graph.node_of(self.graph.peer[end])
         after, broken = self.call(state, number, 0, self.do.on_carrier, 1, 0)
         if not broken:
             after, broken = self.call(after, number, 0, self.do.on_carrier, 0, 0)
-        return Step(what, after, broken)
+        return after, broken
 
     def ends_of(self, number: int, port: int) -> list[int]:
-        """Where what a node sends goes: to all who hear it, or out of a port."""
+        """Where what a node sends goes: to all who hear it, once to each, or out of a port."""
         ends = self.graph.ends_of(number) if self.on_air else [self.graph.end(number, port)]
-        return [end for end in ends if self.graph.peer[end] >= 0]
+        ends = [end for end in ends if self.graph.peer[end] >= 0]
+        if self.on_air:  # two cables between two nodes are one way on the air
+            ends = list({self.receiver(end): end for end in reversed(ends)}.values())[::-1]
+        return ends
 
-    def give(self, state: State, number: int, kind: int, item: dict[str, Any]) -> Step:
+    def give(self, state: State, number: int, kind: int, item: dict[str, Any]) -> After:
         """A node's user hands something down."""
         blank = plain.make("Frame", self.fields.FRAME)()
         put(self.frame, self.fields.FRAME, values(blank, self.fields.FRAME))
         for name, value in item.items():
             setattr(self.frame, name, list(value) if isinstance(value, list | tuple) else value)
-        after, broken = self.call(state, number, 0, self.do.on_input, kind, self.frame)
-        what = f"{self.graph.label(number)} is given {kind}"
-        return Step(f"{what} by its user", after, broken)
+        return self.call(state, number, 0, self.do.on_input, kind, self.frame)
 
-    def due(self, state: State, number: int) -> Iterator[Step]:
+    def due(self, state: State, number: int) -> Iterator[Move]:
         """What a node's own time brings next: a timer, or that a delayed frame leaves."""
         node = state.nodes[number]
         timer = min((wait for _, wait in node.timers), default=NEVER)
         late = node.late[0][0] if node.late else NEVER
+        who = self.graph.label(number)
         if timer <= late and node.timers:
-            yield from self.draws.outcomes(self.fire, state, number)
+            first = min(node.timers, key=next_timer)[0]
+            yield Move(f"Timer {first} of {who} fires", self.fire, (state, number))
         if late <= timer and node.late:
-            yield self.depart(state, number)
+            yield Move(f"A delayed frame of {who} leaves", self.depart, (state, number))
 
-    def depart(self, state: State, number: int) -> Step:
+    def depart(self, state: State, number: int) -> After:
         """A frame that was sent with a delay leaves; so far its node's time passes."""
         node = state.nodes[number]
         (wait, port, frame), *rest = node.late
         put(self.node, self.fields.STATE, node.values)
         after = self.kept(state, number, max(wait, 0), node._replace(late=tuple(rest)))
-        after = sent(after, self.ends_of(number, port), frame)
-        return Step(f"A delayed frame of {self.graph.label(number)} leaves", after, "")
+        return sent(after, self.ends_of(number, port), frame), ""
 
-    def fire(self, state: State, number: int) -> Step:
+    def fire(self, state: State, number: int) -> After:
         """The next timer of a node fires; so far its time passes."""
         node = state.nodes[number]
-        timer, wait = min(node.timers, key=lambda one: (one[1], one[0]))
+        timer, wait = min(node.timers, key=next_timer)
         rest = tuple(one for one in node.timers if one[0] != timer)
         waiting = state._replace(nodes=with_one(state.nodes, number, node._replace(timers=rest)))
-        after, broken = self.call(waiting, number, max(wait, 0), self.do.on_timer, timer)
-        return Step(f"Timer {timer} of {self.graph.label(number)} fires", after, broken)
+        return self.call(waiting, number, max(wait, 0), self.do.on_timer, timer)
 
-    def leave(self, state: State, number: int, ok: int) -> Step:
+    def leave(self, state: State, number: int, ok: int) -> After:
         """A frame that a node handed down goes out, or the channel stayed busy; it is told."""
         first, *rest = state.nodes[number].down
         node = state.nodes[number]._replace(down=tuple(rest))
@@ -224,13 +257,9 @@ class Net:
             node = node._replace(airing=node.airing + self.has_carrier)
             gone = state._replace(nodes=with_one(state.nodes, number, node))
             gone = sent(gone, self.ends_of(number, 0), first)
-        after, broken = self.call(gone, number, 0, self.do.on_sent, ok)
-        what = "goes out" if ok else "finds the channel busy and is given up"
-        return Step(f"A frame of {self.graph.label(number)} {what}", after, broken)
+        return self.call(gone, number, 0, self.do.on_sent, ok)
 
-    def call(
-        self, state: State, number: int, now: int, handler: Any, *what: Any
-    ) -> tuple[State, str]:
+    def call(self, state: State, number: int, now: int, handler: Any, *what: Any) -> After:
         """The state after a handler of a node at its time `now`, and what it broke."""
         node, out = state.nodes[number], self.out
         put(self.node, self.fields.STATE, node.values)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -45,6 +46,22 @@ class Step(NamedTuple):
     words: str
     state: State
     broken: str
+
+
+After = tuple[State, str]  # the state after something, and what that broke
+
+
+class Move(NamedTuple):
+    """What can happen: its words, and what makes it so, from what."""
+
+    words: str
+    make: Callable[..., After]
+    what: tuple[Any, ...]
+
+
+def happen(move: Move) -> Step:
+    """What comes of a move."""
+    return Step(move.words, *move.make(*move.what))
 
 
 def sent(state: State, ends: list[int], frame: tuple[Any, ...]) -> State:
