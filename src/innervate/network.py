@@ -115,6 +115,12 @@ def nothing_against_it(_given: Any) -> str:
     return ""
 
 
+def scripted(plan: Any) -> str:
+    """Time that a script replaces cannot be watched."""
+    has_script = getattr(plan.scenario.model, "script", None) is not None
+    return "its [script] replaces the clock; use: innervate run" if has_script else ""
+
+
 def no_name(plan: Any) -> str:
     """A loop that needs no compiling, as far as is known."""
     return ""

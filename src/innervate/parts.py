@@ -87,7 +87,7 @@ DEFAULTS = {
     "graph": "innervate.export.cabled:graph",
     "scenes": "innervate.network:nothing_to_show",
     "has_places": "innervate.network:no_places",
-    "unwatchable": "innervate.network:nothing_against_it",
+    "unwatchable": "innervate.network:scripted",
     "engine": "innervate.web.engine:Engine",
     "view": "innervate.web.declared_view:DeclaredView",
     "anchor": "innervate.network:nothing_to_anchor",

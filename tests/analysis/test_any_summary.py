@@ -103,7 +103,7 @@ def result(**more):
     codes["code"] = (4, 2, 4)
     given = {
         "plan": SimpleNamespace(kind="skin", seed=7, duration_us=2_500_000,
-                                scenario=SimpleNamespace(name="x")),
+                                scenario=SimpleNamespace(name="x", model=None)),
         "counts": counts(lost=1, off=(2,), sent=12), "handled": 20, "wall_s": 0.25,
         "fingerprint": "f" * 16, "interrupted": False, "ended_us": 1_500_000,
         "rows": {"rows": codes, "deliveries": deliveries(2_000)},

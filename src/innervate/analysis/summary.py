@@ -14,6 +14,7 @@ from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, e
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.folders import blamed
 from innervate.network import NetworkError, networks
+from innervate.scenario.declared.shared import script_of
 from innervate.sim.counts import Counts
 
 # Counted by reason or number: what is not named there has not happened.
@@ -91,7 +92,7 @@ def summarize(result: Any) -> Summary:
         "kind": plan.kind,
         "name": plan.scenario.name,
         **measured(result, result.handled + counts.arrived),
-        "headline": headline(counts, result.handled).as_summary(),
+        "headline": _headline(result).as_summary(),
         "nodes": counts.nodes,
         "off": len(counts.off),
         "frames": {
@@ -110,6 +111,14 @@ def summarize(result: Any) -> Summary:
         **_reports(result.rows),
         **_measures(result),
     }
+
+
+def _headline(result: Any) -> Headline:
+    """Of a run, or of a script, which ends in the middle of what it shows."""
+    script = script_of(result.plan)
+    if script is None:
+        return headline(result.counts, result.handled)
+    return Headline(OK, f"nothing broke in {len(script.steps):,} steps of its script.")
 
 
 def _measures(result: Any) -> Reports:

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from innervate.live.asking import ask, sleep_until
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
+from innervate.scenario.declared.shared import refuse_script
 
 Table = dict[str, Any]
 Pairs = list[tuple[int, int]]
@@ -51,6 +52,7 @@ class Deployment:
     has_channel = False
 
     def __init__(self, plan: Any) -> None:
+        refuse_script(plan)
         self.plan = plan
         self._ends: list[tuple[int, int]] = []
         self.names, self.links = self.layout()

@@ -12,7 +12,8 @@ from typing import Any
 from innervate import folders
 from innervate.analysis.summary import summarize
 from innervate.network import networks
-from innervate.running import blaming
+from innervate.running import blaming, playing
+from innervate.scenario.declared.shared import refuse_script, script_of
 from innervate.sim.counts import Counts
 from innervate.sim.driver import Ended, InvariantBroken, Simulation
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
@@ -79,6 +80,7 @@ class Result:
 
 def simulation(plan: Any, **kept: bool) -> Simulation:
     """A plan's network, not yet begun."""
+    refuse_script(plan)
     made: Simulation = networks()[plan.kind].simulation(plan, **kept)
     return made
 
@@ -94,10 +96,15 @@ def simulate(
 ) -> Result:
     """Run a plan; `received` is for skins: here summaries and measures are made of such rows.
 
+    A script is played in place of the clock.
+
     Raises:
+        ScenarioError: a script that is to be captured, or has a step that cannot be.
         InvariantBroken: a checker found what must not happen.
         NetworkError: in the protocol of a folder: with its file and line.
     """
+    if script_of(plan) is not None and tap is None:
+        return Result(**playing.play(plan))
     kept = {"checks": checks, "deliveries": True, "tap": tap is not None}
     network = networks()[plan.kind]
     if network.folder is None:

@@ -28,11 +28,13 @@ class Story:
         title: what is broken, in one line.
         sentences: one for each event.
         scenario: the text of a scenario file that plays it; "" = none does.
+        events: the sentences without what an event changed, where a script takes them so.
     """
 
     title: str
     sentences: list[str] = field(default_factory=list)
     scenario: str = ""
+    events: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
         """The story as numbered lines."""

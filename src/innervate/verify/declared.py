@@ -23,6 +23,7 @@ from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent
 from innervate.verify.frames import Frames, layouts_of
 from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.net import Net
+from innervate.verify.scripts import STUCK, scenario_of
 from innervate.verify.states import Budget, State, is_still, most_frames
 from innervate.verify.tally import Tally
 from innervate.verify.telling import story_of
@@ -30,7 +31,6 @@ from innervate.verify.telling import story_of
 IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left out, and counted
 STATES = 20_000
 BATCH = 500
-STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
 
 
 def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tuple[Tally, Story]:
@@ -39,7 +39,8 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
     before: dict[State, tuple[State | None, str] | None] = {}
     for first in net.begins(budget):
         if broken := first.broken or (net.of_all and net.broken_of_all(first.state)):
-            return replace(tally, ended="broken"), Story(broken, [f"{first.words}."])
+            told = Story(broken, [f"{first.words}."], events=[first.words])
+            return replace(tally, ended="broken"), told
         before.setdefault(first.state, (None, first.words) if net.draws.made else None)
     level = list(before)
     waits = bool(net.given) and all(map(is_still, level))  # for its user, from the start on
@@ -92,11 +93,9 @@ def explorations(network: Network, options: Any) -> Iterator[Explore]:
     return (partial(_explore, network, options, graph, budget) for graph in graphs)
 
 
-def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
-    params = {**getattr(network.fields, "DEFAULTS", {}),
-              **getattr(network.fields, "EXPLORED", {}),
-              **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
-    net = Net(network.protocol, network.fields, graph, params)
+def net_of(network: Network, graph: Graph, params: dict[str, int], kind: type[Net] = Net) -> Net:
+    """How the states of a network's nodes follow each other."""
+    net = kind(network.protocol, network.fields, graph, params)
     net.on_air = network.medium in MEDIA_ON_AIR
     net.has_carrier &= net.on_air
     net.is_slotted = network.medium == "channel"
@@ -104,10 +103,20 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
     net.frames = Frames(network.fields.FRAME, layouts_of(network))
     net.own = invariants_of(network, "node_")
     net.of_all = invariants_of(network, "network_")
+    return net
+
+
+def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
+    params = {**getattr(network.fields, "DEFAULTS", {}),
+              **getattr(network.fields, "EXPLORED", {}),
+              **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
+    net = net_of(network, graph, params)
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())
     tally, story = explore(net, budget, options.states or STATES, tell, cables)
     head = f"{cables:40} {tally.states:>10,} states {tally.generated:>10,} successors"
     told = story if story.title else None
+    if told is not None:
+        told.scenario = scenario_of(network, net, told)
 
     def how_far() -> str:
         more = f" but {tally.left_out:,} successors with too many frames in flight"

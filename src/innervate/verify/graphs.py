@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from innervate.topology import Graph, TopologyError, free_graph
+from innervate.scenario.declared.shared import cabled
+from innervate.topology import Graph, TopologyError
 from innervate.verify.errors import VerifyError
 
 GRAPHS = {
@@ -18,9 +19,8 @@ def graph_of(text: str) -> Graph:
     Raises:
         VerifyError: no such cables, or no such name.
     """
-    pairs = [pair.partition("-")[::2] for pair in GRAPHS.get(text, text).split()]
     try:
-        return free_graph(pairs)
+        return cabled(GRAPHS.get(text, text))
     except TopologyError as error:
         names = ", ".join(GRAPHS)
         raise VerifyError(f"--graph: {error}; or one of {names}") from None

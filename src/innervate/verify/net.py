@@ -26,7 +26,7 @@ from innervate.verify.values import ahead, put, values, with_one
 OUTBOX = 16
 COLD, MEMORY_LOST = 0, 1
 NEVER = 1 << 62  # us
-ALL_ON = "All nodes are switched on"
+SWITCHED_ON = "switched on"
 OF_RECEIVER = {"made_at", "rssi"}  # fields of a frame that each receiver may have its own of
 
 
@@ -91,8 +91,8 @@ class Net:
         for number in range(self.graph.cells):
             state, broken = self.call(state, number, 0, self.do.on_start, COLD)
             if broken:
-                return Step(f"{self.graph.label(number)} is switched on", state, broken)
-        return Step(ALL_ON, state, "")
+                return Step(f"{self.graph.label(number)} is {SWITCHED_ON}", state, broken)
+        return Step(f"All nodes are {SWITCHED_ON}", state, "")
 
     def steps(self, state: State) -> Iterator[Step]:
         """All that can happen next, with all that it can draw."""
@@ -144,7 +144,7 @@ class Net:
         return self.graph.label(self.graph.node_of(self.graph.peer[end]))
 
     def sender(self, end: int) -> str:
-        """Whose end it is."""
+        """The node that an end belongs to, by name."""
         return self.graph.label(self.graph.node_of(end))
 
     def told_of(self, kind: int, item: dict[str, Any]) -> str:

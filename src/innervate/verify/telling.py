@@ -27,10 +27,13 @@ def story_of(net: Any, before: Before, state: State, title: str, last: Step | No
         earlier, words = made
         steps.append((words, earlier or here, here))
         here = earlier
-    return Story(title, [_sentence(net, *step) for step in reversed(steps)])
+    steps.reverse()
+    told = [sentence(net, *step) for step in steps]
+    return Story(title, told, events=[words for words, _, _ in steps])
 
 
-def _sentence(net: Any, words: str, earlier: State, later: State) -> str:
+def sentence(net: Any, words: str, earlier: State, later: State) -> str:
+    """An event, and what it changed."""
     found = []
     for number, (was, now) in enumerate(zip(earlier.nodes, later.nodes, strict=True)):
         label = net.graph.label(number)

@@ -18,13 +18,16 @@ from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.declared.shared import (
     InputTable,
+    ScriptTable,
     check_happening,
     check_inputs,
     check_node,
+    check_script,
     check_values,
     inputs_of,
     parameter_lines,
     parameters,
+    script_lines,
 )
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
@@ -89,6 +92,7 @@ class CablesScenario(Table, frozen=True, kw_only=True):
         protocol: parameters of the protocol, by name.
         input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
+        script: an order of events in place of the clock.
     """
 
     kind: str
@@ -105,6 +109,7 @@ class CablesScenario(Table, frozen=True, kw_only=True):
     protocol: dict[str, int] = {}  # noqa: RUF012
     input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+    script: ScriptTable | None = None
 
 
 def check(source: Source, model: CablesScenario) -> None:
@@ -119,6 +124,7 @@ def check(source: Source, model: CablesScenario) -> None:
         raise source.error(("links", "latency_us"), "links.latency_us must be [least, greatest]")
     check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     graph = _graph(source, model)
+    check_script(source, model, graph)
     check_inputs(source, model, network, graph.cells)
     for place, event in enumerate(model.event):
         check_happening(source, model, place, network, ACTIONS)
@@ -225,7 +231,7 @@ def describe(plan: Any) -> str:
     graph: Graph = plan.graph
     near = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
     found = ["nobody gets any frame: links.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
-    return cables.describe(plan, [*found, *warnings(plan, near, plan.start_us)])
+    return cables.describe(plan, [*found, *warnings(plan, near, plan.start_us)], script_lines(plan))
 
 
 def template(network: Any) -> str:

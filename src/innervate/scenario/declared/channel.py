@@ -17,13 +17,16 @@ from innervate.scenario.cables import LOSS_ONE, Input
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.declared.shared import (
     InputTable,
+    ScriptTable,
     check_happening,
     check_inputs,
     check_node,
+    check_script,
     check_values,
     inputs_of,
     parameter_lines,
     parameters,
+    script_lines,
 )
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
@@ -78,6 +81,7 @@ class ChannelScenario(Table, frozen=True, kw_only=True):
         protocol: parameters of the protocol, by name.
         input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
+        script: an order of events in place of the clock.
     """
 
     kind: str
@@ -92,6 +96,7 @@ class ChannelScenario(Table, frozen=True, kw_only=True):
     protocol: dict[str, int] = {}  # noqa: RUF012
     input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+    script: ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +160,7 @@ def check(source: Source, model: ChannelScenario) -> None:
             check_node(source, ("hidden", place), node, model.nodes)
     for place, node in enumerate(model.absent):
         check_node(source, ("absent", place), node, model.nodes)
+    check_script(source, model)
     check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
         check_node(source, ("event", place, "node"), event.node, model.nodes)
@@ -207,7 +213,7 @@ def describe(plan: Any) -> str:
     ]
     found = ["nobody can read any frame: air.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, _near(plan))
-    return "\n".join([*lines, *told(plan, fault_words, found)])
+    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found)])
 
 
 def _near(plan: ChannelPlan) -> list[tuple[int, int]]:

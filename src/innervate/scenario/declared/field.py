@@ -17,13 +17,16 @@ from innervate.scenario.cables import Input
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.declared.shared import (
     InputTable,
+    ScriptTable,
     check_happening,
     check_inputs,
     check_node,
+    check_script,
     check_values,
     inputs_of,
     parameter_lines,
     parameters,
+    script_lines,
 )
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
@@ -122,6 +125,7 @@ class FieldScenario(Table, frozen=True, kw_only=True):
         protocol: parameters of the protocol, by name.
         input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
+        script: an order of events in place of the clock.
     """
 
     kind: str
@@ -141,6 +145,7 @@ class FieldScenario(Table, frozen=True, kw_only=True):
     protocol: dict[str, int] = {}  # noqa: RUF012
     input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+    script: ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,6 +219,7 @@ def check(source: Source, model: FieldScenario) -> None:
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
     for place, node in enumerate(model.absent):
         check_node(source, ("absent", place), node, model.nodes)
+    check_script(source, model)
     check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
         check_node(source, ("event", place, "node"), event.node, model.nodes)
@@ -336,7 +342,7 @@ def describe(plan: Any) -> str:
         f"  protocol   {params}",
     ]
     found = warnings(plan, plan.good, plan.scenario.model.start_us)
-    return "\n".join([*lines, *told(plan, fault_words, found)])
+    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Annotated, Any
 
+from msgspec import Meta
+
 from innervate.network import Network
 from innervate.scenario.cables import Input
 from innervate.scenario.errors import ScenarioError
@@ -14,6 +16,7 @@ from innervate.scenario.explain import alternatives, nearest
 from innervate.scenario.keys import Table, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown
+from innervate.topology import Graph, TopologyError, free_graph
 
 INPUTS_MAX = 1_000_000
 Numbers = int | list[int]
@@ -35,6 +38,72 @@ class InputTable(Table, frozen=True, kw_only=True):
     node: Annotated[int, whole("", 0)] | None = None
     every_s: Annotated[float, number("seconds", 0)] = 0.0
     item: dict[str, Numbers] = {}  # noqa: RUF012
+
+
+class ScriptTable(Table, frozen=True, kw_only=True):
+    """[script]: an order of events in place of the clock, as `innervate verify --out` writes it.
+
+    Attributes:
+        steps: an event each, as a story says it.
+        graph: on the air: who hears whom, as --graph of `innervate verify` has it.
+    """
+
+    steps: Annotated[list[str], Meta(max_length=100_000, description="a list of events")]
+    graph: str = ""
+
+
+def script_of(plan: Any) -> ScriptTable | None:
+    """The script of a plan; None = it has a clock."""
+    found = getattr(plan.scenario.model, "script", None)
+    return found if isinstance(found, ScriptTable) else None
+
+
+def script_lines(plan: Any) -> Iterator[str]:
+    """That a plan has a script, in a line of what `check` prints."""
+    if (script := script_of(plan)) is not None:
+        yield f"  script     {len(script.steps)} steps in place of the clock"
+
+
+def refuse_script(plan: Any) -> None:
+    """Refuse to let time pass where a script replaces the clock.
+
+    Raises:
+        ScenarioError: the plan has one.
+    """
+    if script_of(plan) is not None:
+        what = "its [script] replaces the clock; only innervate run and sweep play it"
+        raise plan.scenario.source.error(("script",), what)
+
+
+def check_script(source: Source, model: Any, graph: Graph | None = None) -> None:
+    """That a script has a graph of its nodes (`graph` over cables), and nothing happens beside it.
+
+    Raises:
+        ScenarioError: the first thing that cannot be.
+    """
+    if model.script is None:
+        return
+    for name in ("event", "input"):
+        if getattr(model, name):
+            what = f"a [script] says all that happens; leave the [[{name}]]s out"
+            raise source.error((name, 0), what)
+    if graph is None:
+        try:
+            graph = cabled(model.script.graph)
+        except TopologyError as error:
+            raise source.error(("script", "graph"), f"script.graph: {error}") from None
+        if graph.cells != model.nodes:
+            what = f"script.graph has {graph.cells} nodes, and nodes is {model.nodes}"
+            raise source.error(("script", "graph"), what)
+
+
+def cabled(text: str) -> Graph:
+    """The graph of cables like "n0.E-n1.W n1-n2".
+
+    Raises:
+        TopologyError: no such cables.
+    """
+    return free_graph([pair.partition("-")[::2] for pair in text.split()])
 
 
 def parameters(fields: Any, given: dict[str, int]) -> dict[str, int]:
