@@ -27,6 +27,7 @@ def case(**of):
     return Case([], {}, **{"is_broken": False, **of})
 
 
+ODD = case(but="but for draws")
 WHOLE, PART, BROKEN = case(), case(is_complete=False), case(is_broken=True, is_complete=False)
 
 
@@ -40,6 +41,21 @@ WHOLE, PART, BROKEN = case(), case(is_complete=False), case(is_broken=True, is_c
         ([WHOLE, PART, PART], "Nothing broken in 3 explorations; 2 of them only in part."),
         ([PART, BROKEN, WHOLE, BROKEN], "2 of 4 broken; 1 of the others only in part."),
         ([WHOLE, BROKEN], "1 of 2 broken."),
+        ([ODD], "Nothing broken in one exploration, completely, but for draws."),
+        ([ODD, ODD], "Nothing broken in 2 explorations, all completely, but for draws."),
+        (
+            [ODD, WHOLE],
+            "Nothing broken in 2 explorations, all completely, 1 of them but for draws.",
+        ),
+        (
+            [ODD, WHOLE, PART],
+            "Nothing broken in 3 explorations; 1 of them only in part, "
+            "1 of the others but for draws.",
+        ),
+        (
+            [case(is_complete=False, but="but for draws")],
+            "Nothing broken in one exploration, only in part.",
+        ),
         ([WHOLE, case(sums_up=False)], ""),
         ([], "Nothing was explored."),
     ],

@@ -7,6 +7,7 @@ first, if it takes long to compile; MUTANTS and `hunt(mutant)`, if there are any
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -50,7 +51,8 @@ class Case:
         lines: for people.
         record: for --json.
         is_broken: a property does not hold.
-        is_complete: everything was looked at.
+        is_complete: everything was looked at, within what `but` says.
+        but: what of a complete exploration was not; "" = nothing.
         sums_up: the last line counts it.
         story: the counterexample, if it is told: title, sentences, scenario, lines().
         play: makes the text of a scenario that plays it; "" = none does.
@@ -65,6 +67,7 @@ class Case:
     story: Any = None
     play: Callable[[], str] | None = None
     stem: str = "counterexample"
+    but: str = ""
 
 
 Explore = Callable[[Tell], Case]
@@ -82,10 +85,20 @@ def verdict(done: list[Case], is_cut: bool = False) -> str:
     if broken:
         rest = f"; {part} of the others only in part" if part else ""
         return f"{broken} of {len(done)} broken{rest}{end}"
+    whole = [case for case in done if case.is_complete]
+    but = _buts(whole, "of the others" if part else "of them")
     if len(done) == 1:
-        return f"Nothing broken in one exploration, {'only in part' if part else 'completely'}{end}"
+        far = "only in part" if part else "completely"
+        return f"Nothing broken in one exploration, {far}{but}{end}"
     sampled = f"; {part} of them only in part" if part else ", all completely"
-    return f"Nothing broken in {len(done)} explorations{sampled}{end}"
+    return f"Nothing broken in {len(done)} explorations{sampled}{but}{end}"
+
+
+def _buts(whole: list[Case], whose: str) -> str:
+    """What complete explorations did not look at, each thing with how many it is said of."""
+    counts = Counter(case.but for case in whole if case.but)
+    return "".join(f", {but}" if count == len(whole) else f", {count:,} {whose} {but}"
+                   for but, count in counts.items())  # fmt: skip
 
 
 def lines_of(head: str, story: Any, else_words: Callable[[], str]) -> list[str]:

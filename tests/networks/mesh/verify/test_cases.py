@@ -45,12 +45,12 @@ def test_all_that_can_be_reached_is_explored_with_its_calm_futures_if_nobody_say
 def test_a_case_is_recorded_with_what_came_of_it(story):
     tally = Of(states=5, expanded=4, generated=9, depth=3, wall_s=1.23456, ended="complete")
     found = Of(model=MeshModel(LINE, budget=budget(1)), tally=tally, calls=7, fair=2, longest=6,
-               nets=Of(locals=Of(states=[1, 2])))  # fmt: skip
+               nets=Of(locals=Of(states=[1, 2])), wide=[9, 256])  # fmt: skip
     assert MeshCase("a message", found, story).as_dict() == {
         "name": "a message", "links": "0-1 1-2", "failover": "search",
         "budget": {"deaths": 1, "revivals": 0, "frames": 0, "acks": 0, "ticks": 0},
         "states": 5, "expanded": 4, "generated": 9, "calls": 7, "node_states": 2, "depth": 3,
-        "wall_s": 1.235, "ended": "complete", "fair": 2, "longest": 6,
+        "wall_s": 1.235, "ended": "complete", "fair": 2, "longest": 6, "one_value": [9, 256],
         "broken": story and "loops", "story": story and ["it goes round"],
     }  # fmt: skip
 

@@ -1,5 +1,6 @@
 """What is said of one exploration of a mesh."""
 
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -25,7 +26,7 @@ def test_how_far_it_came_and_from_where_it_settles(fair, beats, said):
     tally = Tally()
     tally.states, tally.ended = 9, "complete"
     model = SimpleNamespace(beats=beats)
-    found = SimpleNamespace(fair=fair, longest=7, model=model, tally=tally)
+    found = SimpleNamespace(fair=fair, longest=7, model=model, tally=tally, wide=[])
     assert _extent(SimpleNamespace(found=found)) == said
 
 
@@ -64,7 +65,7 @@ def test_what_cannot_be_asked_is_refused_at_once(keys):
 def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, rest, monkeypatch):
     tally = Tally(states=1234, generated=5678, depth=9, wall_s=2.34, ended=ended)
     model = SimpleNamespace(beats=0, links=LINE, failover="search")
-    found = SimpleNamespace(fair=0, longest=7, model=model, tally=tally)
+    found = SimpleNamespace(fair=0, longest=7, model=model, tally=tally, wide=[])
     case = SimpleNamespace(found=found, name="a message", story=told, as_dict=lambda: {"it": 1})
     seen = []
 
@@ -88,3 +89,24 @@ def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, 
     assert (made.play is None) == (told is None)
     assert seen == [True]
     assert said == [(f"0-1: 1,234 states, 9 events deep, {tally.per_s / 1e3:.0f} k/s", 0, 0)]
+
+
+ONE_VALUE = "with one value for each node's draws out of more than 8"
+
+
+@pytest.mark.parametrize(("which", "budget", "drawn", "said"), [
+    ("a message", {"deaths": 0, "acks": 0}, [], "all states"),
+    ("an alarm", {"deaths": 0, "acks": 0}, [12_501], f"first 500 states, .*as asked, {ONE_VALUE}"),
+])  # fmt: skip
+def test_an_exploration_says_that_it_tried_one_value_of_wide_draws_if_there_were_any(
+    which, budget, drawn, said
+):
+    """Those of the first round, behind which it begins, are none of its own."""
+    text = ",".join(f"{name}={count}" for name, count in budget.items())
+    wanted = command.wanted_of(options(graph="0-1 1-2", budget=text, states=0 if not drawn else 500,
+                                       rule="search", liveness=False))  # fmt: skip
+    model = dict(command.cases.models(wanted))[which]
+    case = command._explore(which, model, wanted, lambda *_: False)
+    assert case.record["one_value"] == drawn
+    assert re.search(f" s  {said}$", case.lines[0])
+    assert case.but == (ONE_VALUE if drawn else "")

@@ -54,6 +54,7 @@ class MeshCase:
             "ended": tally.ended,
             "fair": found.fair,
             "longest": found.longest,
+            "one_value": found.wide,
             "broken": self.story.title if self.story else None,
             "story": self.story.sentences if self.story else None,
         }

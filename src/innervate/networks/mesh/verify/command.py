@@ -9,6 +9,7 @@ from typing import Any
 from innervate.networks.mesh.verify import cases, replay
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.mutants import MUTANTS, hunt
+from innervate.networks.mesh.verify.shape import FEW
 from innervate.verify import cases as common
 from innervate.verify.cases import Case, Explore, Tell
 from innervate.verify.errors import VerifyError
@@ -62,6 +63,7 @@ def _explore(name: str, model: Any, wanted: cases.MeshWanted, tell: Tell) -> Cas
         record=case.as_dict(),
         is_broken=case.story is not None,
         is_complete=case.found.tally.ended == "complete",
+        but=_but(case),
         story=case.story,
         play=None if case.story is None else partial(replay.write, case.story),
         stem="mesh-counterexample",
@@ -77,8 +79,18 @@ def _lines(case: cases.MeshCase) -> list[str]:
     return common.lines_of(head, case.story, partial(_extent, case))
 
 
+def _but(case: cases.MeshCase) -> str:
+    """What was not looked at in all that was; "" nothing."""
+    found = case.found
+    if found.tally.ended == "walked" or not found.wide:
+        return ""
+    return f"with one value for each node's draws out of more than {FEW}"
+
+
 def _extent(case: cases.MeshCase) -> str:
     found, words = case.found, common.extent(case.found.tally)
+    if _but(case):
+        words += f", {_but(case)}"
     if not found.fair:
         return words
     part = "" if found.fair >= found.tally.states else f" from {found.fair:,} of them"

@@ -104,6 +104,12 @@ class Locals:
         self.frames: list[Any] = []
         self.memo: dict[tuple[int, tuple[int, ...], int], tuple[Outcome, ...]] = {}
         self.calls = 0
+        self.wide = set[int]()  # draws out of many since the exploration began: out of how many
+
+    def begin(self) -> None:
+        """Here the exploration begins; what was called before is not what it does."""
+        self.memo.clear()
+        self.wide.clear()
 
     def coarsen(self) -> None:
         """From here on a node's clock goes in steps of GRAIN_US."""
@@ -296,6 +302,7 @@ class Locals:
 
     def _who(self, number: int, count: int) -> int:
         """What a draw out of many gives: another value for every node, and after every start."""
+        self.wide.add(count)
         share = count * (number + 1) // (self.model.nodes + 2)
         return (share + 7919 * self.boots) % count
 

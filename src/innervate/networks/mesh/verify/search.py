@@ -51,6 +51,11 @@ class Found:
     fair: int = 0
     longest: int = 0
 
+    @property
+    def wide(self) -> list[int]:
+        """Draws out of more than FEW, of which each node had one value: out of how many."""
+        return sorted(self.nets.locals.wide)
+
 
 def explore(
     model: MeshModel,
@@ -97,6 +102,7 @@ def explore(
 def _begun(model: MeshModel, nets: Nets, depth: int = 0) -> tuple[Net, Found]:
     """Where a search begins, and what is found so far: that the first round breaks, if it does."""
     begun = begin(nets)
+    nets.locals.begin()
     tally = Tally(states=1, ended="broken") if begun.broken else Tally(depth=depth)
     found = Found(model, nets, tally, nets.locals.calls, begun.broken, begun.path, begun.start)
     return begun.net, found
