@@ -52,6 +52,20 @@ CASES = [
      "2 of 4 messages are given up, 1 of 3 nodes is off, 3 of 10 frames are lost."),
     (counts(nodes=0), 1, OK, "All 4 messages are delivered, none of 10 frames is lost."),
     (counts(sent=12_345, lost=1_000), 1, DEGRADED, "1,000 of 12,345 frames are lost."),
+    # On the air a message is there or not, whoever else did not hear a copy of it.
+    (counts(is_shared=True), 1, OK, "All 4 messages are delivered, none of 10 receptions is lost."),
+    (counts(is_shared=True, sent=1), 1, OK, "All 4 messages are delivered, no reception is lost."),
+    (counts(is_shared=True, lost=3), 1, OK,
+     "All 4 messages are delivered, 3 of 10 receptions are lost."),
+    (counts(is_shared=True, lost=3, off=(1,)), 1, DEGRADED, "1 of 3 nodes is off."),
+    (counts(is_shared=True, lost=3, delivered=3), 1, DEGRADED,
+     "1 of 4 messages is not delivered, 3 of 10 receptions are lost."),
+    (counts(is_shared=True, lost=3, dropped=1), 1, DEGRADED,
+     "1 of 4 messages is given up, 3 of 10 receptions are lost."),
+    (counts(is_shared=True, lost=3, delivered=5), 1, DEGRADED, "3 of 10 receptions are lost."),
+    (counts(is_shared=True, lost=3, offered=0, delivered=0), 1, DEGRADED,
+     "3 of 10 receptions are lost."),
+    (counts(is_shared=True, lost=9, arrived=0), 1, DOWN, "None of 10 frames arrived."),
 ]  # fmt: skip
 
 
@@ -70,6 +84,12 @@ def test_while_a_run_goes_on_what_is_not_delivered_is_under_way():
     assert headline(none, 1, goes_on=True) == headline(none, 1)
     lost = counts(delivered=3, lost=1)
     assert headline(lost, 1, goes_on=True)[:2] == (DEGRADED, "1 of 10 frames is lost.")
+    heard = counts(delivered=3, lost=1, is_shared=True)
+    assert headline(heard, 1, goes_on=True)[:2] == (
+        OK, "1 of 4 messages is under way, 1 of 10 receptions is lost."
+    )  # fmt: skip
+    none = counts(delivered=0, lost=1, is_shared=True)
+    assert headline(none, 1, goes_on=True)[:2] == (DEGRADED, "1 of 10 receptions is lost.")
 
 
 def test_who_is_silent_is_counted():

@@ -185,7 +185,7 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     nodes are off, or of all frames, or of all messages, none came. no data: nothing has happened
     yet, or nobody said anything.
     A message may be for many: where more are delivered than were given, nobody knows of whom some
-    are missing.
+    are missing. On the air receptions that are lost make nothing worse if no message is missing.
 
     Args:
         counts: of the medium.
@@ -207,11 +207,12 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         return Headline(DOWN, said, off)
     if not (counts.sent or counts.offered or off):
         return Headline(NO_DATA, "No frame was sent.")
+    failed = 0 if _is_spared(counts, missing + dropped) else lost
     wrong = [
         _part(dropped, counts.offered, "message", "given up"),
         _part(missing, counts.offered, "message", "not delivered"),
         _part(len(off), nodes, "node", "off"),
-        _part(lost, counts.sent, "frame", "lost"),
+        _part(failed, counts.sent, _frame(counts), "lost"),
     ]
     said = ", ".join(filter(None, wrong))
     if said:
@@ -219,8 +220,21 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     return Headline(OK, _well(counts))
 
 
+def _frame(counts: Counts) -> str:
+    """What frames are counted by."""
+    return "reception" if counts.is_shared else "frame"
+
+
+def _is_spared(counts: Counts, missing: int) -> bool:
+    """Receptions that are lost on the air are nobody's loss where every message is there."""
+    return counts.is_shared and not missing and 0 < counts.delivered <= counts.offered
+
+
 def _well(counts: Counts) -> str:
-    kept = "no frame is lost." if counts.sent < 2 else f"none of {counts.sent:,} frames is lost."
+    lost, what = sum(counts.lost_by.values()), _frame(counts)
+    kept = f"no {what} is lost." if counts.sent < 2 else f"none of {counts.sent:,} {what}s is lost."
+    if lost:
+        kept = f"{_part(lost, counts.sent, what, 'lost')}."
     if counts.delivered > counts.offered > 0:
         return f"{counts.offered:,} messages are delivered {counts.delivered:,} times, {kept}"
     under_way = counts.offered - counts.delivered

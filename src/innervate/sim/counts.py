@@ -18,6 +18,8 @@ class Counts(NamedTuple):
         offered: messages given to nodes by their users.
         delivered: messages given to users by nodes.
         dropped_by: messages given up by nodes, by reason.
+        is_shared: all hear the same air: a frame counts for each that could hear it, as a
+            reception, and one that is lost need be nobody's loss.
     """
 
     nodes: int = 0
@@ -28,6 +30,7 @@ class Counts(NamedTuple):
     offered: int = 0
     delivered: int = 0
     dropped_by: Mapping[str, int] = {}
+    is_shared: bool = False
 
     @property
     def in_flight(self) -> int:

@@ -224,6 +224,7 @@ class DeclaredChannel(Channel):
             lost_by=lost,
             offered=int(get(self.world.run, 0, "offers")),
             delivered=int(numbers[listening.DELIVERED]),
+            is_shared=True,
         )
 
 

@@ -308,6 +308,7 @@ class DeclaredField(Field):
             lost_by={name: many for name, many in lost.items() if many},
             offered=int(numbers[listening.OFFERED]),
             delivered=int(numbers[listening.DELIVERED]),
+            is_shared=True,
         )  # fmt: skip
 
     def _is_off(self, radios: Any, node: int) -> bool:
