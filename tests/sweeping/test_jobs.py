@@ -6,7 +6,7 @@ import sqlite3
 import pytest
 
 from innervate.sweeping import jobs
-from innervate.sweeping.errors import SweepError
+from innervate.sweeping.errors import DamagedError, SweepError
 from innervate.sweeping.jobs import Jobs
 from innervate.sweeping.work import Outcome
 
@@ -126,7 +126,7 @@ def test_one_process_is_at_work_on_a_table_and_lets_go_of_it(tmp_path):
 
 def test_what_is_no_table_is_said_and_let_go_of(tmp_path):
     (tmp_path / jobs.FILE).write_bytes(b"something else" * 100)
-    with pytest.raises(SweepError, match="is no job table, or damaged; move it away"):
+    with pytest.raises(SweepError, match="is no job table, or damaged so that nothing"):
         Jobs(tmp_path)
     with pytest.raises(SweepError, match="cannot be written; choose another folder"):
         Jobs(tmp_path / "none")
@@ -176,3 +176,69 @@ def test_of_a_torn_place_nothing_is_known_and_its_runs_stay(table):
     table._db.execute("UPDATE places SET facts = 'torn' WHERE id = 1")
     assert table.places() == {1: {}, 2: {"host": "b"}}
     assert (table.torn_places, list(table.runs("p", 9))) == ({1}, [0, 1])
+
+
+PAGE = 4096
+LONG = "x" * 900  # of a run, so that few fit on a page
+
+
+def filled(folder, points="pqrs", repeats=12):
+    """A table of many pages; where each part begins, and how many there are."""
+    with Jobs(folder) as made:
+        made.claim({"plan": "abc"})
+        runs = [done(point, k, LONG) for point in points for k in range(repeats)]
+        made.add(runs, PLACE)
+    data = (folder / jobs.FILE).read_bytes()
+    with sqlite3.connect(folder / jobs.FILE) as db:
+        roots = dict(db.execute("SELECT name, rootpage FROM sqlite_master"))
+    db.close()
+    return roots, len(data) // PAGE
+
+
+def harmed(folder, page):
+    """One page of a table is noise, as a bad block of a disk leaves it."""
+    path = folder / jobs.FILE
+    data = bytearray(path.read_bytes())
+    data[PAGE * (page - 1) : PAGE * page] = b"\x7fnoise of" * (PAGE // 9) + b"!"
+    assert len(data) % PAGE == 0
+    path.write_bytes(data)
+
+
+def test_of_a_table_with_a_damaged_page_all_other_runs_are_kept(tmp_path):
+    first = tmp_path / "whole"
+    first.mkdir()
+    roots, pages = filled(first)
+    assert pages > 12
+    kept = []
+    for page in range(1, pages + 1):
+        folder = tmp_path / str(page)
+        folder.mkdir()
+        filled(folder)
+        harmed(folder, page)
+        if page in (1, roots["meta"]):  # whose table it is, nobody knows
+            with pytest.raises(DamagedError, match="nothing of it can be kept; move it away"):
+                jobs.rescue(folder, {point: 12 for point in "pqrs"})
+            assert [one.name for one in folder.iterdir()] == [jobs.FILE]
+            continue
+        count, aside = jobs.rescue(folder, {point: 12 for point in "pqrs"})
+        assert (folder / aside).name == f"{jobs.FILE}.damaged-1"
+        with Jobs(folder) as again:
+            again.claim({"plan": "abc"})
+            found = [run for point in "pqrs" for run in again.runs(point, 12).values()]
+            assert again.count() == len(found) == count
+            assert all(run.figures == {"x": LONG} for run in found)
+            again.add([done(point, k, LONG) for point in "pqrs" for k in range(12)], PLACE)
+            assert again.count() == 48
+        kept.append(count)
+    assert kept.count(48) >= 2  # places, and their index
+    assert kept.count(0) == 1  # the root
+    rest = sorted(count for count in kept if 0 < count < 48)
+    assert all(count > 20 for count in rest)  # two pages only point to others
+    assert all(count >= 43 for count in rest[2:])
+
+
+def test_what_was_found_damaged_twice_is_kept_twice(tmp_path):
+    for k in (1, 2):
+        roots, _ = filled(tmp_path)
+        harmed(tmp_path, roots["places"])
+        assert jobs.rescue(tmp_path, {}) == (48, f"{jobs.FILE}.damaged-{k}")

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import signal
 import sqlite3
 from concurrent.futures import Future
@@ -165,5 +166,27 @@ def test_a_torn_row_of_the_job_table_is_named_and_run_again(four, capsys):
     said = capsys.readouterr().err
     assert "out/jobs.sqlite had damaged rows: point 1, repeat 0, which was run again" in said
     assert table("out") == before
+    assert main(asked) == 0
+    assert "damaged" not in capsys.readouterr().err
+
+
+def test_a_damaged_page_of_the_job_table_costs_the_runs_on_it_and_no_others(four, capsys):
+    asked = ["sweep", "four.toml", "--vary", "protocol.k=2,4", "--repeat", "8", "--workers", "1",
+             "--out", "out"]  # fmt: skip
+    assert main(asked) == 0
+    before, path = table("out"), Path("out/jobs.sqlite")
+    data = bytearray(path.read_bytes())
+    leaf = [at for at in range(4 * 4096, len(data), 4096) if data[at] == 10][-1]
+    data[leaf : leaf + 4096] = b"\xff" * 4096
+    path.write_bytes(data)
+    capsys.readouterr()
+    assert main(asked) == 0
+    said = capsys.readouterr().err
+    words = "had damaged rows: whole pages: ([0-9]+) runs could be read and are kept, ([0-9]+) were"
+    found = re.search(f"out/jobs.sqlite {words} run now .jobs.sqlite.damaged-1 is the file", said)
+    kept, ran = map(int, found.groups())
+    assert kept + ran == 16 > kept > 0
+    assert table("out") == before
+    assert bytes(data) == Path("out/jobs.sqlite.damaged-1").read_bytes()
     assert main(asked) == 0
     assert "damaged" not in capsys.readouterr().err

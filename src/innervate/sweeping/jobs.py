@@ -7,13 +7,16 @@ it has still to be run. One process writes; a second one that tries is told so.
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import closing, contextmanager
+from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from innervate.sweeping.errors import SweepError
+from innervate.sweeping.errors import DamagedError, SweepError
 from innervate.sweeping.work import Outcome
 
 SCHEMA = 1
@@ -93,7 +96,9 @@ class Jobs:
         try:
             yield
         except sqlite3.Error as error:
-            raise SweepError(_in_words(self._name, error)) from error
+            code = getattr(error, "sqlite_errorname", "") or ""
+            kind = DamagedError if code.startswith("SQLITE_CORRUPT") else SweepError
+            raise kind(_in_words(self._name, error)) from error
 
     def claim(self, identity: Mapping[str, str], files: Mapping[str, str] | None = None) -> None:
         """Begin a sweep of this identity here, or go on with it.
@@ -152,6 +157,17 @@ class Jobs:
                     self._db.execute("ROLLBACK")
                 raise
 
+    def take_over(self, old: sqlite3.Connection, wanted: Mapping[str, int]) -> bool:
+        """Keep what can be read of a damaged table; False if not even whose it is."""
+        with self._errors():
+            self._db.execute("BEGIN")
+            for table, columns in (("meta", 2), ("places", 2), ("runs", 9)):
+                marks = ", ".join("?" * columns)
+                self._db.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({marks})",
+                                     _readable(old, table, wanted))  # fmt: skip
+            self._db.execute("COMMIT")
+            return bool(self._db.execute("SELECT count(*) FROM meta").fetchone()[0])
+
     def forget_failed(self) -> int:
         """Forget the failed runs, so that they are run again; how many."""
         with self._errors():
@@ -190,6 +206,66 @@ class Jobs:
         return {number: facts or {} for number, facts in found.items()}
 
 
+def rescue(folder: Path, wanted: Mapping[str, int]) -> tuple[int, str]:
+    """Put what can be read of a damaged table into a new one.
+
+    Args:
+        folder: where it lies; the table as it was stays there under another name.
+        wanted: the points that are looked for run by run, and below which repeat; of others only
+            those are kept that are found before the first damaged page or behind the last.
+
+    Returns:
+        How many runs are kept; what the file as it was is called now.
+
+    Raises:
+        DamagedError: not even whose table it is can be read.
+        SweepError: there is no room for another.
+    """
+    path, fresh = folder / FILE, folder / "rescued"
+    fresh.mkdir(exist_ok=True)
+    with closing(sqlite3.connect(path)) as old, Jobs(fresh) as new:
+        old.text_factory = _text
+        is_known, kept = new.take_over(old, wanted), new.count()
+    if not is_known:
+        (fresh / FILE).unlink()
+        fresh.rmdir()
+        error = sqlite3.DatabaseError()
+        error.sqlite_errorname = "SQLITE_CORRUPT"
+        raise DamagedError(_in_words(str(path), error))
+    names = (folder / f"{FILE}.damaged-{k}" for k in count(1))
+    aside = next(name for name in names if not name.exists())
+    shutil.copyfile(path, aside)  # whoever is killed here finds one table or the other
+    for rest in ("-wal", "-shm"):
+        (folder / f"{FILE}{rest}").unlink(missing_ok=True)
+    os.replace(fresh / FILE, path)
+    fresh.rmdir()
+    return kept, aside.name
+
+
+def _readable(old: sqlite3.Connection, table: str, wanted: Mapping[str, int]) -> Iterator[Any]:
+    """The rows of a table that can be read: from its beginning, from its end, and one by one."""
+    key = {"meta": "name", "places": "id", "runs": "point"}[table]
+    if (yield from _until_damaged(old, f"SELECT * FROM {table} ORDER BY {key}")):
+        return
+    yield from _until_damaged(old, f"SELECT * FROM {table} ORDER BY {key} DESC")
+    if table == "runs":
+        one = "SELECT * FROM runs WHERE point = ? AND repeat = ?"
+        for point, behind in wanted.items():
+            for repeat in range(behind):
+                yield from _until_damaged(old, one, point, repeat)
+
+
+def _until_damaged(
+    old: sqlite3.Connection, query: str, *given: Any
+) -> Generator[tuple[Any, ...], None, bool]:
+    """The rows that come before damage; returns that there was none."""
+    try:
+        yield from old.execute(query, given)
+    except sqlite3.DatabaseError:
+        return False
+    return True
+
+
 def _run(state: str, seed: Any, text: Any, *rest: Any) -> Stored | None:
     """A run as its row has it; None if that is torn."""
     figures = None if text is None else _object(text)
@@ -224,5 +300,8 @@ def _in_words(name: str, error: sqlite3.Error) -> str:
             "command again, what is done is kept"
         )
     if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
-        return f"{name} is no job table, or damaged; move it away or choose another --out"
+        return (
+            f"{name} is no job table, or damaged so that nothing of it can be kept; move it away "
+            "and all is run anew, or choose another --out"
+        )
     return f"{name}: {error}"

@@ -20,8 +20,8 @@ from innervate.sweeping import planfile, tables
 from innervate.sweeping.base import PLAN_FILE, Source, base_of
 from innervate.sweeping.derive import Formula
 from innervate.sweeping.engines import engine
-from innervate.sweeping.errors import SweepError
-from innervate.sweeping.jobs import FILE, Jobs
+from innervate.sweeping.errors import DamagedError, SweepError
+from innervate.sweeping.jobs import FILE, Jobs, rescue
 from innervate.sweeping.plan import REPEAT_MAX, SweepPlan
 from innervate.sweeping.result import Sweep
 from innervate.sweeping.scheduler import Scheduler
@@ -109,16 +109,36 @@ def sweep(
     with engine(kind, workers, dask) as crew:  # one that cannot be leaves no folder behind
         if folder is not None:
             _prepare(folder)
-        with Jobs(folder) as jobs:
-            jobs.claim(plan.identity(), _files(plan, made))
+
+        files, seen = _files(plan, made), (tuple(show), tuple(follow))
+
+        def go_on(jobs: Jobs) -> Sweep:
+            jobs.claim(plan.identity(), files)
             if folder is not None:
                 _describe(plan, folder)
             if retry:
                 jobs.forget_failed()
             with Bar("preparing the runs") as bar:
-                seen = tuple(show)
-                scheduler = Scheduler(plan, jobs, crew, seen, tuple(follow), progress or bar.swept)
+                scheduler = Scheduler(plan, jobs, crew, *seen, progress or bar.swept)
                 return _run_plan(scheduler, jobs, folder)
+
+        return _with_table(folder, plan, go_on)
+
+
+def _with_table(folder: Path | None, plan: SweepPlan, go_on: Callable[[Jobs], Sweep]) -> Sweep:
+    """Go on with the job table, or, where a page of it is damaged, with what is left of it."""
+    try:
+        with Jobs(folder) as jobs:
+            return go_on(jobs)
+    except DamagedError:
+        if folder is None:
+            raise
+        kept, aside = rescue(folder, {point.digest: plan.repeat for point in plan.points})
+    with Jobs(folder) as jobs:
+        done = go_on(jobs)
+    said = f"whole pages: {kept:,} runs could be read and are kept, {done.ran:,} were run now"
+    done.torn = (f"{said} ({aside} is the file as it was)", *done.torn)
+    return done
 
 
 def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
