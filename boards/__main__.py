@@ -90,6 +90,12 @@ def main(arguments: list[str]) -> int:
     """The command; its exit code."""
     known = roles()
     words = [argument for argument in arguments if "=" not in argument]
+    if words == ["--help"]:
+        print(__doc__)
+        return 0
+    if options := [word for word in words if word.startswith("-")]:
+        print(f"{options[0]}: no such option; see --help", file=sys.stderr)
+        return 2
     named = words.pop(0) if words and words[0] in known else next(iter(known))
     if len(words) > 1:
         print(f"{words[1]}: one folder is enough", file=sys.stderr)

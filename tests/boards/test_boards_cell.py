@@ -108,13 +108,21 @@ def test_the_folder_is_made_and_made_again(tmp_path, capsys, files):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [(["k=x"], "whole number"), (["kk=3"], "protocol.kk is unknown"),
-     (["k=0"], "must be 1 to 840"), (["a", "b"], "one folder")],
+     (["k=0"], "must be 1 to 840"), (["a", "b"], "one folder"),
+     (["--out", "a"], "--out: no such option; see --help")],
 )  # fmt: skip
 def test_a_mistake_is_one_line_and_leaves_nothing(tmp_path, monkeypatch, capsys, arguments, said):
     monkeypatch.chdir(tmp_path)
     assert build.main(arguments) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert said in line
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_who_asks_for_help_is_told_and_nothing_is_made(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert build.main(["--help"]) == 0
+    assert "[NETWORK] [FOLDER] [name=value ...]" in capsys.readouterr().out
     assert list(tmp_path.iterdir()) == []
 
 
