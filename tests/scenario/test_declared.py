@@ -4,6 +4,7 @@ import pytest
 from msgspec import to_builtins
 
 from innervate import scenario as scenarios
+from innervate.network import networks
 from innervate.scenario.errors import ScenarioError
 from tests.own import alone, made
 
@@ -54,3 +55,23 @@ def test_the_node_that_an_input_is_for_is_there(own):
         loaded(own, input=[{"node": 500}])
     with pytest.raises(ScenarioError, match='input has no "valeu"; did you mean "value"'):
         loaded(own, input=[{"item": {"valeu": 1}}])
+
+
+def test_events_that_are_the_networks_own_are_told_among_the_others(own, capsys):
+    own.change("network.py", '    protocol="protocol",', '    protocol="protocol",\n'
+               '    happenings="more:HAPPENINGS",')  # fmt: skip
+    (own.folder / "more.py").write_text(
+        '"""More."""\n\nHAPPENINGS = {"warm": lambda node, value: (1, {"value": value})}\n'
+    )
+    event = [{"at_s": 1.5, "action": "kill", "node": 0},
+             {"at_s": 1.0, "action": "warm", "node": 1, "value": 9},
+             {"at_s": 0.5, "action": "kill", "node": 1}]  # fmt: skip
+    plan = scenarios.plan(loaded(own, event=event))
+    who = "n{}" if hasattr(plan, "graph") else "node {}"
+    lines = networks()["own"].describe(plan).splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("  event "))
+    assert lines[first : first + 3] == [
+        f"  event      at 0.5 s kill {who.format(1)}",
+        f"             at 1 s warm {who.format(1)}, value 9",
+        f"             at 1.5 s kill {who.format(0)}",
+    ]

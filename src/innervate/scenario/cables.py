@@ -86,7 +86,12 @@ class CablesPlan:
     inputs: list[Input] = field(default_factory=list)
 
 
-def describe(plan: Any, warnings: Iterable[str] = (), more: Iterable[str] = ()) -> str:
+def describe(
+    plan: Any,
+    warnings: Iterable[str] = (),
+    more: Iterable[str] = (),
+    own: Iterable[tuple[int, str]] = (),
+) -> str:
     """A plan in words, several lines (`more` of them), without a newline at the end."""
     graph = plan.graph
     params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
@@ -95,7 +100,7 @@ def describe(plan: Any, warnings: Iterable[str] = (), more: Iterable[str] = ()) 
         f"  nodes      {graph.cells:,}, {sum(1 for _ in graph.links()):,} cables",
         f"  protocol   {params}",
     ]
-    return "\n".join([*lines, *more, *told(plan, fault_words, warnings)])
+    return "\n".join([*lines, *more, *told(plan, fault_words, warnings, own)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
+from heapq import merge
+from operator import itemgetter
 from typing import Any
 
 from innervate.scenario.actions.action import Action
@@ -82,12 +84,20 @@ def opening(made: Any) -> str:
 
 
 def told(
-    made: Any, fault_words: Callable[[Any, Any], str], warnings: Iterable[str]
+    made: Any,
+    fault_words: Callable[[Any, Any], str],
+    warnings: Iterable[str],
+    own: Iterable[tuple[int, str]] = (),
 ) -> Iterator[str]:
-    """The lines on a plan's events and warnings, as at the end of what `check` prints."""
-    for i, fault in enumerate(made.faults[:SHOWN]):
-        yield f"  {'' if i else 'event':10} {fault_words(made, fault)}"
-    if len(made.faults) > SHOWN:
-        yield f"  {'':10} and {len(made.faults) - SHOWN} more"
+    """The lines on a plan's events and warnings, as at the end of what `check` prints.
+
+    `own` are events that only this kind of network has: when (us), and in words.
+    """
+    events = list(merge(((fault.at_us, fault) for fault in made.faults), own, key=itemgetter(0)))
+    for i, (_, event) in enumerate(events[:SHOWN]):
+        words = event if isinstance(event, str) else fault_words(made, event)
+        yield f"  {'' if i else 'event':10} {words}"
+    if len(events) > SHOWN:
+        yield f"  {'':10} and {len(events) - SHOWN} more"
     for text in warnings:
         yield f"  warning    {text}"

@@ -25,6 +25,7 @@ from innervate.scenario.declared.shared import (
     check_script,
     check_values,
     inputs_of,
+    own_events,
     parameter_lines,
     parameters,
     script_lines,
@@ -231,7 +232,8 @@ def describe(plan: Any) -> str:
     graph: Graph = plan.graph
     near = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
     found = ["nobody gets any frame: links.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
-    return cables.describe(plan, [*found, *warnings(plan, near, plan.start_us)], script_lines(plan))
+    found += warnings(plan, near, plan.start_us)
+    return cables.describe(plan, found, script_lines(plan), own_events(plan, ACTIONS))
 
 
 def template(network: Any) -> str:

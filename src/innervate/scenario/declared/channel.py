@@ -24,6 +24,7 @@ from innervate.scenario.declared.shared import (
     check_script,
     check_values,
     inputs_of,
+    own_events,
     parameter_lines,
     parameters,
     script_lines,
@@ -213,7 +214,8 @@ def describe(plan: Any) -> str:
     ]
     found = ["nobody can read any frame: air.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, _near(plan))
-    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found)])
+    own = own_events(plan, DONE)
+    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found, own)])
 
 
 def _near(plan: ChannelPlan) -> list[tuple[int, int]]:

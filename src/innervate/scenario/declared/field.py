@@ -24,6 +24,7 @@ from innervate.scenario.declared.shared import (
     check_script,
     check_values,
     inputs_of,
+    own_events,
     parameter_lines,
     parameters,
     script_lines,
@@ -342,7 +343,8 @@ def describe(plan: Any) -> str:
         f"  protocol   {params}",
     ]
     found = warnings(plan, plan.good, plan.scenario.model.start_us)
-    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found)])
+    own = own_events(plan, ACTIONS)
+    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found, own)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from operator import itemgetter
 from typing import Annotated, Any
 
 from msgspec import Meta
@@ -206,6 +207,17 @@ def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]
             kind, item = network.happenings[event.action](event.node, event.value)
             found.append(Input(round(1e6 * event.at_s), event.node, kind, dict(item)))
     return sorted(found, key=lambda one: one.at_us)
+
+
+def own_events(plan: Any, actions: Iterable[str]) -> list[tuple[int, str]]:
+    """The events of a plan that are its network's own, by time: when (us), and in words."""
+    label = plan.graph.label if hasattr(plan, "graph") else "node {}".format
+    found = [
+        (round(1e6 * event.at_s),
+         f"at {event.at_s:g} s {event.action} {label(event.node)}, value {event.value}")
+        for event in plan.scenario.model.event if event.action not in actions
+    ]  # fmt: skip
+    return sorted(found, key=itemgetter(0))
 
 
 def parameter_lines(network: Network) -> Iterator[str]:
