@@ -7,8 +7,8 @@ import pytest
 
 from innervate.dialect.plain import Outbox as PlainOutbox
 from innervate.dialect.plain import make
-from innervate.prove.check import check, reached, unreached
-from innervate.prove.errors import ProveError
+from innervate.prove.check import _is_refuted, check, reached, unreached
+from innervate.prove.errors import ProveError, UnsureError
 from innervate.prove.express import greatest, least
 from innervate.prove.solve import Formulas, Question
 from innervate.prove.steps import Goal, Stage, own_goals
@@ -181,5 +181,36 @@ def test_who_may_not_think_long_enough_says_so():
     stage, _ = stage_of()
     a, b = (stage.terms.unknown(name, 2, 60_000) for name in "ab")
     product = stage.terms.same(stage.terms.mul(a, b), stage.number(2_147_117_569))
-    with pytest.raises(ProveError, match="the solver could not say"):
+    with pytest.raises(ProveError, match="the solver could not say: not within 50 of its steps"):
         Question(Formulas(), [], steps_max=50).values(product)
+
+
+@pytest.mark.parametrize("holding", [True, False])
+def test_what_is_too_much_at_once_is_asked_goal_by_goal(holding):
+    """Four primes are no products: each takes 0.2 million steps, all together 0.6."""
+    stage, s = stage_of()
+    step = stage.play("never", "never", [s, stage.number(1)], [])
+    primes = [1_046_527, 1_048_573, 1_046_533, 1_048_571 if holding else 1_037 * 1_009]
+    for k, prime in enumerate(primes):
+        a, b = (stage.terms.unknown(f"{name}{k}", 2, 2_000) for name in "ab")
+        is_product = stage.terms.same(stage.terms.mul(a, b), stage.number(prime))
+        step.goals.append(Goal(f"{prime} is prime", stage.terms.negated(is_product)))
+    wrong = [stage.terms.negated(goal.holds) for goal in step.goals]
+    if holding:
+        with pytest.raises(UnsureError):
+            Question(Formulas(), [], steps_max=400_000).values(stage.terms.any(*wrong))
+    assert _is_refuted(step, Question(Formulas(), [], steps_max=400_000)) != holding
+    said = f"^{primes[0]} is prime: the solver could not say"
+    with pytest.raises(UnsureError, match=said):
+        _is_refuted(step, Question(Formulas(), [], steps_max=1_000))
+
+
+def test_what_cannot_be_said_is_told_with_its_step(monkeypatch):
+    stage, s = stage_of()
+    step = stage.play("never", "never", [s, stage.number(1)], [])
+    a, b = (stage.terms.unknown(name, 2, 2_000) for name in "ab")
+    is_product = stage.terms.same(stage.terms.mul(a, b), stage.number(1_046_527))
+    step.goals = [Goal("it is prime", stage.terms.negated(is_product))]
+    monkeypatch.setattr(Question.__init__, "__defaults__", (1_000,))
+    with pytest.raises(UnsureError, match=r"^never: it is prime: the solver could not say"):
+        check(step, reach=False)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from innervate.kernel.clock import wall_s
-from innervate.prove.errors import ProveError
+from innervate.prove.errors import ProveError, UnsureError
 from innervate.prove.solve import Formulas, Question
 from innervate.prove.steps import Step
 from innervate.prove.terms import Term
@@ -75,6 +76,21 @@ def check(
         ProveError: nothing can be as the facts say, so that everything would hold; or the solver
             could not say.
     """
+    try:
+        return _checked(step, tell, tuple(simple), first_only, reach, known)
+    except UnsureError as error:
+        raise UnsureError(f"{step.name}: {error}") from None
+
+
+def _checked(
+    step: Step,
+    tell: Teller | None,
+    simple: tuple[Term, ...],
+    first_only: bool,
+    reach: bool,
+    known: Iterable[Way],
+) -> Checked:
+    """What comes of a step."""
     begun = wall_s()
     found = Checked(step.name, [goal.name for goal in step.goals])
     question = Question(Formulas(), step.facts)
@@ -87,16 +103,24 @@ def check(
             bad = next(goal for goal in step.goals if not question.holds(goal.holds))
             found.refuted = [Refuted(bad.name, question.values_found)]
         else:
-            found.refuted = list(_all_refuted(step, question, tell, tuple(simple)))
+            found.refuted = list(_all_refuted(step, question, tell, simple))
     found.wall_s = wall_s() - begun
     return found
 
 
 def _is_refuted(step: Step, question: Question) -> bool:
-    """Some goal does not hold."""
+    """Some goal does not hold: asked of all at once, or of each where that is too much."""
     wrong = [step.terms.negated(goal.holds) for goal in step.goals]
-    asked = wrong if step.singly else [step.terms.any(*wrong)]
-    return any(question.values(one) is not None for one in asked)
+    if not step.singly:
+        with suppress(UnsureError):
+            return question.values(step.terms.any(*wrong)) is not None
+    for one, goal in zip(wrong, step.goals, strict=True):
+        try:
+            if question.values(one) is not None:
+                return True
+        except UnsureError as error:
+            raise UnsureError(f"{goal.name}: {error}") from None
+    return False
 
 
 def _all_refuted(

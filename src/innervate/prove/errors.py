@@ -9,6 +9,10 @@ class ProveError(Exception):
     """What is asked for cannot be turned into a formula, or cannot be proved at all."""
 
 
+class UnsureError(ProveError):
+    """The solver could not say: it would have to think longer than it may."""
+
+
 def can_prove() -> bool:
     """True if the solver is installed."""
     try:

@@ -11,7 +11,7 @@ from typing import Any
 import z3
 from z3 import z3core as core
 
-from innervate.prove.errors import ProveError
+from innervate.prove.errors import ProveError, UnsureError
 from innervate.prove.terms import Term
 
 
@@ -174,7 +174,7 @@ class Question:
         """Values of all unknowns for which all of these hold; None if there are none.
 
         Raises:
-            ProveError: the solver could not say.
+            UnsureError: the solver could not say.
         """
         if not self._ask(self._solver(*map(self.formulas.of, wanted))):
             return None
@@ -211,7 +211,8 @@ class Question:
         if answer == z3.unsat:
             return False
         if answer != z3.sat:
-            raise ProveError(f"the solver could not say: {solver.reason_unknown()}")
+            why = f"not within {self.steps_max:,} of its steps ({solver.reason_unknown()})"
+            raise UnsureError(f"the solver could not say: {why}")
         self.model = solver.model()
         return True
 
