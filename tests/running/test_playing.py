@@ -2,6 +2,7 @@
 
 import random
 import tomllib
+from bdb import BdbQuit
 
 import pytest
 
@@ -151,3 +152,23 @@ def test_a_script_has_its_nodes_and_all_that_happens(keys, said):
     assert innervate.run(good).summary["headline"]["level"] == "ok"
     with pytest.raises(ScenarioError, match=said):
         innervate.run(good | keys)
+
+
+def test_a_protocol_that_prints_is_called_for_what_happens_alone(own, capsys):
+    (own.folder / "x.toml").write_text(story_of(use(own.folder), budget="input=2").scenario)
+    said = '    print("given", node.number, item.value)\n'
+    own.change("protocol.py", "    node.value = item.value", f"{said}    node.value = item.value")
+    assert main(["run", str(own.folder / "x.toml"), "--plain"]) == 2
+    assert capsys.readouterr().out == "given 0 7\ngiven 1 9\n"
+
+
+def test_who_leaves_the_debugger_in_a_script_has_interrupted_it(own, monkeypatch):
+    network = use(own.folder)
+    text = story_of(network, budget="input=2").scenario
+
+    def left(*_):
+        raise BdbQuit
+
+    monkeypatch.setattr(network.protocol, "on_input", left)
+    with pytest.raises(KeyboardInterrupt):
+        innervate.run(tomllib.loads(text), plain=True)

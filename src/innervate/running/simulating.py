@@ -6,6 +6,7 @@ Its `simulation` takes what is to be kept by name: plain, checks, observe, deliv
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -103,10 +104,11 @@ def simulate(
         InvariantBroken: a checker found what must not happen.
         NetworkError: in the protocol of a folder: with its file and line.
     """
-    if script_of(plan) is not None and tap is None:
-        return Result(**playing.play(plan))
-    kept = {"checks": checks, "deliveries": True, "tap": tap is not None}
     network = networks()[plan.kind]
+    if script_of(plan) is not None and tap is None:
+        with blaming.blaming(network) if network.folder is not None else nullcontext():
+            return Result(**playing.play(plan))
+    kept = {"checks": checks, "deliveries": True, "tap": tap is not None}
     if network.folder is None:
         running = simulation(plan, plain=plain, **kept)
         return _result(running, running.finish(progress, tap))
