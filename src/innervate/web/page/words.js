@@ -73,9 +73,13 @@ function tick(t_s, step) {
 
 /** What a node is that is not there: live ones go on running while they are cut off. */
 export function off(network, i) {
-  if (network.scene.source !== "live") return "switched off";
-  return network.now.cut_off[i] ? "cut off" : "does not answer";
+  const { kind, now, scene } = network;
+  if (scene.source === "live") return now.cut_off[i] ? "cut off" : "does not answer";
+  return now.absent?.[i] ? (ABSENT[kind] ?? "not there") : "switched off";
 }
+
+/** Who is not there by plan: whoever has left a team is told no other from who has not come. */
+const ABSENT = { radio: "not in the team", mesh: "yet to come" };
 
 /** The same for a legend. */
 export function offWord(network) {

@@ -180,6 +180,14 @@ def test_links_and_nodes_that_are_up(view):
     assert [int(shown["link_up"][where[pair]]) for pair in fixed] == [0, 0, 0]
 
 
+def test_who_is_yet_to_come_is_neither_on_nor_switched_off(view):
+    radios(view, n0=ALIVE, n1=OFF, n2=OFF, n3=DEAD, n4=ALIVE)  # n1 starts by itself, soon
+    view.plan.absent[2] = view.plan.absent[3] = view.plan.absent[4] = 1  # n3 came, and died
+    shown = view.arrays(False)
+    assert shown["node_up"].tolist() == [1, 1, 0, 0, 1]
+    assert shown["absent"].tolist() == [0, 0, 1, 0, 0]
+
+
 @pytest.mark.parametrize(("there", "back", "shown"), [(0, 0, 1), (-1, 0, 2), (0, -1, 2), (5, 5, 1)])
 def test_a_robots_link_is_there_while_both_hear_each_other_well(view, there, back, shown):
     """Well: as from the 50 % point and a margin on."""

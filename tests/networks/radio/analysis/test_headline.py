@@ -241,7 +241,9 @@ def test_running_stations():
     told = {i: station(4, 4) for i in range(5)}
     assert headline(of_stations(told, 5, (), 0.0, PARAMS)).text == "All 20 packets were delivered."
     four = {i: told[i] for i in range(4)}
-    assert headline(of_stations(four, 5, (4,), 0.0, PARAMS))[::2] == (DEGRADED, (4,))
+    quiet = headline(of_stations(four, 5, (4,), 0.0, PARAMS), absent="silent")
+    assert quiet[::2] == (DEGRADED, (4,))
+    assert quiet.text.startswith("Robot 4 is silent; ")  # nobody knows whether it is off
     assert headline(of_stations({}, 5, (0, 1, 2, 3, 4), 0.0, PARAMS)).level == NO_DATA
     two = {i: station(1, 1) for i in range(2)}
     assert headline(of_stations(two, 2, (), 0.0, PARAMS)).text == "Both packets were delivered."

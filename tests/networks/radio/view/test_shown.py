@@ -70,6 +70,7 @@ def test_who_left_the_team_is_told_from_who_was_switched_off(view):
     shown = view.arrays(False)
     assert (shown["unconnected"], shown["away"]) == (1, 2)
     assert shown["node_up"].tolist() == [1, 1, 0, 0, 0]
+    assert shown["absent"].tolist() == [0, 0, 0, 1, 1]
 
 
 @pytest.mark.parametrize(("mode", "name"), [("practical", "pos"), ("paper", "place")])
@@ -217,13 +218,15 @@ def test_for_how_long_nothing_was_delivered_is_noted():
 def test_running_stations_are_judged_by_what_those_that_are_on_say(monkeypatch):
     seen = []
     monkeypatch.setattr(live, "of_stations", lambda *given: given)
-    monkeypatch.setattr(live, "headline", lambda facts, label: seen.append((*facts, label(2))))
+    monkeypatch.setattr(
+        live, "headline", lambda facts, label, absent: seen.append((*facts, label(2), absent))
+    )
     state = Said({"timing": "exact"}, None, {"timing": "exact"})
     state.map.places = [Of(node=node) for node in (4, 5, 6)]
     state.map.names = ["left", "middle", "right"]
     state.told, state.still_ms = {4: state.words[0], 6: state.words[2]}, 7.0
     state.judge()
-    assert seen == [({0: state.words[0], 2: state.words[2]}, 3, (1,), 7.0, "exact", "right")]
+    assert seen == [({0: state.words[0], 2: state.words[2]}, 3, (1,), 7.0, "exact", "right", "silent")]
     assert live.RadioState.is_off_when_cut  # over the air nobody is half cut off
 
 

@@ -18,7 +18,7 @@ from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
 from innervate.plot.words import number_of
 from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
-from innervate.sim.field.states import ALIVE, DEAD, ON_AIR
+from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
@@ -197,8 +197,10 @@ class MeshView(View):
         """The state's fields for nodes and links."""
         world, ways = self.engine.world, self._ways()
         state = world.radios["state"]
+        absent = (state == OFF) & (np.array(self.plan.absent) == 1)  # others start by themselves
         fields = {
-            "node_up": (state != DEAD).astype(np.int64),
+            "node_up": ((state != DEAD) & ~absent).astype(np.int64),
+            "absent": absent.astype(np.int64),
             "link_up": self.field.link_up(world),
             "parent": ways.hop,
             "depth": ways.depth,

@@ -80,12 +80,20 @@ def timeout_us(params: Mapping[str, int], stations: int) -> int:
     return ROUNDS * stations * turn_us + max(BACKOFF_SLOTS, params.get("cw_max", 0)) * step_us
 
 
-def headline(facts: RadioFacts, label: Callable[[int], str] = str) -> Headline:
-    """The state of a team: what a person reads first of it; `label`: a station's name."""
+def headline(
+    facts: RadioFacts, label: Callable[[int], str] = str, absent: str = "off"
+) -> Headline:
+    """The state of a team: what a person reads first of it.
+
+    Args:
+        facts: what is known of it.
+        label: a station's name.
+        absent: what is said of stations that are missing: "off", "silent".
+    """
     if not facts.answering:
         return Headline(NO_DATA, "No robot answers.", tuple(range(facts.stations)))
     down, nodes = _down(facts, label)
-    worse, more = _degraded(facts, label, told=bool(down))
+    worse, more = _degraded(facts, label, absent, told=bool(down))
     if not (down or worse or facts.offered) and facts.ended:
         return Headline(NO_DATA, "No packet was offered.")
     said = [*down, *worse, *_counts(facts)]
@@ -118,7 +126,7 @@ def _down(facts: RadioFacts, label: Callable[[int], str]) -> tuple[list[str], tu
 
 
 def _degraded(
-    facts: RadioFacts, label: Callable[[int], str], told: bool
+    facts: RadioFacts, label: Callable[[int], str], absent: str, told: bool
 ) -> tuple[list[str], tuple[int, ...]]:
     """What is lost, late or cut off, the worst first; `told`: that nothing gets through is said."""
     news: list[str] = []
@@ -129,7 +137,7 @@ def _degraded(
     if facts.off and len(facts.off) + len(facts.away) < facts.stations:
         left = 0 if facts.away else facts.abandoned  # else nobody can say whose they are
         with_it = f" with {_count(left, 'packet', 'packets')} not sent" if left else ""
-        news.append(f"{_robots(map(label, facts.off))} off{with_it}")
+        news.append(f"{_robots(map(label, facts.off))} {absent}{with_it}")
         nodes |= set(facts.off)
     if facts.dropped:
         news.append(f"{_count(facts.dropped, 'packet', 'packets')} found a full queue")

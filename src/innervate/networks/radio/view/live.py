@@ -42,7 +42,7 @@ class RadioState(State):
         off = tuple(np.flatnonzero(self.node_up == 0).tolist())
         timing = next(iter(told.values()))["timing"]
         found = of_stations(told, len(places), off, self.still_ms, timing)
-        return headline(found, self.map.names.__getitem__)
+        return headline(found, self.map.names.__getitem__, absent="silent")
 
     def more(self) -> dict[str, Any]:
         """Load, what everybody does, whose turn is which."""

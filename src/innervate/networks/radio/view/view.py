@@ -187,6 +187,7 @@ class RadioView(View):
             "load": (world.stations["queued"][:count] / 16).round(3),
             "unconnected": int(np.count_nonzero(~up & ~away)),
             "away": int(np.count_nonzero(away)),
+            "absent": away.astype(np.int64),
             "flights": [],
         }
 
