@@ -10,6 +10,7 @@ MEANINGS = {
     "asked": "who alone is to respond; none: all",
     "mode": "reading of discovery: 1 tree, 2 each, 3 list",
     "count": "how many follow",
+    "listed": "how many follow, 15: so many or more",
     "neighbours": "whom the origin heard",
     "id": "a neighbour",
     "rssi": "how loud, dBm",

@@ -11,7 +11,8 @@ from innervate.networks.mesh.protocol.constants import (
     REQUEST,
     RESPONSE,
 )
-from innervate.networks.mesh.protocol.gateway import ASKED_MAX
+from innervate.networks.mesh.protocol.gateway import ASKED, ASKED_MAX, on_response
+from innervate.networks.mesh.protocol.paths import is_heard, is_known
 from innervate.networks.mesh.protocol.round import REQUEST_BYTES
 from tests.networks.mesh.bench import Bench, Frame
 
@@ -62,6 +63,34 @@ def test_who_does_not_respond_again_is_not_asked_a_third_time():
     bench.run(PERIOD + 2 * S)
     assert requests(bench) == [[], [3], []], "a new round asks all"
     assert bench.nodes[3].version == bench.gates[0].version
+
+
+def test_what_is_late_counts_while_others_are_asked_again():
+    """Not only for whom it is: who responds in two packets, of which one came, is not asked."""
+    bench = row(collect_us=800_000)  # sooner than a hop gives up
+    first = bench.nodes[3].round + 1
+    bench.lost = lambda frame, to: (
+        frame.kind == RESPONSE
+        and frame.origin == 3
+        and (bench.now < 820_000 or frame.body[2] != first)
+    )
+    bench.run(9 * S)
+    assert requests(bench) == [[], [3]]
+    assert is_known(bench.gates[0], bench.params, 2, 3)
+    assert bench.nodes[3].version == bench.gates[0].version
+
+
+@pytest.mark.parametrize("late", [-1, 2])
+def test_no_other_round_counts(late):
+    bench = row(COLLECTED)
+    bench.run(COLLECTED + S)
+    node, gate, frame = bench.nodes[0], bench.gates[0], Frame()
+    assert gate.step == ASKED
+    frame.origin, frame.length = 3, 6
+    frame.body[:6] = [node.epoch, 0, node.round - late, 3 << 4 | 1, 1, -60 & 255]
+    gate.heard = [0] * len(gate.heard)
+    on_response(node, gate, bench.params, frame, bench.out)
+    assert not is_heard(gate, bench.params, 1, 3)
 
 
 def test_where_all_respond_nothing_changes():

@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE_FREE,
 )
 from innervate.networks.mesh.protocol.frames import copy_frame, is_sound
+from innervate.networks.mesh.protocol.paths import is_known
 from tests.networks.mesh.bench import Bench, Frame
 from tests.networks.mesh.net import line, ring
 
@@ -43,6 +44,22 @@ def test_a_table_goes_by_its_own_route_which_stays_whole():
     marked = next(f for _, f in of_kind(bench, TABLE))
     marked.flags |= SOURCE_ROUTE
     assert wire.decode(wire.encode(marked), Frame()) == wire.BAD_PAYLOAD
+
+
+@pytest.mark.parametrize(("mtu", "count"), [(127, 30), (64, 30), (64, 12)])
+def test_a_response_lists_as_many_as_fit(mtu, count):
+    """Of two packets one got lost, and who had responded was not asked again."""
+    bench = settled([(0, i) for i in range(1, count + 1)] + [(1, i) for i in range(2, count + 1)],
+                    mtu=mtu)  # fmt: skip
+    lists = {f.seq: dict(wire.fields(f)) for i, f in of_kind(bench, RESPONSE) if f.origin == i == 1}
+    most = (mtu - 11 - 2 - 24 - 4) // 2
+    assert [len(one["neighbours"]) for one in lists.values()] == [
+        min(most, count - at) for at in range(0, count, most)
+    ]
+    assert all(one["listed"] == min(15, len(one["neighbours"])) for one in lists.values())
+    named = {who["id"] for one in lists.values() for who in map(dict, one["neighbours"])}
+    assert named == {0, *range(2, count + 1)}
+    assert all(is_known(bench.gates[0], bench.params, 1, who) for who in named)
 
 
 @pytest.mark.parametrize("kind", [REQUEST, RESPONSE, TABLE, TABLE_ACK])

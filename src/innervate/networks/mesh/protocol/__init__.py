@@ -158,7 +158,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            | not respond                     |                                  |                |
 | COLLECTING | `ROUND`, else                   | `collect`: `build_graph`,        | IDLE           |
 |            |                                 | `give_jobs`, `pump`              |                |
-| ASKED      | `RESPONSE`, `ROUND`             | as while COLLECTING              | IDLE           |
+| ASKED      | `RESPONSE`, `ROUND`             | as while COLLECTING; what comes  | IDLE           |
+|            |                                 | late counts, too                 |                |
 | CURRENT    | a changed table                 | `give_job`                       | TO_SEND        |
 | TO_SEND    | fewer than `jobs` under way     | `pump`, `start_job`,             | UNDER_WAY      |
 |            |                                 | `queue_parts`                    |                |
@@ -233,7 +234,8 @@ Frames
 |                 |                              | who is asked by name; flag `PRIORITY`: tables   |
 |                 |                              | stay; more copies                               |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
-|                 |                              | loud; flag `WEAK`: came over a faint link       |
+|                 |                              | loud, to the end; flag `WEAK`: came over a      |
+|                 |                              | faint link                                      |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
 |                 |                              | alternate, recipients)                          |
 | `TABLE_ACK = 4` | up                           | epoch, version, parts that are there            |
@@ -323,7 +325,8 @@ Constants and settings
 |                                                | node as deep takes                              |
 | `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
 |                                                | gateway: no patience                            |
-| `LISTED_MAX = 15`, `UPLINKS_TOLD = 3`          | neighbours in a response; without tables        |
+| `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | what a response counts its neighbours to; how   |
+|                                                | many it has without tables                      |
 | `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |
 |                                                | MTU of 64                                       |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |

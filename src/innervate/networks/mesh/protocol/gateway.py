@@ -154,13 +154,13 @@ def on_response(node, gate, params, frame, out):
     """A discovery response has reached us."""
     if frame.length < 4 or frame.body[0] != node.epoch:
         return
-    if get16(frame, 1) != node.round:
-        return
+    if (node.round - get16(frame, 1)) & MASK16 > (gate.step == ASKED):
+        return  # what is late is welcome while others are asked once more
     if frame.table_ver == 0:
         note_lost_table(gate, frame.origin)
     loudest = params.min_rssi - 1
     if frame.length > 5:
-        note_list(gate, params, frame, 4, frame.body[3] & 15)
+        note_list(gate, params, frame, 4)
         loudest = signed8(frame.body[5])
         note_heard(gate, params, frame.origin, frame.origin)
     # A faint way counts for who hears nobody well, and tells of one that it hears as faintly.

@@ -253,11 +253,11 @@ def note_path(gate, params, frame, me):
         b = a
 
 
-def note_list(gate, params, frame, at, count):
+def note_list(gate, params, frame, at):
     """The neighbours that a response lists, from byte `at` on."""
-    for k in range(count):
+    for k in range((frame.length - at) >> 1):
         who = frame.body[at + 2 * k]
-        if who < params.nodes and at + 2 * k + 1 < frame.length:
+        if who < params.nodes:
             note_heard(gate, params, who, frame.origin)
 
 

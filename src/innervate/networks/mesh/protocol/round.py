@@ -32,7 +32,7 @@ from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
 NOTHING = 0
 LOOK_AGAIN = 1
 RESPOND = 2
-LISTED_MAX = 15
+COUNTED_MAX = 15  # listed neighbours, in four bits; more go to the packet's end
 REQUEST_BYTES = 7  # and behind them who is asked by name
 SLACK = 2  # ticks: nodes count them from different moments
 UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
@@ -238,7 +238,7 @@ def open_response(node, params, now, count, out):
     if i >= 0:
         add8(node, i, node.epoch)
         add16(node, i, node.round)
-        add8(node, i, params.discovery << 4 | count)
+        add8(node, i, params.discovery << 4 | min(count, COUNTED_MAX))
     return i
 
 
@@ -250,7 +250,7 @@ def respond(node, params, now, out):
             send_up(node, params, now, i, out)
         return
     left = count_listed(node, params)
-    most = min(LISTED_MAX, (params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX - 4) >> 1)
+    most = (params.mtu - HEADER_BYTES - CRC_BYTES - PATH_MAX - 4) >> 1
     if left == 0:
         respond_faintly(node, params, now, out)
     at = 0
