@@ -40,6 +40,18 @@ def test_a_response_that_came_over_a_faint_link_does_not_make_it_one(near):
 
 
 @pytest.mark.parametrize("near", [0, 1])
+def test_nor_one_over_a_link_that_is_faint_the_other_way(near):
+    """Who sends it hears the other so: tables went that way, and came to nobody."""
+    bench = Net(9, [*LINE, (near, 7)], rssi={(near, 7): FAINT, (7, near): JUST}, discovery=LIST)
+    bench.run(SETTLED)
+    up = {frame.flags & FLAG for _, i, frame in bench.sent
+          if frame.kind == RESPONSE and (i, frame.link_dst) == (7, near)}  # fmt: skip
+    assert up == {FLAG}, "it had no other way up when it responded"
+    assert not is_known(bench.gates[0], bench.params, near, 7)
+    assert next_hop(bench, near, 7) == near + 1
+
+
+@pytest.mark.parametrize("near", [0, 1])
 def test_one_that_is_just_loud_enough_is_used(near):
     bench = line(near, JUST)
     assert is_known(bench.gates[0], bench.params, near, 7)

@@ -32,12 +32,12 @@ from innervate.networks.mesh.protocol.queue import compose, kick
 from innervate.networks.mesh.protocol.round import REQUEST_BYTES, begin, begin_anew
 from innervate.networks.mesh.protocol.search import is_edge
 from innervate.networks.mesh.protocol.table import keep_table
+from innervate.networks.mesh.protocol.upward import FAINT_DB
 
 IDLE = 0
 COLLECTING = 1
 ASKED = 2
 JITTER_UNIT_US = 10_000
-FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
 ASKED_MAX = 20  # by name: as many fit into a request at an MTU of 64
 COPIES_MORE = 4  # of the request of who takes over: the channel is full of what looks for the dead
 

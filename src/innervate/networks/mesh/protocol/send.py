@@ -17,6 +17,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE,
     TABLE_ACK,
     TABLE_FREE,
+    WEAK,
 )
 from innervate.networks.mesh.protocol.duplicates import clear_skipped, skip
 from innervate.networks.mesh.protocol.frames import add_hop, was_at
@@ -37,7 +38,7 @@ from innervate.networks.mesh.protocol.route import (
     planned,
     room_of,
 )
-from innervate.networks.mesh.protocol.upward import uplink
+from innervate.networks.mesh.protocol.upward import is_dim, uplink
 
 FAILURES_MAX = 6
 TIMEOUTS = 4  # in one call: the outbox has to hold what comes of them
@@ -124,6 +125,16 @@ def climb(node, params, now, i, out):
         if who == NOBODY:
             give_up(node, params, i, out)
             return
+    pass_up(node, params, i, who)
+
+
+def pass_up(node, params, i, who):
+    """The packet in place i climbs by way of `who`; it says so if we hear that too faintly.
+
+    What comes of it is luck: a response is sent so often that it crosses nearly any link.
+    """
+    if is_dim(node, params, place_of(node, params, who)):
+        node.q_flags[i] = node.q_flags[i] | WEAK
     pass_on(node, params, i, who)
 
 
@@ -180,7 +191,7 @@ def turn_away(node, params, failed, out):
             if is_upward(node.q_kind[i]):
                 who = uplink(node, params, i)
                 if who != NOBODY:
-                    pass_on(node, params, i, who)
+                    pass_up(node, params, i, who)
             else:
                 aim(node, params, i, out)
 

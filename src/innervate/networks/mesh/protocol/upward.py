@@ -4,10 +4,17 @@ from innervate.networks.mesh.protocol.constants import NOBODY
 from innervate.networks.mesh.protocol.duplicates import is_skipped
 from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT, UNHEARD
 
+FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
+
 
 def is_weak(node, params, k):
     """1 if the request of the neighbour in place k came in too faint to rely on."""
     return node.round_rssi[k] < params.min_rssi
+
+
+def is_dim(node, params, k):
+    """1 if it came in so faint that what crosses the link by luck makes no link (0052)."""
+    return node.round_rssi[k] < params.min_rssi - FAINT_DB
 
 
 def is_better(node, params, a, b):
