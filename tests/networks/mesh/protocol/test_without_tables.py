@@ -38,6 +38,17 @@ def test_a_packet_goes_up_and_its_ack_back_as_it_came():
     assert hops(bench, DATA, SETTLED + 200_000) == [(5, 0), (0, 1), (1, 2), (2, 3)]
 
 
+def test_what_climbs_to_the_gateway_leaves_a_way_down():
+    """Before tables are there nobody has to search: responses have come from everybody."""
+    bench = Net(9, COMB, rssi=DEAD_ENDS)
+    bench.lost = lambda frame, to: frame.kind == TABLE
+    bench.run(SETTLED)
+    assert [planned(bench.nodes[i], bench.params, 3) for i in (0, 1, 2)] == [1, 2, 3]
+    bench.send(5, 3)
+    bench.run(SETTLED + 200_000)
+    assert hops(bench, DATA, SETTLED) == [(5, 0), (0, 1), (1, 2), (2, 3)]
+
+
 def brought(bench, to, origin, sender):
     """What `to` has for `origin` after a packet of it came from `sender`."""
     frame = Frame()

@@ -24,7 +24,7 @@ none a table, and the gateway writes routes into packets.
 neighbour is suspect, and the same packet goes another way (A4): recipient, table, alternate,
 uplink, any neighbour not on the packet's path; else back to its giver (A6, A7). A duplicate cache
 drops what comes again (A12). To whom the table knows no way a packet goes up, where tables come
-first, and whoever brought a packet is the way to its origin (decision 0044).
+first, and whoever brought a packet, or what climbs, is the way to its origin (decision 0044).
 
 *End to end.* An origin keeps a message until its recipient acknowledges it; both keep to a window
 of sequence numbers, so that a retransmission is delivered once. Timeouts adapt to round trips.

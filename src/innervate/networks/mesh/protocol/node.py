@@ -94,6 +94,7 @@ from innervate.networks.mesh.protocol.retransmission import (
     retransmit,
 )
 from innervate.networks.mesh.protocol.round import on_request, step
+from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
 from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_of_gateway, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
@@ -274,6 +275,7 @@ def on_upward(node, gate, params, now, frame, out):
     """A response or a table's ack: for us if we are the gateway, else it climbs on."""
     if record_packet(node, frame):
         return
+    learn_way(node, params, frame)
     if not node.leading:
         i = take_over(node, now, CONTROL, frame, out)
         if i >= 0:
