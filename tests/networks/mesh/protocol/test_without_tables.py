@@ -3,14 +3,17 @@
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
+    ALARM,
     ALTERNATE,
     DATA,
     E2E_ACK,
     RANDOM,
     SEARCH,
     TABLE,
+    WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
+from innervate.networks.mesh.protocol.timeout import timeout
 from tests.networks.mesh.bench import Bench, Frame
 from tests.networks.mesh.net import Net
 
@@ -47,6 +50,22 @@ def test_what_climbs_to_the_gateway_leaves_a_way_down():
     bench.send(5, 3)
     bench.run(SETTLED + 200_000)
     assert hops(bench, DATA, SETTLED) == [(5, 0), (0, 1), (1, 2), (2, 3)]
+
+
+@pytest.mark.parametrize(("version", "kind", "settings", "waits_ms"), [
+    (0, DATA, {}, [1000, 2000, 3281]), (1, DATA, {}, [250, 500, 1000]),
+    (0, ALARM, {}, [250, 250, 250]), (0, DATA, {"e2e_adapt": 0}, [250, 250, 500]),
+    (0, DATA, {"mode": WHOLE_GRAPH}, [250, 500, 1000]),
+])  # fmt: skip
+def test_who_has_no_table_tries_again_later(version, kind, settings, waits_ms):
+    """Each try may be a search, and searches keep tables from coming."""
+    bench = Bench(2, [(0, 1)], **{"e2e_adapt": 1, "forget": 60, **settings})
+    node = bench.nodes[1]
+    node.version, node.wait_kind[0], node.round_trip = version, kind, 0
+    found = []
+    for node.wait_tries[0] in (1, 2, 3):
+        found.append(timeout(node, bench.params, 0) // 1000)
+    assert found == waits_ms
 
 
 def brought(bench, to, origin, sender):

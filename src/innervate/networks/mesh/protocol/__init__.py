@@ -347,6 +347,8 @@ Constants and settings
 | `LONGEST_US = 134217728`,                      | bounds of timeouts, so that sums stay below     |
 | `TICK_MAX_US = 4194304`                        | 2^30                                            |
 | `LIFETIME_TIMEOUTS = 48`                       | timeouts: how long a message may be tried       |
+| `UNTOLD = 2`                                   | decision 0044: doublings more of a timeout      |
+|                                                | where there is no table                         |
 | `SURE_AFTER = 2`                               | tries; after fewer in vain nobody is            |
 |                                                | unreachable                                     |
 | `SEARCH_BACKOFF_MAX = 3`,                      | who is unreachable is tried again after 4 to 32 |

@@ -1,22 +1,25 @@
 """How long an end-to-end ack is waited for, and how long a message is tried [mesh RELIABLE]."""
 
 from innervate.dialect.arith import MASK30
-from innervate.networks.mesh.protocol.constants import ALARM
+from innervate.networks.mesh.protocol.constants import ALARM, TABLES
 
 LONGEST_US = 1 << 27
 TICK_MAX_US = 1 << 22
+UNTOLD = 2  # doublings more of who has no table
 
 
 def timeout(node, params, w):
     """How long to wait for the end-to-end ack of the message in place w, us.
 
     Twice as long after every further retry, but for alarms: who is not there is searched
-    everywhere each time.
+    everywhere each time. Longer where there is no table yet: searches keep tables from coming.
     """
     wait = timeout_min(node, params)
     double = max(0, node.wait_tries[w] - 2)
     if params.e2e_adapt:
         double = max(0, node.wait_tries[w] - 1)
+        if params.mode == TABLES and node.version == 0:
+            double = double + UNTOLD
     if node.wait_kind[w] != ALARM:
         wait = wait << min(double, 4)
     return min(wait, timeout_max(params))
