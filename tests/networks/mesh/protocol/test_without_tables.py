@@ -6,12 +6,19 @@ from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALTERNATE,
     DATA,
+    DETOURED,
     E2E_ACK,
+    END_TO_END,
+    MESSAGES,
     RANDOM,
     SEARCH,
     TABLE,
+    TO_SEND,
+    UNDER_WAY,
     WHOLE_GRAPH,
 )
+from innervate.networks.mesh.protocol.jobs import pump
+from innervate.networks.mesh.protocol.queue import enqueue
 from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
 from innervate.networks.mesh.protocol.timeout import timeout
 from tests.networks.mesh.bench import Bench, Frame
@@ -66,6 +73,22 @@ def test_who_has_no_table_tries_again_later(version, kind, settings, waits_ms):
     for node.wait_tries[0] in (1, 2, 3):
         found.append(timeout(node, bench.params, 0) // 1000)
     assert found == waits_ms
+
+
+@pytest.mark.parametrize(("flags", "parts"), [(DETOURED | END_TO_END, 1), (END_TO_END, 0)])
+def test_messages_that_search_do_not_keep_tables_from_going_out(flags, parts):
+    """They fill the queue of a gateway, by which all go, for as long as there are no tables."""
+    bench = Net(3, COMB[:2])
+    bench.run(SETTLED)
+    node, gate = bench.nodes[0], bench.gates[0]
+    for _ in range(5):
+        i = enqueue(node, bench.now + SETTLED, MESSAGES, 1, bench.out)
+        node.q_kind[i], node.q_flags[i] = DATA, flags
+    gate.job[2], gate.job_parts[2] = TO_SEND, 0
+    pump(node, gate, bench.params, bench.now, bench.out)
+    assert gate.job[2] == UNDER_WAY
+    queued = [k for state, k in zip(node.q_state, node.q_kind, strict=True) if state]
+    assert queued.count(TABLE) == parts
 
 
 def brought(bench, to, origin, sender):

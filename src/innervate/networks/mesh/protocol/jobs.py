@@ -31,7 +31,7 @@ from innervate.networks.mesh.protocol.paths import (
     make_table,
     mark_table,
 )
-from innervate.networks.mesh.protocol.queue import compose, drop, free_places, kick
+from innervate.networks.mesh.protocol.queue import compose, drop, kick, spare_places
 from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
@@ -159,7 +159,7 @@ def queue_parts(node, gate, params, now, s, out):
         if index >= gate.job_count[s]:
             return
         if gate.job_parts[s] >> index & 1 == 0:
-            if free_places(node) <= PLACES_RESERVED:
+            if spare_places(node) <= PLACES_RESERVED:
                 gate.job_due[s] = (now + (params.job_us >> 2)) & MASK30
                 return
             queue_part(node, gate, params, now, s, index, out)

@@ -83,6 +83,15 @@ def is_searching(node, i):
     return node.q_flags[i] & DETOURED and node.q_flags[i] & END_TO_END
 
 
+def spare_places(node):
+    """How many more frames fit where what looks for a way, and will be sent again, makes room."""
+    count = free_places(node)
+    for i in range(node.places):
+        if node.q_state[i] == WAITS and node.q_rank[i] == MESSAGES and is_searching(node, i):
+            count = count + 1
+    return count
+
+
 def take_place(node, rank, out):
     """A place for a frame, or -1. Alarms and control put out the newest of what is less urgent."""
     worst = -1
