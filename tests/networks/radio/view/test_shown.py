@@ -226,7 +226,8 @@ def test_running_stations_are_judged_by_what_those_that_are_on_say(monkeypatch):
     state.map.names = ["left", "middle", "right"]
     state.told, state.still_ms = {4: state.words[0], 6: state.words[2]}, 7.0
     state.judge()
-    assert seen == [({0: state.words[0], 2: state.words[2]}, 3, (1,), 7.0, "exact", "right", "silent")]
+    told = {0: state.words[0], 2: state.words[2]}
+    assert seen == [(told, 3, (1,), 7.0, "exact", "right", "silent")]
     assert live.RadioState.is_off_when_cut  # over the air nobody is half cut off
 
 
