@@ -80,9 +80,7 @@ def timeout_us(params: Mapping[str, int], stations: int) -> int:
     return ROUNDS * stations * turn_us + max(BACKOFF_SLOTS, params.get("cw_max", 0)) * step_us
 
 
-def headline(
-    facts: RadioFacts, label: Callable[[int], str] = str, absent: str = "off"
-) -> Headline:
+def headline(facts: RadioFacts, label: Callable[[int], str] = str, absent: str = "off") -> Headline:
     """The state of a team: what a person reads first of it.
 
     Args:
