@@ -158,8 +158,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            | not respond                     |                                  |                |
 | COLLECTING | `ROUND`, else                   | `collect`: `build_graph`,        | IDLE           |
 |            |                                 | `give_jobs`, `pump`              |                |
-| ASKED      | `RESPONSE`, `ROUND`             | as while COLLECTING; what comes  | IDLE           |
-|            |                                 | late counts, too                 |                |
+| ASKED      | `RESPONSE`, `ROUND`             | as while COLLECTING, late ones   | IDLE           |
 | CURRENT    | a changed table                 | `give_job`                       | TO_SEND        |
 | TO_SEND    | fewer than `jobs` under way     | `pump`, `start_job`,             | UNDER_WAY      |
 |            |                                 | `queue_parts`                    |                |
@@ -234,8 +233,7 @@ Frames
 |                 |                              | who is asked by name; flag `PRIORITY`: tables   |
 |                 |                              | stay; more copies                               |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
-|                 |                              | loud, to the end; flag `WEAK`: came over a      |
-|                 |                              | faint link                                      |
+|                 |                              | loud; flag `WEAK`: came over a faint link       |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
 |                 |                              | alternate, recipients)                          |
 | `TABLE_ACK = 4` | up                           | epoch, version, parts that are there            |
@@ -325,8 +323,7 @@ Constants and settings
 |                                                | node as deep takes                              |
 | `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
 |                                                | gateway: no patience                            |
-| `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | what a response counts its neighbours to; how   |
-|                                                | many it has without tables                      |
+| `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | neighbours in a response: counted; table-free   |
 | `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |
 |                                                | MTU of 64                                       |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
@@ -347,8 +344,7 @@ Constants and settings
 | `LONGEST_US = 134217728`,                      | bounds of timeouts, so that sums stay below     |
 | `TICK_MAX_US = 4194304`                        | 2^30                                            |
 | `LIFETIME_TIMEOUTS = 48`                       | timeouts: how long a message may be tried       |
-| `UNTOLD = 2`                                   | decision 0044: doublings more of a timeout      |
-|                                                | where there is no table                         |
+| `UNTOLD = 2`                                   | decision 0044: doublings more without a table   |
 | `SURE_AFTER = 2`                               | tries; after fewer in vain nobody is            |
 |                                                | unreachable                                     |
 | `SEARCH_BACKOFF_MAX = 3`,                      | who is unreachable is tried again after 4 to 32 |
