@@ -40,7 +40,7 @@ def asked(station, params, size=6):
     if station.act == 0:
         return NONE
     due = next(one.b for one in out.action[: out.count[0]] if one.a == ACT)
-    window.use_slot(station, params, out)
+    window.use_slot(station, params, due, out)
     station.mode = modes.WINDOW  # and the radio listens again
     kinds = [f.kind for a, f in zip(out.action, out.frame, strict=False) if a.kind == SEND]
     return due // minislot(params, 0) if CRR in kinds else NONE

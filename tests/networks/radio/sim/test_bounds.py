@@ -29,9 +29,22 @@ def test_a_disaster_completes_whatever_the_delays(real, ta):
     assert noticed == 4 or real == (50, 104)  # a pair of 50 us may never exchange a CR-R
 
 
+@pytest.mark.parametrize(("n", "packet_slots", "ta", "real", "seed"), [
+    (10, 5, 0, (52, 208), 2),  # CR-Rs behind a reporter that had gone on to its turn
+    (20, 5, 300, (40, 48), 5006),
+    (50, 5, 2000, (52, 130), 109),  # CR-Rs over the opening of one who follows another window
+    (20, 5, 0, (1, 52), 5598),  # CR-Rs behind a turn of another round, in the window of an opening
+    (20, 5, 300, (40, 48), 5593),  # windows of bounds that were believed to be wider than needed
+])  # fmt: skip
+def test_what_answers_another_window_proves_nothing(n, packet_slots, ta, real, seed):
+    result = run(n, packet_slots, ta, seed, spread=ta + 104, real=real, checks=False)
+    assert result.counts["completed"] == n
+    assert result.counts["silent"] == 0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("ta", [0, 2000])
-@pytest.mark.parametrize(("n", "packet_slots"), [(10, 25), (5, 5)])
+@pytest.mark.parametrize(("n", "packet_slots"), [(10, 25), (5, 5), (10, 5), (20, 5), (50, 5)])
 @pytest.mark.parametrize("real", REAL)
 def test_two_hundred_disasters_complete_whatever_the_delays(real, n, packet_slots, ta):
     assert resolves(n, packet_slots, ta, real, range(1, 201)) >= 40

@@ -91,9 +91,10 @@ nobody left, by `finish` to `IDLE`.
 | `LEAD`        | `CRR`                         | `hear_slot`: proof; a good        |              |
 |               |                               | minislot, if bounds hold          |              |
 | `LEAD`        | a burst ends: noise           | `end_burst`: a bad minislot; too  | LEAD or TURN |
-|               |                               | long: `overrun`                   |              |
+|               |                               | long: `overrun`, no report        |              |
 | `LEAD`        | `MAIN`, no carrier            | `end_of_window`, `close`: report  | SEND_REPORT  |
 |               |                               | what was heard                    |              |
+| `LEAD`        | ... a frame was in it         | `close`: `enter_turn`             | TURN, IDLE   |
 | `LEAD`        | ... nothing, a pulse was due  | `close`: `retry`, or leave the    | IDLE         |
 |               |                               | round for J                       |              |
 | `LEAD`        | ... nothing, none was due     | `close`: `enter_turn`, or         | TURN, IDLE   |
@@ -107,7 +108,7 @@ nobody left, by `finish` to `IDLE`.
 | any           | `DATA`, names a place         | `hear_data`, `enter_turn`         | TURN         |
 | any           | `REPORT`                      | `hear_report`: our minislot is a  | WINDOW, TURN |
 |               |                               | place, splits or is void          |              |
-| `WINDOW`      | `ACT`                         | `use_slot`: our CR-R, or a pulse  | SEND_SLOT    |
+| `WINDOW`      | `ACT`, no frame on the air    | `use_slot`: our CR-R, or a pulse  | SEND_SLOT    |
 | `SEND_SLOT`   | radio listens                 | only the report counts now        | WINDOW       |
 | `WINDOW`      | `MAIN`                        | `pass_deadline`: wait for a       | TURN, IDLE   |
 |               |                               | report if a carrier came, else on |              |

@@ -4,7 +4,7 @@ It says so, believes in wider bounds from then on, and tells the others in its o
 """
 
 from innervate.dialect.outbox import report
-from innervate.networks.radio.protocol.constants import REPORT_BOUNDS, REPORT_WIDER, WIDE_MOST
+from innervate.networks.radio.protocol.constants import REPORT_BOUNDS, REPORT_WIDER
 from innervate.networks.radio.protocol.times import most_delay, wider_for
 
 # Which bound does not hold: b of REPORT_BOUNDS.
@@ -16,10 +16,14 @@ TOGETHER = 4  # CR-Rs of two minislots ran together
 
 
 def notice(station, params, delay, which, out):
-    """A delay of `delay` us lies outside what we believe: say so, and believe in more."""
+    """A delay of `delay` us lies outside what this sequence allows for: say so, believe in more.
+
+    Perhaps we have done that already, and no more is needed.
+    """
     report(out, REPORT_BOUNDS, delay, which)
-    if station.wide < WIDE_MOST:
-        station.wide = wider_for(params, station.wide, delay)
+    wide = wider_for(params, station.used, delay)
+    if wide > station.wide:
+        station.wide = wide
         report(out, REPORT_WIDER, most_delay(params, station.wide), 0)
 
 

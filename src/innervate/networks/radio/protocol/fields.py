@@ -79,7 +79,7 @@ PRACTICAL = (
     ("ack", 0, 0, 1, "flag", "a minislot for pulses goes ahead of it"),
     ("ref", 0, 0, 1073741823, "us", "end of the frame before the window, as we heard or sent it"),
     ("slot", 0, -1, 63, "minislot", "the one we used; -1 none"),
-    ("heard", 0, 0, 2, "flag", "a carrier came in this window; 2 = and a report is due"),
+    ("heard", 0, 0, 2, "flag", "a carrier came in this window; 2: a report is due, or doubted"),
     ("good", 2, 0, 65535, "bits", "reporter: minislots with one CR-R"),
     ("bad", 2, 0, 65535, "bits", "reporter: minislots with noise"),
     ("rest", 0, 0, 1023, "minislots", "reporter: drawn from but not yet opened"),

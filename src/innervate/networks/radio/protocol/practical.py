@@ -124,10 +124,8 @@ def carrier_came(station, now):
     if mode == IDLE:
         station.armed = 0
         station.tail = 0
-    elif mode == WINDOW:
+    elif mode == WINDOW or mode == LEAD:
         station.heard = max(station.heard, 1)
-    elif mode == LEAD:
-        station.heard = 1
     else:
         station.armed = 0
 
@@ -178,6 +176,6 @@ def on_timer(station, params, now, timer, out):
     elif station.act:
         station.act = 0
         if mode == WINDOW:
-            use_slot(station, params, out)
+            use_slot(station, params, now, out)
         elif mode == TURN and not station.cd and station.cur == station.pos:
             send_turn(station, params, now, out)

@@ -53,6 +53,7 @@ GROWTH = 4  # a window in which hardly anybody was alone
 PROBE_WINDOW = 6  # enough to see whether a span is far too small
 SPAN_MOST = 1023
 LONELY_NOTICE = 3
+DOUBTED = 2  # `heard`: CR-Rs in this window prove nothing any more
 REPORT_SLOTS = 5  # of a report without its two bits for each minislot
 
 
@@ -140,7 +141,8 @@ def check_bounds(station, params, rise, out):
     least = least_delay(params, station.used)
     if not after(rise, start):
         delay = least - ((start - rise) & MASK30) // 2
-        notice(station, params, max(delay, 0), EARLY, out)
+        if station.used == 0:  # else no delay is so short: it answers somebody else
+            notice(station, params, max(delay, 0), EARLY, out)
         return False
     within = ((rise - start) & MASK30) % minislot(params, station.used)
     if within > 2 * (most_delay(params, station.used) - least):
@@ -155,9 +157,9 @@ def hear_slot(station, params, now, out):
         station.decoded = 0
         return
     rise = (now - params.slot_us) & MASK30
-    if check_bounds(station, params, rise, out):
+    if check_bounds(station, params, rise, out) and station.heard < DOUBTED:
         prove(station, out)
-    station.heard = 1
+    station.heard = max(station.heard, 1)
     place = minislot_of(station, params, rise)
     if 0 <= place < station.window:
         set_bit(station.good, place)
@@ -171,8 +173,11 @@ def end_burst(station, params, now, length, noise, out):
         return
     if noise:
         fits = check_bounds(station, params, station.rise, out)
-        if fits and not (station.opener and length >= 2 * params.slot_us):
-            prove(station, out)  # else perhaps probes of others that collided with our opening
+        lone = station.ack and not station.opener  # nothing else can prove our packets
+        if length >= 2 * params.slot_us and not lone:
+            station.heard = DOUBTED  # perhaps a frame, and CR-Rs from now on answer that
+        elif fits and station.heard < DOUBTED:
+            prove(station, out)
         place = minislot_of(station, params, station.rise)
         if 0 <= place < station.window:
             set_bit(station.bad, place)
@@ -187,7 +192,8 @@ def run_together(station, params, length, out):
     """
     if is_slow(params) and length <= 2 * params.slot_us + params.bit_us:
         return  # as long as a turn without a packet
-    if length < 3 * params.slot_us:
+    longest = (station.window + station.ack) * minislot(params, station.used)
+    if length < 3 * params.slot_us or (station.opener and length <= longest + params.slot_us):
         if station.opener:
             station.lonely = min(station.lonely + 1, 31)
         if not station.opener or station.lonely >= LONELY_NOTICE:
@@ -196,12 +202,18 @@ def run_together(station, params, length, out):
 
 
 def overrun(station, params, now, out):
-    """Too long for CR-Rs: a frame that we could not read. It proves nothing."""
+    """Too long for CR-Rs: a frame that we could not read. Nothing in this window proves anything.
+
+    Others may follow it still, and we would take their CR-Rs for answers to our turn: it ends
+    first.
+    """
     disprove(station, NO_PROOF, out)
     station.last_ok = 0
     if station.opener:
         rest_round(station, params)
-    enter_turn(station, params, now, station.cur, out)
+    station.window = 0  # nothing is to be reported of it
+    if not station.armed:
+        close(station, params, now, out)
 
 
 def end_of_window(station, params, now, out):
@@ -212,6 +224,9 @@ def end_of_window(station, params, now, out):
 
 def close(station, params, now, out):
     """Say what was heard, if anything was; else go on with the turns."""
+    if station.window == 0:
+        enter_turn(station, params, now, station.cur, out)
+        return
     if not station.heard and station.ack:
         if station.opener:
             retry(station, params, now, 0, out)

@@ -1,5 +1,6 @@
 """Practical CSMA/CD-R, windows of somebody else: ask for a place in a minislot, read the report."""
 
+from innervate.dialect.arith import MASK30, after
 from innervate.dialect.rng import draw
 from innervate.networks.radio.protocol.bounds import adopt
 from innervate.networks.radio.protocol.constants import MINISLOTS, NO_PROOF, NONE, POSITIONS
@@ -19,6 +20,7 @@ from innervate.networks.radio.protocol.modes import (
 from innervate.networks.radio.protocol.reporter import bit
 from innervate.networks.radio.protocol.station import send_crr
 from innervate.networks.radio.protocol.times import (
+    frame_from,
     guard,
     least_delay,
     minislot,
@@ -69,8 +71,14 @@ def enter_window(station, params, now, window, fresh, span, ack, out):
     arm(station, now, wait + params.ta_us + last + farthest + 1, out)
 
 
-def use_slot(station, params, out):
-    """Send our CR-R or pulse; deaf meanwhile, we only wait for the report."""
+def use_slot(station, params, now, out):
+    """Send our CR-R or pulse; deaf meanwhile, we only wait for the report.
+
+    Never over a frame: its sender would take that for an answer to its own.
+    """
+    if station.cd and after(station.rise, station.ref):
+        if ((now - station.rise) & MASK30) >= frame_from(params, station.used):
+            return
     if station.slot != NONE and not asks(station):
         station.slot = NONE
         if station.ack:
