@@ -85,6 +85,8 @@ def test_any_order_of_events_is_played_as_it_was_explored(which, alone):
         for node, at in zip(kept, state.nodes, strict=True):
             assert tuple(tuple(value) if isinstance(value := getattr(node, name), list) else value
                          for name in names) == at.values  # fmt: skip
+        if length == 0:
+            assert run.result.handled == len(state.nodes)  # each was switched on, once
         counts = run.result.counts
         assert counts.in_flight == sum(map(len, state.ways)) >= 0
         assert counts.offered == sum("by its user" in event for event in events)

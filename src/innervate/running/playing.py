@@ -27,7 +27,7 @@ from innervate.sim.tables import row_dtype
 from innervate.verify.declared import net_of
 from innervate.verify.net import Net
 from innervate.verify.scripts import Unplayable, begins, played
-from innervate.verify.states import After, State, Step
+from innervate.verify.states import After, Budget, State, Step
 from innervate.verify.telling import sentence
 from innervate.verify.values import put
 
@@ -35,13 +35,43 @@ STEP_US = 1_000
 
 
 class Noting(Net):
-    """A network that notes what its nodes report and deliver, and how often they are called."""
+    """A network that notes what happens in a step, what its nodes report, deliver and are asked."""
 
     def __init__(self, *given: Any) -> None:
         super().__init__(*given)
+        self.forget_step()
+
+    def forget_step(self) -> None:
+        """Another step begins."""
         self.done: list[tuple[int, ...]] = []
         self.handed: list[tuple[int, ...]] = []
         self.handled = 0
+        self.counted = Counter[str]()
+
+    def begin(self, budget: Budget) -> Step:
+        """All nodes are switched on; what they did so before is no step."""
+        self.forget_step()
+        return super().begin(budget)
+
+    def arrive(self, state: State, end: int) -> After:
+        """A frame comes, and is counted."""
+        self.counted["arrived"] += 1
+        return super().arrive(state, end)
+
+    def missed(self, state: State, end: int) -> After:
+        """A frame is lost, and counted."""
+        self.counted["noise"] += 1
+        return super().missed(state, end)
+
+    def leave(self, state: State, number: int, ok: int) -> After:
+        """A frame goes out, or is counted as given up."""
+        self.counted["busy"] += not ok
+        return super().leave(state, number, ok)
+
+    def give(self, state: State, number: int, kind: int, item: dict[str, Any]) -> After:
+        """A user hands something down, which is counted."""
+        self.counted["given"] += 1
+        return super().give(state, number, kind, item)
 
     def call(self, state: State, number: int, now: int, handler: Any, *what: Any) -> After:
         """A handler of a node, and what it asked for is noted."""
@@ -73,14 +103,9 @@ class Kept:
         self.rows += [(time, *row) for row in net.done]
         self.deliveries += [(time, *row) for row in net.handed]
         self.handled += net.handled
-        came = sum(what in step.words for what in (" gets a frame ", " hears a frame "))
-        lost = sum(what in step.words for what in (" is lost", " does not hear "))
-        busy = int("is given up" in step.words)
-        under_way = sum(map(len, step.state.ways)) - sum(map(len, before.ways))
-        self.counted += Counter(
-            arrived=came, noise=lost, busy=busy, sent=under_way + came + lost + busy,
-            given=int(step.words.partition(",")[0].endswith("by its user")),
-        )  # fmt: skip
+        self.counted += net.counted
+        ended = sum(net.counted[how] for how in ("arrived", "noise", "busy"))
+        self.counted["sent"] += ended + _under_way(step.state) - _under_way(before)
 
     def counts(self, nodes: int) -> Counts:
         """What a medium would have counted."""
@@ -105,7 +130,8 @@ def play(plan: Any) -> dict[str, Any]:
     try:
         for before, step in played(net, script.steps):
             kept.note(net, before, step)
-            net.done, net.handed, net.handled, state = [], [], 0, step.state
+            net.forget_step()
+            state = step.state
             if step.broken:
                 number = len(kept.words) - (not begins(script.steps))
                 place = f"step {number} of {len(script.steps)} of its script"
@@ -124,6 +150,10 @@ def play(plan: Any) -> dict[str, Any]:
         "wall_s": wall_s() - started, "fingerprint": mark, "handled": kept.handled,
         "interrupted": False,
     }  # fmt: skip
+
+
+def _under_way(state: State) -> int:
+    return sum(map(len, state.ways))
 
 
 def _net(network: Network, plan: Any, graph: str) -> Noting:

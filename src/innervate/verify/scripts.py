@@ -86,8 +86,8 @@ def played(net: Net, steps: list[str]) -> Iterator[tuple[State, Step]]:
     """
     budget = Budget(*(len(steps),) * 3)
     first = begins(steps)
-    step = net.draws.again(drawn_of(steps[0]) if first else (), net.begin, budget)
     waits = bool(net.given) and all(is_still(one.state) for one in net.begins(budget))
+    step = net.draws.again(drawn_of(steps[0]) if first else (), net.begin, budget)
     yield step.state, looked_at(net, step, waits)
     for place, text in enumerate(steps[first:], first):
         state = step.state
