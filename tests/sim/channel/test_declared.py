@@ -110,7 +110,7 @@ def test_an_explored_collision_is_heard_as_one(talk):
     talk.change("protocol.py", "    node.busy = cd\n", "    node.busy = cd + (cd - voc)\n")
     (case,) = innervate.explore(talk.folder, graph="pair", budget="restart=0")
     assert case.story.title == "busy is out of its declared range"
-    assert case.story.sentences[-1].endswith(" is lost: n1 busy 0 to 2.")
+    assert case.story.sentences[-1] == "n1 does not hear a frame of n0: busy 0 to 2."
 
 
 @pytest.mark.parametrize(

@@ -202,6 +202,7 @@ def test_frames_and_messages_are_counted_by_name():
     assert bare(offers=9).counts() == Counts(
         nodes=3, off=(1,), sent=3, arrived=10, offered=9, delivered=52,
         lost_by={"collision": 17, "sending": 24, "noise": 31, "off": 38, "broken_off": 45},
+        is_shared=True,
     )  # fmt: skip
 
 

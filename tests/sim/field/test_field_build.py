@@ -205,7 +205,7 @@ def test_frames_and_messages_are_counted_by_name(running):
     assert running.counts() == Counts(
         nodes=3, off=(1, 2), sent=3, arrived=10, offered=73, delivered=80,
         lost_by={"collision": 17, "sending": 24, "noise": 31, "off": 38, "broken_off": 45,
-                 "busy": 59, "queue": 66},
+                 "busy": 59, "queue": 66}, is_shared=True,
     )  # fmt: skip
 
 

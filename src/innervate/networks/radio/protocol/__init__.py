@@ -277,6 +277,8 @@ Constants and settings
 |                                              | others: below `BUSY` an opening frees all places  |
 | `FAILS_MOST = 3`                             | packets without proof, then the round is left     |
 | `LONELY_MOST = 5`                            | doublings of Wr while nobody is heard             |
+| `DOUBTED = 2`                                | `heard` of a reporter: noise as long as a frame,  |
+|                                              | CR-Rs behind it prove nothing                     |
 | `LONELY_NOTICE = 3`                          | failed openings before noise counts as wrong      |
 |                                              | bounds                                            |
 | `FIRST_SPAN = 6`, `GROWTH = 4`,              | a window that was too small is drawn anew         |
