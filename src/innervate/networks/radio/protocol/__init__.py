@@ -279,8 +279,8 @@ Constants and settings
 | `LONELY_MOST = 5`                            | doublings of Wr while nobody is heard             |
 | `DOUBTED = 2`                                | `heard` of a reporter: noise as long as a frame,  |
 |                                              | CR-Rs behind it prove nothing                     |
-| `LONELY_NOTICE = 3`                          | failed openings before noise counts as wrong      |
-|                                              | bounds                                            |
+| `LONELY_NOTICE = 3`, `LONELY_LONG = 8`       | failed openings before noise counts as wrong      |
+|                                              | bounds; before noise of two minislots does        |
 | `FIRST_SPAN = 6`, `GROWTH = 4`,              | a window that was too small is drawn anew         |
 | `PROBE_WINDOW = 6`, `SPAN_MOST = 1023`       | (`plan_window`): 2.3 minislots a station by       |
 |                                              | splitting, 2.7 by drawing                         |

@@ -53,6 +53,7 @@ GROWTH = 4  # a window in which hardly anybody was alone
 PROBE_WINDOW = 6  # enough to see whether a span is far too small
 SPAN_MOST = 1023
 LONELY_NOTICE = 3
+LONELY_LONG = 8  # ... and before noise of two minislots does, which is as long as a frame
 DOUBTED = 2  # `heard`: CR-Rs in this window prove nothing any more
 REPORT_SLOTS = 5  # of a report without its two bits for each minislot
 
@@ -192,13 +193,16 @@ def run_together(station, params, length, out):
     """
     if is_slow(params) and length <= 2 * params.slot_us + params.bit_us:
         return  # as long as a turn without a packet
-    longest = (station.window + station.ack) * minislot(params, station.used)
-    if length < 3 * params.slot_us or (station.opener and length <= longest + params.slot_us):
-        if station.opener:
-            station.lonely = min(station.lonely + 1, 31)
-        if not station.opener or station.lonely >= LONELY_NOTICE:
-            delay = least_delay(params, station.used) + (length - params.slot_us) // 2
-            notice(station, params, delay, TOGETHER, out)
+    needed = LONELY_NOTICE
+    if length >= 3 * params.slot_us:
+        if not station.opener or length > 2 * minislot(params, station.used) + params.slot_us:
+            return
+        needed = LONELY_LONG
+    if station.opener:
+        station.lonely = min(station.lonely + 1, 31)
+    if not station.opener or station.lonely >= needed:
+        delay = least_delay(params, station.used) + (length - params.slot_us) // 2
+        notice(station, params, delay, TOGETHER, out)
 
 
 def overrun(station, params, now, out):
