@@ -88,6 +88,13 @@ def test_recordings_hold_every_row_and_fit_their_schemas(kind, runs, tmp_path):
     assert expected - {"/messages"} <= set(found)
 
 
+def test_alarms_of_a_recorded_mesh_are_the_robots_that_left_the_fence():
+    """As docs/export.md has it; what nodes gave to their users has the name of its table."""
+    topics = {table.name: table.topic or f"/{table.name}" for table in networks()["mesh"].tables}
+    assert topics["crossings"] == "/alarms"
+    assert topics["deliveries"] == "/deliveries"
+
+
 def test_a_recording_tells_the_states_of_a_skin(runs, tmp_path):
     done = runs["skin"]
     frames = {name: table.collect() for name, table in done.tables.items()}

@@ -42,6 +42,7 @@ CROSSINGS = Table(
         Column("overrun_m", "Float64", "m",
                "greatest distance outside until the monitor knew, else until it was back"),
     ),
+    topic="/alarms",
 )  # fmt: skip
 DELIVERIES = Table(
     "deliveries",
@@ -56,7 +57,6 @@ DELIVERIES = Table(
         Column("hops", "Int16", "hops", "transmissions on its way", "path_len"),
         Column("looped", "Boolean", "", "a node was twice on its way"),
     ),
-    topic="/alarms",
     rows="delivered",
 )
 SENT = Table(
