@@ -75,6 +75,15 @@ def test_a_mesh_that_has_just_begun_is_neither_well_nor_lost():
     assert made.fields()["headline"]["level"] == "ok"
 
 
+def test_a_skin_before_all_says_nothing_of_cells_that_have_a_way():
+    made = simulated(SKIN)
+    shown = made.fields()
+    assert shown["unconnected"] == 30
+    assert shown["headline"] == {
+        "level": "no data", "text": "Nothing has happened yet.", "nodes": []
+    }  # fmt: skip
+
+
 def test_a_plain_run_of_a_mesh_has_the_headline_of_the_compiled_one():
     event = [{"at_s": 1.5, "action": "kill", "node": 3}]
     few = {**MESH, "nodes": 6, "radio": {"mean_degree": 4}, "duration_s": 2.0, "event": event}

@@ -44,6 +44,9 @@ class Headline(NamedTuple):
         return {"level": self.level, "text": self.text}
 
 
+BEFORE_ALL = Headline(NO_DATA, "Nothing has happened yet.")
+
+
 def every(count: int, what: str) -> str:
     """All of them: "the only cell", "both cells", "all 30 cells"."""
     if count > 2:

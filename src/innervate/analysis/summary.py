@@ -10,7 +10,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
+from innervate.analysis.headline import BEFORE_ALL, DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.folders import blamed
 from innervate.network import NetworkError, networks
@@ -193,7 +193,7 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         goes_on: messages that are not delivered may still come.
     """
     if not handled:
-        return Headline(NO_DATA, "Nothing has happened yet.")
+        return BEFORE_ALL
     nodes, off = counts.nodes, counts.off
     lost, dropped = sum(counts.lost_by.values()), sum(counts.dropped_by.values())
     if nodes and len(off) == nodes:

@@ -45,6 +45,7 @@ def test_what_every_station_does_now(view):
     world = view.engine.world
     radios, stations = world.radios, world.stations
     radios["alive"][:5] = (1, 1, 1, 1, 0)
+    view.engine.now_us = 1
     stations["queued"][:] = (0, 4, 4, 4, 4)
     radios["present"][:5] = (0, 0, 1, 2, 1)
     assert view.arrays(False)["radio"]["now"] == [0, 4, 2, 3, 0]
@@ -71,6 +72,17 @@ def test_who_left_the_team_is_told_from_who_was_switched_off(view):
     assert (shown["unconnected"], shown["away"]) == (1, 2)
     assert shown["node_up"].tolist() == [1, 1, 0, 0, 0]
     assert shown["absent"].tolist() == [0, 0, 0, 1, 1]
+
+
+def test_before_all_the_stations_of_a_team_are_on_and_can_be_switched_off():
+    view = viewed(event=[{"at_s": 0.5, "action": "join", "station": 3}])
+    assert view.engine.now_us == 0
+    shown = view.arrays(False)
+    assert shown["node_up"].tolist() == [1, 1, 1, 0, 1]
+    assert (shown["unconnected"], shown["away"]) == (0, 1)
+    assert view.kill(0, False)["node"] == 0
+    with pytest.raises(Refused, match="is on"):
+        view.kill(0, True)
 
 
 @pytest.mark.parametrize(("mode", "name"), [("practical", "pos"), ("paper", "place")])
@@ -158,6 +170,7 @@ def test_those_who_are_switched_off_break_off_and_others_do_not(view):
 def test_switches_and_what_is_refused(view):
     alive = view.engine.world.radios["alive"]
     alive[:5] = (1, 0, 1, 1, 1)
+    view.engine.now_us = 1
     made = view.fault(Kill(0))
     assert (made.action, made.node, view.takes(made), view.event(made)) == (
         KILL, 0, True, {"station": 0})  # fmt: skip

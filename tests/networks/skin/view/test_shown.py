@@ -82,7 +82,7 @@ def test_samples_of_cells_that_never_had_a_way_are_not_counted_as_lost(view, mon
     told = []
     monkeypatch.setattr("innervate.networks.skin.view.view.skin_headline",
                         lambda facts, label: told.append(facts))  # fmt: skip
-    counters = view.engine.world.counters
+    view.engine.now_us, counters = 1, view.engine.world.counters
     counters[OFFERED], counters[NO_ROUTE], counters[LOST_CUT], counters[EARLY] = 100, 9, 2, 6
     apart = view.engine.world.watch.apart
     for now, most, before in (((-1, -1, -1), 2, 2), ((0, -1, -1), 1, 0), ((0, 0, -1), 1, 0),

@@ -174,10 +174,7 @@ class RadioView(View):
         now = np.where(radios["present"] > 1, SEVERAL, now)
         now = np.where(radios["deaf"] > 0, TURNING, now)
         now = np.where((radios["deaf"] > 0) & self._on_air(), SENDING, now)
-        up = radios["alive"] > 0
-        away = ~up & (radios["leaving"] > 0)
-        if self.engine.now_us == 0:  # who is yet to come
-            away = ~up & np.array(self.plan.absent or [0] * count, np.bool_)
+        up, away = self._present()
         return {
             "node_up": up.astype(np.int64),
             "radio": {
@@ -190,6 +187,15 @@ class RadioView(View):
             "absent": away.astype(np.int64),
             "flights": [],
         }
+
+    def _present(self) -> tuple[Any, Any]:
+        """Per station: it is on; it is not in the team. Who is not yet to come begins at 0."""
+        radios, count = self.engine.world.radios[: self.plan.stations], self.plan.stations
+        if self.engine.now_us == 0:
+            away = np.array(self.plan.absent or [0] * count, np.bool_)
+            return ~away, away
+        up = radios["alive"] > 0
+        return up, ~up & (radios["leaving"] > 0)
 
     def _on_air(self) -> Any:
         """Per station, true while a frame of it is on the air: not in the turnaround round it."""
@@ -243,8 +249,7 @@ class RadioView(View):
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """The fault that switches a node off, or on."""
         number("station", node, self.plan.stations)
-        alive = bool(self.engine.world.radios["alive"][node])
-        if alive == revive:
+        if bool(self._present()[0][node]) == revive:
             raise Refused("this station is on" if revive else "this station is off already")
         return {"action": JOIN if revive else KILL, "node": node}
 

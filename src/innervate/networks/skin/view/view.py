@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from msgspec import to_builtins
 
-from innervate.analysis.headline import Headline
+from innervate.analysis.headline import BEFORE_ALL, Headline
 from innervate.analysis.ways import NOWHERE
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor
@@ -217,6 +217,8 @@ class SkinView(View):
 
     def headline(self) -> Headline:
         """Is all well, and if not, what is wrong."""
+        if self.engine.now_us == 0:
+            return BEFORE_ALL
         found, most = world_facts(self.engine.world, self.cells), self.memory.apart_most
         sent, lost = self._samples()
         early = int(self.engine.world.counters[EARLY])
