@@ -112,3 +112,16 @@ def test_no_scheduler_there(four, monkeypatch):
     monkeypatch.setattr(engines, "_CONNECT_S", 1)
     with pytest.raises(SweepError, match="no scheduler answers there"):
         innervate.sweep(four, dask="tcp://127.0.0.1:1")
+
+
+@pytest.mark.parametrize(("address", "why"), [
+    ("nonsense", "missing port number"), ("http://localhost:8787", "unknown address scheme"),
+    ("tls://127.0.0.1:3", "no certificates"),
+])  # fmt: skip
+def test_no_client_is_made_for_what_is_no_address(four, address, why, monkeypatch):
+    """It would be half made, and end 20 s later with a traceback."""
+    made = []
+    monkeypatch.setattr("distributed.Client", lambda *args, **options: made.append(args))
+    with pytest.raises(SweepError, match=f"no scheduler answers there .*{why}"):
+        innervate.sweep(four, dask=address)
+    assert not made

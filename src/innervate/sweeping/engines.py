@@ -138,6 +138,7 @@ class Cluster(Engine):
         closed: Any = import_module("distributed.comm.core").CommClosedError
 
         try:
+            _look_at(address, distributed)
             self._client: Any = distributed.Client(
                 address, timeout=_CONNECT_S, set_as_default=False
             )
@@ -180,6 +181,22 @@ class Cluster(Engine):
             self._pool.shutdown(wait=False)
         with suppress(Exception):
             self._client.close(timeout=5)
+
+
+def _look_at(address: str, distributed: Any) -> None:
+    """Refuse what cannot be connected to, before a client tries: one that an error leaves half made
+    is rid of after 20 s, with a traceback.
+
+    Raises:
+        ValueError: no address, or one that needs certificates, and there are none.
+        ImportError: what its scheme needs is missing.
+    """
+    if address.startswith("inproc://"):  # of a cluster within this process
+        return
+    import_module("distributed.comm").get_address_host_port(address)
+    safe = distributed.Security().get_connection_args("client")
+    if address.startswith("tls://") and safe.get("ssl_context") is None:
+        raise ValueError("Dask's configuration has no certificates, distributed.comm.tls")
 
 
 @contextmanager
