@@ -87,6 +87,12 @@ def test_nobody_is_cut_off_for_no_time_between_two_events_of_one_moment():
     assert found["cut_off"]["since_s"] == 0.5
 
 
+def test_of_cells_that_were_cut_off_one_after_the_other_only_the_first_is_since_then():
+    first = {"at_s": 0.5, "action": "cut", "cell": FOURTH | {"port": "E"}}
+    found = summary(first, {**CUT_0, "at_s": 0.7})
+    assert found["headline"]["text"].startswith("All 8 cells are cut off, the first since 0.500 s:")
+
+
 def test_a_cable_that_is_cut_twice_is_put_back_once():
     twice = [CUT_0, {**CUT_0, "at_s": 0.6}, {"at_s": 0.7, "action": "restore", "interface": 0}]
     found = summary(*twice, columns=4, rows=4)

@@ -38,7 +38,7 @@ def one(value, others, at=2):
     ({"apart": one(0, NEVER), "joined": one(0, 1), "routed": one(0, 1)},
      {"cut_off": [2], "since_s": 0.0}),  # from the very beginning
     ({"apart": [NEVER, 2_500_000, 1_500_000, NEVER], "joined": [1, 0, 0, 1]},
-     {"cut_off": [1, 2], "since_s": 1.5}),
+     {"cut_off": [1, 2], "since_s": 1.5, "at_once": False}),
     ({"routed": one(0, 1)}, {"seeking": [2]}),
     ({"routed": one(0, 1), "had": one(0, 1)}, {"seeking": [2], "never": [2]}),
     ({"had": one(0, 1)}, {}),  # it has a way

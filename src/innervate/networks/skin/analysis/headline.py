@@ -25,6 +25,7 @@ class SkinFacts(NamedTuple):
         seeking: cells that are on and that cables join with the PC, but that have no way to it.
         never: those of `seeking` that have not had a way since they were first switched on.
         since_s: when the first of `cut_off` was cut off; None = unknown.
+        at_once: all of them were cut off then.
         pc_off: the PC is switched off, or does not answer.
         cut_off_before: most cells that were cut off at the same time and are not any more; a live
             page, which shows the moment, leaves it at 0.
@@ -40,6 +41,7 @@ class SkinFacts(NamedTuple):
     seeking: Collection[int] = ()
     never: Collection[int] = ()
     since_s: float | None = None
+    at_once: bool = True
     pc_off: bool = False
     cut_off_before: int = 0
     sent: int = 0
@@ -76,7 +78,8 @@ def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
     if facts.pc_off:
         found.append("the PC is switched off: no cell has a way to it")
     elif facts.cut_off:
-        since = "" if facts.since_s is None else f" since {facts.since_s:.3f} s"
+        first = "" if facts.at_once else ", the first"
+        since = "" if facts.since_s is None else f"{first} since {facts.since_s:.3f} s"
         who, verb, them = _who(facts, facts.cut_off, label)
         why = f"no cable joins {them} with the PC any more"
         found.append(f"{who} {verb} cut off{since}: {why}")

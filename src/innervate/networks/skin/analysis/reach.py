@@ -49,6 +49,7 @@ def world_facts(world: Any, cells: int) -> SkinFacts:
         seeking=np.flatnonzero(seeking).tolist(),
         never=np.flatnonzero(seeking & (np.array(watch.had) == 0)).tolist(),
         since_s=int(apart[cut_off].min()) / 1e6 if cut_off.any() else None,
+        at_once=len(np.unique(apart[cut_off])) < 2,
         pc_off=int(alive[cells]) == DEAD,
         missed=missed_on_the_way(world, cells),
     )
