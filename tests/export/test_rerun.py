@@ -168,12 +168,13 @@ def test_a_mesh_shows_its_robot_its_dead_and_its_alarms(mesh):
 
 
 LINKS = {"kind": "mesh", "duration_s": 1, "link": [{"a": "x", "b": "y"}]}
+FIELD = {"kind": "flooding", "nodes": 3, "duration_s": 1}  # has places, and no view in space
 
 
-@pytest.mark.parametrize("keys", [RADIO, LINKS])
+@pytest.mark.parametrize("keys", [RADIO, LINKS, FIELD])
 def test_what_has_no_places_is_refused(keys, tmp_path):
     plan = scenario.plan(scenario.from_dict(keys))
-    with pytest.raises(ExportError, match="have no places"):
+    with pytest.raises(ExportError, match=f"no view in space of this {keys['kind']};"):
         rrd.write(plan, {}, tmp_path / "no.rrd")
     assert not list(tmp_path.iterdir())
 

@@ -26,11 +26,11 @@ def check(plan: Any) -> None:
     """Say whether there is something to show.
 
     Raises:
-        ExportError: the network has no places.
+        ExportError: the network has no places, or shows none.
         ModuleNotFoundError: Rerun's package is missing.
     """
     if not networks()[plan.kind].has_places(plan):
-        raise ExportError("--rerun shows where nodes are, and these have no places; try --mcap")
+        raise ExportError(f"--rerun has no view in space of this {plan.kind}; try --mcap")
     import rerun  # noqa: F401
 
 
