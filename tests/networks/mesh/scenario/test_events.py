@@ -2,8 +2,10 @@
 
 from typing import Any
 
+import pytest
+
 from innervate.networks.mesh.scenario.plan import MeshPlan
-from innervate.scenario import loads, plan
+from innervate.scenario import ScenarioError, loads, plan
 from innervate.scenario.actions.field import KILL, REVIVE
 
 
@@ -37,3 +39,17 @@ def test_a_restart_revives_and_random_events_know_it() -> None:
     p = made(text)
     assert [f.node for f in p.faults if f.action == KILL] == [2, 1, 2, 3]
     assert [f.node for f in p.faults if f.action == REVIVE] == [1, 2]
+
+
+@pytest.mark.parametrize(("tail", "said"), [
+    ("[[flow]]\nfrom = 'random'\nto = 1\npairs = 2", "but only 1 node can be drawn"),
+    ("nodes = 3\n[[flow]]\nfrom = 'random'\nto = 1\npairs = 3", "but only 2 nodes can be drawn"),
+    ("[[event]]\nat_s = 1\naction = 'kill'\nrandom = 2", "but there is 1 node that is alive and"),
+    ("[[event]]\nat_s = 1\naction = 'revive'\nrandom = 2", "but there are no nodes that are dead"),
+    ("[radio]\nmean_degree = 3", "but there is 1 other; "),
+    ("[clusters]\ngateways = 1\nrun = 2", "but there is 1 cluster; "),
+])  # fmt: skip
+def test_a_single_one_that_is_left_to_be_drawn_is_counted_as_one(tail: str, said: str) -> None:
+    with pytest.raises(ScenarioError) as found:
+        made(tail if tail.startswith("nodes") else f"nodes = 2\n{tail}")
+    assert said in str(found.value)

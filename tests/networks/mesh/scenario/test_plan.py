@@ -352,6 +352,8 @@ def test_what_check_says() -> None:
     assert text.count("kill n") == 8
     assert "nodes      86, gateway 2" in check("mesh-leipzig")
     assert "standby n1, n2" in check("mesh-standby")
+    two = check(loads('kind = "mesh"\n[[link]]\na = "x"\nb = "y"'))
+    assert ", 1 good link, 1.0 a node, at most 1 hop from" in two
 
 
 def test_warnings() -> None:

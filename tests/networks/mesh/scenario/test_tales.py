@@ -45,7 +45,7 @@ def test_random_events_hit_what_is_whole():
     """Not who is dead, who is spared, or who is away until an event switches it on."""
     there = [kill(1.0, random=1), EVENT(at_s=9.0, action="revive", node=3)]
     assert told(*there, spared=(0, 1, 4))[0][2] == (2, 0)
-    with pytest.raises(ScenarioError, match="there are 1 nodes that are alive and no flow's end"):
+    with pytest.raises(ScenarioError, match="there is 1 node that is alive and no flow's end"):
         told(kill(1.0, random=2), there[1], spared=(0, 1, 4))
     there = [kill(2.0, random=2), kill(1.0, node=2)]
     assert [whom for *_, whom, _ in told(*there, spared=(0, 1))] == [(2, 0), (3, 0), (4, 0)]
@@ -66,14 +66,14 @@ def test_random_repairs_hit_what_is_broken():
                  EVENT(at_s=3.0, action="restore", random=4))  # fmt: skip
     assert sorted(whom for _, what, whom, _ in found if what == "cut") == GOOD
     assert [whom for _, what, whom, _ in found if what == "restore"] == GOOD
-    with pytest.raises(ScenarioError, match="there are 1 links that are whole"):
+    with pytest.raises(ScenarioError, match="there is 1 link that is whole"):
         told(cut, EVENT(at_s=2.0, action="cut", random=2))
     with pytest.raises(ScenarioError, match="there are 2 links that are cut"):
         told(cut, EVENT(at_s=2.0, action="restore", link=("n1", "n2")),
              EVENT(at_s=3.0, action="restore", random=3),
              EVENT(at_s=2.5, action="cut", link=("n1", "n2")),
              EVENT(at_s=2.7, action="restore", link=("n2", "n1")))  # fmt: skip
-    with pytest.raises(ScenarioError, match="there are 1 nodes that are dead"):
+    with pytest.raises(ScenarioError, match="there is 1 node that is dead"):
         told(kill(1.0, node=2), EVENT(at_s=2.0, action="revive", random=2))
 
 

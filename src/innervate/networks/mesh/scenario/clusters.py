@@ -14,7 +14,7 @@ import msgspec
 
 from innervate.networks.mesh.scenario.model import ClustersTable, MeshScenario
 from innervate.networks.mesh.scenario.network import Network
-from innervate.networks.mesh.scenario.nodes import Nodes
+from innervate.networks.mesh.scenario.nodes import Nodes, there_are
 from innervate.networks.mesh.scenario.plan import ONE, MeshRadio
 from innervate.topology import clusters
 from innervate.topology.placement import neighbours
@@ -75,7 +75,8 @@ def _gateways(
     if isinstance(table.gateways, int):
         able = [node for node in range(len(near)) if node not in robots]
         if table.gateways > len(able):
-            message = f"clusters.gateways = {table.gateways}, but there are {len(able)} nodes"
+            there = there_are(len(able), "node")
+            message = f"clusters.gateways = {table.gateways}, but {there}"
             raise nodes.source.error(key, message)
         return clusters.heads(near, table.gateways, able)
     found: list[int] = []

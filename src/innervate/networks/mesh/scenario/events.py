@@ -6,7 +6,7 @@ from collections.abc import Collection
 from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
-from innervate.networks.mesh.scenario.nodes import Nodes
+from innervate.networks.mesh.scenario.nodes import Nodes, are, there_are
 from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.scenario.actions.field import ACTIONS, TABLE
 from innervate.scenario.events import at_us
@@ -138,8 +138,9 @@ def _hits(
             which = {
                 "revive": "dead", "cut": "whole", "restore": "cut", "quiet": "jammed",
             }.get(event.action, "alive and no flow's end, robot, gateway or monitor")  # fmt: skip
-            message = f"event.{index}.random = {event.random}, but there are {len(free)} "
-            message += f"{target_of(event.action)}s that are {which}"
+            there = there_are(len(free), target_of(event.action))
+            message = f"event.{index}.random = {event.random}, but {there} that "
+            message += f"{are(len(free))} {which}"
             raise nodes.source.error(("event", index, "random"), message)
         return sorted(free.pop(draw.draw(len(free))) for _ in range(event.random))
     named = [event.node] if event.link is None else list(event.link)

@@ -91,6 +91,21 @@ def listed(names: list[str], most: int = 4) -> str:
     return ", ".join(names[:most]) + more
 
 
+def count_of(number: int, thing: str) -> str:
+    """A count with its noun: "no holes", "1 good link", "12 nodes"."""
+    return f"{number or 'no'} {thing}{'s' if number != 1 else ''}"
+
+
+def there_are(number: int, thing: str) -> str:
+    """How many there are: "there is 1 node", "there are 9 nodes"."""
+    return f"there {are(number)} {count_of(number, thing)}"
+
+
+def are(number: int) -> str:
+    """The verb that goes with a count."""
+    return "is" if number == 1 else "are"
+
+
 def nodes_of(model: MeshScenario, source: Source) -> Nodes:
     """The nodes of a scenario.
 

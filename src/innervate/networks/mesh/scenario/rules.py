@@ -7,7 +7,13 @@ from collections.abc import Iterator
 from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
-from innervate.networks.mesh.scenario.nodes import NODES_MAX, RESERVED, most_of, too_many
+from innervate.networks.mesh.scenario.nodes import (
+    NODES_MAX,
+    RESERVED,
+    most_of,
+    there_are,
+    too_many,
+)
 from innervate.scenario.actions.field import TABLE
 from innervate.scenario.events import Finding, in_time, own_keys, refuse
 from innervate.scenario.source import Source, shown
@@ -107,7 +113,7 @@ def _clusters(model: MeshScenario) -> Iterator[Finding]:
         message = f"clusters.gateways must be 1 to {CLUSTERS_MAX} of them, not {count}"
         yield ("clusters", "gateways"), message
     if table.run > count:
-        message = f"clusters.run = {table.run}, but there are {count} clusters; make it smaller"
+        message = f"clusters.run = {table.run}, but {there_are(count, 'cluster')}; make it smaller"
         yield ("clusters", "run"), message
     if model.gateway is not None:
         yield ("gateway",), "clusters.gateways says who leads; leave gateway out"
@@ -142,8 +148,9 @@ def _radio(model: MeshScenario) -> Iterator[Finding]:
         if model.radio.mean_degree > count - 1:
             yield (
                 ("radio", "mean_degree"),
-                f"radio.mean_degree = {model.radio.mean_degree:g}, but there are {count - 1} "
-                f"others; {'make it smaller' if count > 1 else 'leave it out'}",
+                f"radio.mean_degree = {model.radio.mean_degree:g}, but "
+                f"{there_are(count - 1, 'other')}; "
+                f"{'make it smaller' if count > 1 else 'leave it out'}",
             )
         if model.placement.layout != "random" and not model.node:
             yield (

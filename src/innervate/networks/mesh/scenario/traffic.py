@@ -9,7 +9,7 @@ import msgspec
 from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.protocol.messages import payload_limit
 from innervate.networks.mesh.scenario.model import FlowTable, MeshScenario
-from innervate.networks.mesh.scenario.nodes import RESERVED, Nodes
+from innervate.networks.mesh.scenario.nodes import RESERVED, Nodes, count_of
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.radio.scenario.traffic import exponential
 from innervate.trace.streams import Stream, stream
@@ -91,7 +91,8 @@ def _pairs(
 def _drawn(nodes: Nodes, index: int, flow: FlowTable, free: list[int], draw: Stream) -> list[int]:
     """So many senders, drawn from those that are free."""
     if flow.pairs > len(free):
-        message = f"flow.{index}.pairs = {flow.pairs}, but only {len(free)} nodes can be drawn"
+        left = f"only {count_of(len(free), 'node')}" if free else "no node"
+        message = f"flow.{index}.pairs = {flow.pairs}, but {left} can be drawn"
         raise nodes.source.error(("flow", index, "pairs"), message)
     return [free.pop(draw.draw(len(free))) for _ in range(flow.pairs)]
 

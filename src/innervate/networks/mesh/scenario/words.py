@@ -16,7 +16,7 @@ from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.foreseen import foreseen
 from innervate.networks.mesh.scenario.model import MeshScenario
-from innervate.networks.mesh.scenario.nodes import RESERVED, listed
+from innervate.networks.mesh.scenario.nodes import RESERVED, count_of, listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
 from innervate.scenario.actions.field import JAM
 from innervate.scenario.events import opening, told
@@ -46,18 +46,19 @@ def describe(made: MeshPlan) -> str:
         opening(made),
         *_cluster(made),
         f"  nodes      {made.nodes}, gateway {made.names[gateway]}{standby}, monitor {monitor}",
-        f"  radio      {model.radio.profile}, {made.mac}, {len(made.good)} good links, "
-        f"{degree:.1f} a node, at most {max(hops)} hops from the gateway",
+        f"  radio      {model.radio.profile}, {made.mac}, {count_of(len(made.good), 'good link')}, "
+        f"{degree:.1f} a node, at most {count_of(max(hops), 'hop')} from the gateway",
         f"  protocol   discovery {model.protocol.discovery}, "
         f"failover {forwarding(made)}, MTU {params['mtu']}, "
         f"a round every {params['period'] * params['tick_us'] / 1e6:g} s",
     ]
     if made.offers:
-        lines.append(f"  messages   {len(made.offers):,} in {_count(len(model.flow), 'flow')}")
+        lines.append(f"  messages   {len(made.offers):,} in {count_of(len(model.flow), 'flow')}")
     if model.fence is not None:
-        holes = _count(len(model.fence.holes), "hole")
+        corners = count_of(params["points"], "corner")
+        holes = count_of(len(model.fence.holes), "hole")
         lines.append(
-            f"  fence      {_count(params['points'], 'corner')}, {holes}, {params['unit_cm']} cm, "
+            f"  fence      {corners}, {holes}, {params['unit_cm']} cm, "
             f"robots sampled at {1e6 / made.sample_us:g} Hz"
         )
     if made.walks:
@@ -181,7 +182,7 @@ def _thin(made: MeshPlan, near: list[list[int]], gateway: int) -> list[str]:
     if len(near[gateway]) < GATEWAY_MIN:
         name = made.names[gateway]
         found.append(
-            f"the gateway {name} has {_count(len(near[gateway]), 'neighbour')}; "
+            f"the gateway {name} has {count_of(len(near[gateway]), 'neighbour')}; "
             f"{GATEWAY_MIN} keep it reachable when some fail"
         )
     return found
@@ -200,7 +201,3 @@ def fault_words(made: MeshPlan, fault: MeshFault) -> str:
         what += f" - {made.names[fault.other]}"
     more = f" with {fault.value / 100:g} dBm" if fault.action == JAM else ""
     return f"at {fault.at_us / 1e6:g} s {event.action} {what}{more}"
-
-
-def _count(number: int, word: str) -> str:
-    return f"{number or 'no'} {word}{'s' if number != 1 else ''}"
