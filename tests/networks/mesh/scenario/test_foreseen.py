@@ -52,6 +52,43 @@ def test_faint_links_lead_too_as_long_as_most_messages_come_over_them():
         assert line(*events, kill("n4"), link=[*LINE, *around]) == said
 
 
+BAD = (
+    ": every way to n0, the gateway, has a link on which less than 25 % of transmissions are "
+    "acknowledged; retries do not make up for that, and many messages will not come; the worst is "
+)
+
+
+@pytest.mark.parametrize(("qualities", "said"), [
+    ((1, 0.5, 0.5, 1), []),
+    ((1, 0.9, 0.22, 1), ["n3, n4" + BAD + "n3 - n2: there 22 % arrive, back 22 %, so 4.8 % are "
+                         "acknowledged"]),
+    ((0.05, 1, 1, 0.4), ["n1, n2, n3, n4" + BAD + "n1 - n0: there 5 % arrive, back 5 %, so 0.25 % "
+                         "are acknowledged"]),
+    ((1, 1, 1, (1, 0.2)), ["n4" + BAD + "n4 - n3: there 20 % arrive, back 100 %, so 20 % are "
+                           "acknowledged"]),
+])  # fmt: skip
+def test_who_is_reached_over_bad_links_alone_is_told_with_their_numbers(qualities, said):
+    links = [one | {"quality": share} for one, share in zip(LINE, qualities, strict=True)]
+    assert line(link=links) == said
+
+
+def test_a_bad_link_is_nothing_where_a_good_way_leads_round_it():
+    assert line(link=[*LINE, {"a": "n0", "b": "n4", "quality": 0.05}]) == []
+    assert line(link=[{**one, "quality": 0.1} for one in LINE]) != []
+    star = [{"a": "n0", "b": f"n{i}", "quality": 0.6} for i in (2, 3, 4)]
+    assert line(link=[{**one, "quality": 0.1} for one in LINE] + star) == [
+        "n1" + BAD + "n1 - n0: there 10 % arrive, back 10 %, so 1 % are acknowledged"
+    ]
+
+
+def test_who_was_never_reached_is_told_once_and_who_loses_a_bad_link_twice():
+    links = [{**one, "quality": 0.1 if i == 3 else 1} for i, one in enumerate(LINE)]
+    (said,) = line(kill("n1"), link=[*links, {"a": "n0", "b": "n2"}])
+    assert said.startswith("n4" + BAD)
+    links = [{**one, "quality": 0.4 if i == 3 else 1} for i, one in enumerate(LINE)]
+    assert len(line((10, "cut", {"link": ["n3", "n4"]}), link=links)) == 2
+
+
 def test_a_monitor_that_is_off_learns_of_nothing():
     assert line(kill("n4"), monitor="n4") == ["the monitor n4 is off at the end"]
     assert line(kill("n4"), (20, "revive", {"node": "n4"}), monitor="n4") == []
