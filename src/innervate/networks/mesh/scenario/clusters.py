@@ -135,6 +135,7 @@ def _part(network: Network, members: list[int]) -> Network:
             {(number[a], number[b]): both for (a, b), both in nodes.links.items()
              if a in number and b in number},
             nodes.names,
+            nodes.left_out,
         ),
         points=[network.points[old] for old in members] if network.points else [],
         radio=replace(

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from innervate.networks.mesh.scenario.left_out import left_out
 from innervate.networks.mesh.scenario.model import ImportTable, MeshScenario
 from innervate.scenario.bundled import FOLDER
 from innervate.scenario.lines import Key
@@ -32,6 +35,7 @@ class Nodes:
         points: per node (x, y) in cm; empty where none are given.
         links: (a, b) with a < b -> quality a to b and b to a, if links are given.
         everybody: of one cluster of several: the names of all, by which numbers in the file go.
+        left_out: why a name that is none here is in an imported file all the same; "" if it is not.
     """
 
     source: Source
@@ -39,6 +43,7 @@ class Nodes:
     points: list[Point] = field(default_factory=list)
     links: dict[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
     everybody: list[str] = field(default_factory=list)
+    left_out: Callable[[str], str] = lambda _: ""
     _numbers: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -59,6 +64,8 @@ class Nodes:
             raise self.source.error(key, message)
         if given in self._numbers:
             return self._numbers[given]
+        if why := self.left_out(given):
+            raise self.source.error(key, f"{dotted(key)}: {why}")
         hint = alike(given, self.everybody or self.names)
         raise self.source.error(key, f"{dotted(key)}: there is no node {shown(given)}{hint}")
 
@@ -159,7 +166,7 @@ def _imported(model: MeshScenario, source: Source) -> Nodes:
         message = f"{table.file or table.topohub}: {error}"
         raise source.error(("import", error.subject or "min_tq"), message) from None
     if table.around is not None or table.nodes is not None:
-        middle = _middle(table, whole, found, source)
+        middle = _middle(model, whole, found, source)
         found = found.around(middle, table.nodes or most_of(model))
     elif table.largest_component:
         found = found.largest()
@@ -173,7 +180,8 @@ def _imported(model: MeshScenario, source: Source) -> Nodes:
         if name in found.names:
             message = f"a node is called {shown(name)}, which means something else; rename it"
             raise source.error(("import",), f"{table.file or table.topohub}: {message}")
-    return Nodes(source, found.names, found.points, dict(found.links))
+    why = partial(left_out, table, whole, most=most_of(model))
+    return Nodes(source, found.names, found.points, dict(found.links), left_out=why)
 
 
 def found_at(table: ImportTable, source: Source) -> measured.Measured:
@@ -192,17 +200,18 @@ def found_at(table: ImportTable, source: Source) -> measured.Measured:
 
 
 def _middle(
-    table: ImportTable, whole: measured.Measured, found: measured.Measured, source: Source
+    model: MeshScenario, whole: measured.Measured, found: measured.Measured, source: Source
 ) -> int:
     """The node that import.around names; left out, the best connected one."""
+    table = model.import_
+    assert table is not None
     if table.around is None:
         return found.best_connected()
     name, key = str(table.around), ("import", "around")
     if name in found.names:
         return found.names.index(name)
-    if name in whole.names:
-        message = f"no link of {shown(name)} has a quality of {table.min_tq:g} or better both ways"
-        raise source.error(key, f"import.around: {message}; lower import.min_tq, or name another")
+    if why := left_out(table, whole, name, most_of(model)):
+        raise source.error(key, f"import.around: {why}")
     hint = alike(name, whole.names)
     raise source.error(key, f"import.around: there is no node {shown(name)}{hint}")
 
