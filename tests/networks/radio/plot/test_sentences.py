@@ -6,7 +6,11 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
+from innervate.networks.radio.analysis.summary import summarize
 from innervate.networks.radio.plot import report, slotted_report
+from innervate.networks.radio.protocol.constants import REPORT_COLLISION
+from innervate.networks.radio.sim.simulate import simulate
+from innervate.scenario import from_dict, plan
 
 
 def run_of(*arrivals, ended_us=2_000_000):
@@ -70,8 +74,36 @@ def test_how_many_that_arrived_were_delivered(delivered, median, end):
 def test_how_many_frames_met(monkeypatch, members, struck, said):
     found = Of(members=np.array(members), collision=np.array(struck, bool))
     monkeypatch.setattr(report.air, "groups", lambda _: found)
+    monkeypatch.setattr(report.air, "taken_for_collided", lambda _: 0)
     assert report._collisions(None, {"collisions": sum(struck)}) == [said]
     assert report._collisions(None, {"collisions": 0}) == ["No packet collided with another one."]
+
+
+@pytest.mark.parametrize(("mac", "taken"), [
+    ("csma-cd-r", True), ("dcf", True), ("nonpersistent", True), ("polling", False),
+])  # fmt: skip
+def test_a_robot_alone_takes_its_transmissions_for_collided_and_the_report_says_why(mac, taken):
+    """Every such row of the table is one of those that the sentence counts."""
+    tables = {"kind": "radio", "duration_s": 0.4, "stations": 1, "packet_slots": 25,
+              "protocol": {"mac": mac}}  # fmt: skip
+    result = simulate(plan(from_dict(tables)), plain=True)
+    rows = int(np.count_nonzero(result.rows["code"] == REPORT_COLLISION))
+    said = report._collisions(result, {"collisions": 0})
+    assert said[0] == "No packet collided with another one."
+    assert bool(rows) == taken
+    why = "a sender cannot tell a collision from an answer that is missing."
+    sentence = f"{rows} transmissions that met no other robot's were taken for collided: {why}"
+    assert said[1:] == ([sentence] if taken else [])
+
+
+@pytest.mark.parametrize("mac", ["csma-cd-r", "csma-cd-d1", "csma-cd-d2", "tree"])
+def test_nobody_takes_for_collided_what_met_nobody_where_all_hear_all(mac):
+    tables = {"kind": "radio", "duration_s": 0.3, "stations": 4, "packet_slots": 25,
+              "protocol": {"mac": mac}, "traffic": {"kind": "saturated"}}  # fmt: skip
+    result = simulate(plan(from_dict(tables)), plain=True)
+    assert np.count_nonzero(result.rows["code"] == REPORT_COLLISION)
+    (said,) = report._collisions(result, {"collisions": summarize(result)["collisions"]})
+    assert "at once" in said or "one collision" in said
 
 
 @pytest.mark.parametrize(("count", "said"), [

@@ -32,7 +32,8 @@ def test_a_time_in_both_units():
     (REPORT_DELIVERED, 1, "packet delivered"), (REPORT_DELIVERED, 2, "2 packets delivered"),
     (REPORT_FAILED, NO_PROOF, "packet not delivered, stays in the queue: nobody confirmed it"),
     (REPORT_FAILED, 99, "packet not delivered, stays in the queue: reason 99"),
-    (REPORT_ROLE, 0, "role after a collision: 4"), (REPORT_COLLISION, 9, "own collision noticed"),
+    (REPORT_ROLE, 0, "role after a collision: 4"),
+    (REPORT_COLLISION, 9, "own transmission taken for collided"),
 ])  # fmt: skip
 def test_a_report_in_words(code, b, said):
     assert words.report_words("csma-cd-r/practical", code, 4, b) == said

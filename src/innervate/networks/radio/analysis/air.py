@@ -6,12 +6,18 @@ moment of any run. Times are us of true time; intervals hold their first moment,
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from innervate.dialect.access import REPORT_LEFT
-from innervate.networks.radio.protocol.constants import CRR, DATA, OPEN, REPORT_STOPPED
+from innervate.networks.radio.protocol.constants import (
+    CRR,
+    DATA,
+    OPEN,
+    REPORT_COLLISION,
+    REPORT_STOPPED,
+)
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
@@ -101,10 +107,7 @@ def _stop(rows: Any, node: Numbers, start: Numbers, end: Numbers) -> None:
     stops = rows[rows["code"] == REPORT_STOPPED]
     if len(stops) == 0:
         return
-    mine = np.lexsort((start, node))
-    key = (node[mine] << 44) | start[mine]
-    found = np.searchsorted(key, (stops["node"].astype(np.int64) << 44) | stops["time"], "right")
-    cut = mine[found - 1]
+    cut = _latest(node, start, stops)
     end[cut] = np.minimum(end[cut], stops["time"])
 
 
@@ -142,6 +145,33 @@ def groups(result: Any, on_air: Air | None = None) -> Groups:
     carrying = np.bincount(of, np.isin(found.kind, CARRYING))
     end = np.maximum.reduceat(found.end, first)
     return Groups(of, found.start[first], end, members, (members > 1) & (carrying > 0))
+
+
+def taken_for_collided(result: Any) -> int:
+    """How many transmissions that met no other station's their senders took for collided.
+
+    Mostly since nobody answered: a sender cannot tell that from a collision.
+    """
+    on_air = air(result)
+    told = result.rows[result.rows["code"] == REPORT_COLLISION]
+    if len(told) == 0 or len(on_air.start) == 0:
+        return 0
+    sent = np.unique(_latest(on_air.node, on_air.start, told, "left"))  # the next may begin now
+    far = max((max(row) for row in result.plan.delays_us), default=0)
+    of = groups(result, on_air._replace(end=on_air.end + far)).of  # as long as it may be heard
+    first = np.flatnonzero(np.diff(of, prepend=-1))
+    least, most = (one.reduceat(on_air.node, first) for one in (np.minimum, np.maximum))
+    return int(np.count_nonzero((least == most)[of[sent]]))
+
+
+def _latest(
+    node: Numbers, start: Numbers, rows: Any, side: Literal["left", "right"] = "right"
+) -> Numbers:
+    """Per row the transmission that its station had begun last, by its place."""
+    mine = np.lexsort((start, node))
+    key = (node[mine] << 44) | start[mine]
+    wanted = (rows["node"].astype(np.int64) << 44) | rows["time"]
+    return np.asarray(mine[np.searchsorted(key, wanted, side) - 1])
 
 
 def off_times(result: Any) -> list[Numbers]:

@@ -113,15 +113,26 @@ def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _collisions(result: Any, summary: Mapping[str, Any]) -> list[str]:
     """Sentences on how many collisions there were, and of how many frames."""
-    count = summary["collisions"]
+    count, more = summary["collisions"], _taken_for_collided(result)
     if not count:
-        return ["No packet collided with another one."]
+        return ["No packet collided with another one.", *more]
     found = air.groups(result)
     struck = found.collision
     most = int(found.members[struck].max())
     if count == 1:
-        return [f"There was one collision, of {most} frames."]
-    return [f"There were {count:,} collisions, of up to {most} frames at once."]
+        return [f"There was one collision, of {most} frames.", *more]
+    return [f"There were {count:,} collisions, of up to {most} frames at once.", *more]
+
+
+def _taken_for_collided(result: Any) -> list[str]:
+    count = air.taken_for_collided(result)
+    if not count:
+        return []
+    which = f"{words.number_of(count, 'transmission')} that met no other robot's {_was(count)}"
+    return [
+        f"{which} taken for collided: a sender cannot tell a collision from an answer that is "
+        "missing."
+    ]
 
 
 def _silence(summary: Mapping[str, Any]) -> str:

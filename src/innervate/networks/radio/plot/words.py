@@ -68,7 +68,7 @@ _TURNS = {"csma-cd-r/practical": "place {a} of the round", "csma-cd-r/paper": "t
 REPORTS = {
     REPORT_DELIVERED: "packet delivered",
     w.REPORT_FAILED: "packet not delivered, stays in the queue",
-    w.REPORT_COLLISION: "own collision noticed",
+    w.REPORT_COLLISION: "own transmission taken for collided",
     w.REPORT_TURN: "own turn begins",
     w.REPORT_ROLE: "role after a collision",
     w.REPORT_BOUNDS: "pair delay outside the configured bounds",
