@@ -118,14 +118,26 @@ def test_what_the_first_round_found(tables_s, with_tables, end):
     assert words._discovery({"recall": None}, 12) == ["No discovery round was completed."]
 
 
-def test_who_became_gateway_last():
-    led = [{"node": 0, "at_s": 0.0}, {"node": 1, "at_s": 2.0}, {"node": 2, "at_s": 3.5}]
-    for leaders, took, said in (
-        (led[:1], 1.0, []), (led, None, ["Node n2 became gateway at 3.500 s."]),
-        (led[:2], 1.234, ["Node n1 became gateway at 2.000 s; its tables were everywhere 1.23 s "
-                          "after the old one died."]),
+def test_who_became_gateway_last_and_how_long_that_one_took():
+    """Of several takeovers each has a time of its own: the summary's is that of the first."""
+    led = [{"node": node, "at_s": at_s, "tables_s": tables_s}
+           for node, at_s, tables_s in ((0, 0.0, 1.0), (1, 2.0, 0.5), (2, 3.5, 0.25))]  # fmt: skip
+    deaths = [Of(at_us=at, action=KILL, node=node) for at, node in ((1_300_000, 0), (3_000_000, 1))]
+    never = [*led[:2], led[2] | {"tables_s": None}]
+    returned = [led[0], led[1] | {"node": 0}]
+    for leaders, faults, said in (
+        (led[:1], deaths, None), (led, [], "n2 became gateway at 3.500 s."),
+        (led[:2], deaths, "n1 became gateway at 2.000 s; its tables were everywhere 1.2 s after "
+                          "the old one died."),
+        (led, deaths, "n2 became gateway at 3.500 s; its tables were everywhere 0.75 s after "
+                      "the old one died."),
+        (led, deaths[:1], "n2 became gateway at 3.500 s."),
+        (never, deaths, "n2 became gateway at 3.500 s."),
+        (returned, deaths, "mast became gateway again at 2.000 s; its tables were everywhere 1.2 s "
+                           "after it had died."),
     ):  # fmt: skip
-        assert words._gateways(PLAN, {"gateways": leaders, "takeover_s": took}) == said
+        plan, summary = Of(names=PLAN.names, faults=faults), {"gateways": leaders}
+        assert words._gateways(plan, summary) == ([f"Node {said}"] if said else [])
 
 
 @pytest.mark.parametrize(("doubled", "looped", "said"), [

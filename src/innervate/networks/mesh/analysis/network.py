@@ -147,13 +147,23 @@ def gateways(result: Any) -> list[Gateway]:
 
 def takeover_s(result: Any, led: list[Gateway]) -> float | None:
     """From the first death of a gateway to complete tables of its successor; None without."""
-    for fault in result.plan.faults:
-        before = [gateway for gateway in led if gateway["at_s"] * 1e6 <= fault.at_us]
-        after = [gateway for gateway in led if gateway["at_s"] * 1e6 > fault.at_us]
-        leading = before and before[-1]["node"] == fault.node
-        if fault.action == KILL and leading and after and after[0]["tables_s"] is not None:
-            return float(after[0]["at_s"] + after[0]["tables_s"] - fault.at_us / 1e6)
-    return None
+    return next(iter(takeovers(result.plan.faults, led).values()), None)
+
+
+def takeovers(faults: Any, led: list[Gateway]) -> dict[int, float]:
+    """Per successor of a gateway that died, by its place in `led`: from the death to its tables.
+
+    In the order of deaths; without successors whose tables never were everywhere.
+    """
+    found: dict[int, float] = {}
+    for fault in faults:
+        then = sum(gateway["at_s"] * 1e6 <= fault.at_us for gateway in led)
+        leading = then and led[then - 1]["node"] == fault.node
+        if fault.action == KILL and leading and then < len(led) and then not in found:
+            at_s, tables_s = led[then]["at_s"], led[then]["tables_s"]
+            if tables_s is not None:
+                found[then] = float(at_s + tables_s - fault.at_us / 1e6)
+    return found
 
 
 def airtime(result: Any, kinds: Numbers) -> Airtime:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.networks.mesh.analysis.alarms import all_crossings
+from innervate.networks.mesh.analysis.network import takeovers
 from innervate.networks.mesh.protocol import constants as c
 from innervate.plot.words import figure_words, ms_words, number_of, share_words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
@@ -205,13 +206,11 @@ def _gateways(plan: Any, summary: Mapping[str, Any]) -> list[str]:
     led = summary["gateways"]
     if len(led) < 2:
         return []
-    last, took = led[-1], summary["takeover_s"]
-    line = f"Node {plan.names[last['node']]} became gateway at {last['at_s']:.3f} s"
-    after = (
-        f"; its tables were everywhere {figure_words(took)} s after the old one died"
-        if took
-        else ""
-    )
+    took, back = takeovers(plan.faults, led).get(len(led) - 1), led[-1]["node"] == led[-2]["node"]
+    line = f"Node {plan.names[led[-1]['node']]} became gateway{' again' if back else ''} at "
+    line += f"{led[-1]['at_s']:.3f} s"
+    died = "it had died" if back else "the old one died"
+    after = f"; its tables were everywhere {figure_words(took)} s after {died}" if took else ""
     return [f"{line}{after}."]
 
 
