@@ -353,7 +353,8 @@ def test_what_check_says() -> None:
     assert "nodes      86, gateway 2" in check("mesh-leipzig")
     assert "standby n1, n2" in check("mesh-standby")
     two = check(loads('kind = "mesh"\n[[link]]\na = "x"\nb = "y"'))
-    assert ", 1 good link, 1.0 a node, at most 1 hop from" in two
+    assert ", 1 good link, 1.0 a node, at most 1 hop from the gateway\n" in two
+    assert ", no good links, 0.0 a node, all alone\n" in check(loads('kind = "mesh"\nnodes = 1'))
 
 
 def test_warnings() -> None:

@@ -42,12 +42,13 @@ def describe(made: MeshPlan) -> str:
     monitor = "the gateway" if params["monitor"] == MONITOR else made.names[params["monitor"]]
     hops = [far for far in hops_from(made, gateway) if far >= 0]
     degree = 2 * len(made.good) / made.nodes
+    far = f"at most {count_of(max(hops), 'hop')} from the gateway" if max(hops) else "all alone"
     lines = [
         opening(made),
         *_cluster(made),
         f"  nodes      {made.nodes}, gateway {made.names[gateway]}{standby}, monitor {monitor}",
         f"  radio      {model.radio.profile}, {made.mac}, {count_of(len(made.good), 'good link')}, "
-        f"{degree:.1f} a node, at most {count_of(max(hops), 'hop')} from the gateway",
+        f"{degree:.1f} a node, {far}",
         f"  protocol   discovery {model.protocol.discovery}, "
         f"failover {forwarding(made)}, MTU {params['mtu']}, "
         f"a round every {params['period'] * params['tick_us'] / 1e6:g} s",
