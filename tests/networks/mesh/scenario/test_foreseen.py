@@ -42,6 +42,16 @@ def test_what_is_left_when_all_has_happened(events, standby, said):
     assert line(*events, standby=standby) == said
 
 
+@pytest.mark.parametrize(("noise_dbm", "quiet", "said"), [
+    (-40, False, ["at the end no links lead to n0, the gateway, from n1, n2, n3, n4"]),
+    (-40, True, []), (-150, False, []),
+])  # fmt: skip
+def test_who_is_jammed_at_the_end_is_cut_off(noise_dbm, quiet, said):
+    events = [(10, "jam", {"node": "n0", "noise_dbm": noise_dbm})]
+    assert line(*events, *[(20, "quiet", {"node": "n0"})] * quiet) == said
+    assert line(*events, radio={"profile": "ideal"}) == []
+
+
 def test_faint_links_lead_too_as_long_as_most_messages_come_over_them():
     events = kill("n1"), kill("n2")
     for quality, said in (

@@ -14,7 +14,7 @@ from innervate.networks.mesh.protocol.link_quality import ALL_ACKED, RATIO_MIN
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk
-from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.topology.placement import distances, neighbours
 
 METRE_CM = 100
@@ -105,12 +105,15 @@ def _at_the_end(made: MeshPlan) -> list[str]:
     """Who is missing when all events have happened, and who is then cut off."""
     on = [not absent for absent in made.absent]
     cut: set[tuple[int, int]] = set()
+    noise: dict[int, int | None] = {}
     for fault in made.faults:
         pair = min(fault.node, fault.other), max(fault.node, fault.other)
         if fault.action in (KILL, REVIVE, RESTART):
             on[fault.node] = fault.action != KILL
         elif fault.action in (CUT, RESTORE):
             (cut.add if fault.action == CUT else cut.discard)(pair)
+        elif fault.action in (JAM, QUIET):
+            noise[fault.node] = fault.value if fault.action == JAM else None
     monitor = made.params["monitor"]
     found = []
     if monitor != MONITOR and not on[monitor]:
@@ -121,7 +124,8 @@ def _at_the_end(made: MeshPlan) -> list[str]:
         whose = "and so is every standby" if len(leaders) > 1 else "and there is no standby"
         return [*found, f"nobody leads at the end: the gateway is off, {whose}"]
     working = _working(made)
-    left = [(a, b) for a, b in working if on[a] and on[b] and (a, b) not in cut]
+    left = [(a, b) for a, b in working if on[a] and on[b] and (a, b) not in cut
+            and not _drowned(made, noise, a, b) and not _drowned(made, noise, b, a)]  # fmt: skip
     hops = distances(neighbours(made.nodes, left), leader)
     at_first = distances(neighbours(made.nodes, working), leaders[0])
     known = {node for node in _badly_reached(made) if at_first[node] < 0}  # said by _bad_ways()
@@ -134,6 +138,14 @@ def _at_the_end(made: MeshPlan) -> list[str]:
         name = made.names[leader]
         found.append(f"at the end no links lead to {name}, the gateway, from {listed(apart)}")
     return found
+
+
+def _drowned(made: MeshPlan, noise: dict[int, int | None], node: int, other: int) -> bool:
+    """True if a jammer's noise is too loud for the other to receive the node."""
+    there, radio = noise.get(other), made.radio
+    if there is None or not radio.collisions:
+        return False
+    return radio.rssi_cdb[node * made.nodes + other] < there + radio.capture_cdb
 
 
 def _working(made: MeshPlan) -> list[tuple[int, int]]:
