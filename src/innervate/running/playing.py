@@ -42,7 +42,7 @@ class Noting(Net):
         self.forget_step()
 
     def forget_step(self) -> None:
-        """Another step begins."""
+        """A step begins: nothing has happened in it so far."""
         self.done: list[tuple[int, ...]] = []
         self.handed: list[tuple[int, ...]] = []
         self.handled = 0
