@@ -61,6 +61,17 @@ def test_a_radio_team(look, tmp_path):
         assert page.evaluate(PAINTED, "#stage") > 1000
 
 
+def test_at_the_end_a_short_run_fills_the_timeline(look, tmp_path):
+    path = tmp_path / "radio.toml"
+    path.write_text(RADIO.replace("saturated", "disaster"))
+    with beside(path, 0) as address:
+        page = look(address, script=WRITTEN)
+        expect(page.locator("#clock")).to_contain_text("end")
+        page.evaluate(DRAWN)
+        words = {text for text, *_ in page.evaluate(WORDS_OF, "#timeline canvas")[0]}
+        assert words >= {"D", "R"}, "boxes are too narrow for their letters"
+
+
 def test_a_mesh(look, tmp_path):
     path = tmp_path / "mesh.toml"
     path.write_text(MESH)

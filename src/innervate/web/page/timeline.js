@@ -38,12 +38,13 @@ export class Timeline {
     if (!width) return;
     const theme = colours.ground;
     const last = network.timeline.at(-1);
-    const { t_s: to, speed } = network.now;
-    const state = [to, speed, network.timeline.length, last?.to_s, width, height, theme].join();
+    const { t_s: to, speed, at_end: atEnd } = network.now;
+    const state = [to, speed, atEnd, network.timeline.length, last?.to_s, width, height, theme].join();
     if (state === this.drawn) return;
     this.drawn = state;
     this.context = prepared(this.canvas, width, height);
-    const wanted = WALL_S * (speed || SPAN_S[1]);
+    const all = to - (network.timeline[0]?.from_s ?? 0); // at the end all of it, not a corner
+    const wanted = atEnd ? all : WALL_S * (speed || SPAN_S[1]);
     const span = Math.max(SPAN_S[0], Math.min(SPAN_S[1], wanted));
     const from = Math.max(0, to - span);
     const across = (t) => LEFT + ((t - from) / span) * (width - LEFT - 12);
