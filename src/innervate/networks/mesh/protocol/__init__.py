@@ -12,12 +12,13 @@ who hears whom, computes routes and hands them out; whoever does not answer is g
 *Discovery* [mesh 4]. Once a period the gateway floods a request. A node passes it on after a random
 wait, notes whom it heard, and responds once (A1), up the neighbours that advertised less depth
 (A2). A link counts if both directions were reported within three rounds, or a response has crossed
-it that no faint link brought (`WEAK`; decision 0052). With `asks` the gateway asks those once more
+it that no faint link brought (`WEAK`; decision 0052); but whom nobody heard in this round, of two
+that did before and responded, is gone (decision 0064). With `asks` the gateway asks those once more
 by name that others heard and that did not respond; nobody else responds (decision 0059).
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
 recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in parts that are
-acknowledged; a whole table is in force at once (A10). Instead, all can have the whole graph, or
+acknowledged, to the nearest of those first that were tried least; a whole table is in force at once (A10). Instead, all can have the whole graph, or
 none a table, and the gateway writes routes into packets.
 
 *Forwarding.* A hop takes a packet over by an ack; after three transmissions without one (A3) the
@@ -163,8 +164,9 @@ A hop for which there is no room gets no ack, so that another is tried.
 | TO_SEND    | fewer than `jobs` under way     | `pump`, `start_job`,             | UNDER_WAY      |
 |            |                                 | `queue_parts`                    |                |
 | UNDER_WAY  | `TABLE_ACK`, all parts          | `on_ack`                         | CURRENT        |
-| UNDER_WAY  | `JOBS`                          | `retry_jobs`: once more, or no   | ..., GIVEN_UP  |
-|            |                                 | more                             |                |
+| UNDER_WAY  | `JOBS`                          | `retry_jobs`: behind the others, | TO_SEND,       |
+|            |                                 | or no more                       | GIVEN_UP       |
+| ...        | ... of the whole graph          | ... once more, or no more        | ..., GIVEN_UP  |
 | GIVEN_UP   | the next round                  | `give_jobs`                      | TO_SEND        |
 | FREE       | something to send               | `compose`, `take_over`:          | WAITS          |
 |            |                                 | `enqueue`                        |                |

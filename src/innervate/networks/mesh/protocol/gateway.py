@@ -20,7 +20,9 @@ from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.protocol.paths import (
     begin_round,
     build_graph,
+    forget_heard,
     is_fresh,
+    is_heard,
     measure_all,
     note_heard,
     note_list,
@@ -133,6 +135,23 @@ def is_missing(gate, params, s):
     return 0
 
 
+def forget_gone(gate, params):
+    """Whom nobody heard in this round, of two at least that did before and responded, is gone.
+
+    Kept for three rounds, it would be in everybody's tables for minutes.
+    """
+    for s in range(params.nodes):
+        missed = 0
+        for a in range(params.nodes):
+            if is_fresh(gate, params, s, a):
+                missed = -params.nodes
+            elif is_heard(gate, params, s, a):
+                missed = missed + is_fresh(gate, params, a, a)
+        if missed > 1:
+            for a in range(params.nodes):
+                forget_heard(gate, params, s, a)
+
+
 def ask_again(node, gate, params, now, out):
     """Who did not respond is asked by name: 0 if there is nobody."""
     i = -1
@@ -181,6 +200,8 @@ def collect(node, gate, params, now, out):
             kick(node, params, now, out)
             return
     gate.step = IDLE
+    if trusts_lists(params) and not gate.taken:
+        forget_gone(gate, params)
     mark = build_graph(gate, params)
     changed = mark != gate.sum_a
     report(out, REPORT_GRAPH, gate.links, changed)

@@ -95,12 +95,15 @@ def give_job(gate, params, s):
 
 
 def next_job(node, gate, params):
-    """The nearest node that waits for its table, or -1."""
+    """Who waits for its table and was tried least, the nearest of them; -1 if nobody waits."""
     best = -1
+    least = 0
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
-            if best < 0 or depth_of(node, gate, params, s) < depth_of(node, gate, params, best):
+            order = gate.job_tries[s] << 8 | depth_of(node, gate, params, s)
+            if best < 0 or order < least:
                 best = s
+                least = order
     return best
 
 
@@ -236,6 +239,8 @@ def retry_jobs(node, gate, params, now, out):
             gate.job_due[s] = job_due(node, gate, params, now, s)
             if gate.job_tries[s] > params.job_tries:
                 gate.job[s] = GIVEN_UP
+            elif params.mode == TABLES:
+                gate.job[s] = TO_SEND  # who does not answer keeps nobody waiting
     pump(node, gate, params, now, out)
 
 

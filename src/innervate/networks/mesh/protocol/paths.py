@@ -20,6 +20,12 @@ def note_heard(gate, params, who, by):
     gate.heard[at >> 2] = gate.heard[at >> 2] | ROUNDS_VALID << 2 * (at & 3)
 
 
+def forget_heard(gate, params, who, by):
+    """It counts no more that `by` heard `who`."""
+    at = who * params.width + by
+    gate.heard[at >> 2] = gate.heard[at >> 2] & ~(ROUNDS_VALID << 2 * (at & 3))
+
+
 def is_heard(gate, params, who, by):
     """1 if `by` heard `who` in one of the last rounds."""
     at = who * params.width + by

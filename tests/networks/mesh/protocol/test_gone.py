@@ -1,0 +1,92 @@
+"""Who is dead is out of the graph after one round, and keeps nobody's table waiting."""
+
+import pytest
+
+from innervate.networks.mesh.protocol.constants import RESPONSE, TABLE, TABLE_FREE, TREE
+from innervate.networks.mesh.protocol.paths import is_known
+from tests.networks.mesh.bench import Bench
+
+S = 1_000_000
+PERIOD = 10 * S
+SETTLED = 9 * S
+SQUARE = [(0, 1), (0, 2), (1, 3), (2, 3), (1, 2)]
+
+
+def known(bench, a, b):
+    return is_known(bench.gates[0], bench.params, a, b)
+
+
+def after_a_round(links, gone, count=4, lost=None, **more):
+    """Settled; then some die, and a round later."""
+    bench = Bench(count, links, **more)
+    bench.run(SETTLED)
+    bench.dead.update(gone)
+    if lost:
+        bench.lost = lost
+    bench.run(PERIOD + SETTLED)
+    return bench
+
+
+@pytest.mark.parametrize("asks", [0, 1])
+def test_whom_two_heard_before_and_nobody_now_is_out_of_the_graph(asks):
+    bench = after_a_round(SQUARE, {3}, asks=asks)
+    assert not known(bench, 1, 3) and not known(bench, 2, 3)
+    assert known(bench, 0, 1) and known(bench, 1, 2)
+
+
+def test_whom_one_alone_heard_before_may_have_been_missed():
+    bench = after_a_round([(0, 1), (1, 2), (2, 3)], {3})
+    assert known(bench, 2, 3), "a lost frame is not a death: it counts for three rounds"
+    bench.run(80 * S)  # rounds after 10, 30 and 70 s
+    assert not known(bench, 2, 3)
+
+
+def test_who_is_heard_and_does_not_respond_stays():
+    bench = after_a_round(
+        SQUARE, set(), lost=lambda frame, to: frame.kind == RESPONSE and frame.origin == 3
+    )
+    assert known(bench, 1, 3) and known(bench, 2, 3)
+
+
+def test_whose_neighbours_did_not_respond_either_stays():
+    """Responses of a whole region are lost: nothing is known of those behind it."""
+    bench = after_a_round(SQUARE, set(), lost=lambda frame, to: frame.kind == RESPONSE)
+    assert known(bench, 1, 3) and known(bench, 2, 3)
+
+
+def test_who_comes_back_is_in_the_next_graph():
+    bench = after_a_round(SQUARE, {3})
+    bench.dead.clear()
+    bench.run(2 * PERIOD + SETTLED)
+    assert known(bench, 1, 3) and known(bench, 2, 3)
+
+
+def test_a_tree_knows_only_what_its_responses_crossed():
+    """Lists tell whom nobody heard; without them a link counts for three rounds, as printed."""
+    bench = after_a_round(SQUARE, {3}, discovery=TREE)
+    assert known(bench, 1, 3) or known(bench, 2, 3)
+
+
+def test_without_tables_nothing_follows_from_who_is_not_listed():
+    """Nodes list their uplinks alone there: that node 3 is in no list is as it was."""
+    bench = after_a_round(
+        SQUARE, set(), mode=TABLE_FREE,
+        lost=lambda frame, to: frame.kind == RESPONSE and frame.origin == 3,
+    )  # fmt: skip
+    assert known(bench, 1, 3) and known(bench, 2, 3)
+
+
+def test_who_does_not_answer_keeps_nobody_waiting_for_a_table():
+    """Two at a time: two dead ones near by have one try, then it is the others' turn."""
+    star = [(0, k) for k in range(1, 7)]
+    bench = Bench(7, star, jobs=2)
+    bench.lost = lambda frame, to: frame.kind == TABLE and to in (1, 2)
+    bench.run(SETTLED)
+    first = {}
+    for at, i, frame in bench.sent:
+        if frame.kind == TABLE and i == 0:
+            first.setdefault(frame.dest, at)
+    again = sorted(at for at, i, f in bench.sent if f.kind == TABLE and i == 0 and f.dest == 1)
+    assert all(bench.nodes[k].version for k in range(3, 7))
+    waited = max(first[k] for k in range(3, 7)) - first[1]
+    assert waited < 2 * bench.params.job_us, f"{waited} us, tables for node 1 at {again}"
