@@ -164,9 +164,9 @@ A hop for which there is no room gets no ack, so that another is tried.
 | TO_SEND    | fewer than `jobs` under way     | `pump`, `start_job`,             | UNDER_WAY      |
 |            |                                 | `queue_parts`                    |                |
 | UNDER_WAY  | `TABLE_ACK`, all parts          | `on_ack`                         | CURRENT        |
-| UNDER_WAY  | `JOBS`                          | `retry_jobs`: behind the others, | TO_SEND,       |
-|            |                                 | or no more                       | GIVEN_UP       |
-| ...        | ... of the whole graph          | ... once more, or no more        | ..., GIVEN_UP  |
+| UNDER_WAY  | `JOBS`                          | `retry_jobs`: once more, or no   | ..., GIVEN_UP  |
+|            |                                 | more                             |                |
+| ...        | ... a table, `IN_A_ROW` times   | ... once more behind all others  | TO_SEND        |
 | GIVEN_UP   | the next round                  | `give_jobs`                      | TO_SEND        |
 | FREE       | something to send               | `compose`, `take_over`:          | WAITS          |
 |            |                                 | `enqueue`                        |                |
@@ -328,6 +328,7 @@ Constants and settings
 | `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | neighbours in a response: counted; table-free   |
 | `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |
 |                                                | MTU of 64                                       |
+| `IN_A_ROW = 3`                                 | tries of a table, before it is the others' turn |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
 |                                                | through it                                      |
 | `FAILURES_MAX = 6`, `HOPS_MAX = 40`            | failed hops at a node, then a packet is         |

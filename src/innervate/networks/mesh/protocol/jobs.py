@@ -36,6 +36,7 @@ from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
+IN_A_ROW = 3  # tries of a table, each with more patience, before it is the others' turn
 PLACES_RESERVED = 3  # of the queue, for what others send through us
 
 
@@ -95,7 +96,7 @@ def give_job(gate, params, s):
 
 
 def next_job(node, gate, params):
-    """Who waits for its table and was tried least, the nearest of them; -1 if nobody waits."""
+    """Who waits for its table and was tried least, the nearest of them; -1 if nobody does."""
     best = -1
     least = 0
     for s in range(params.nodes):
@@ -239,7 +240,7 @@ def retry_jobs(node, gate, params, now, out):
             gate.job_due[s] = job_due(node, gate, params, now, s)
             if gate.job_tries[s] > params.job_tries:
                 gate.job[s] = GIVEN_UP
-            elif params.mode == TABLES:
+            elif params.mode == TABLES and gate.job_tries[s] >= IN_A_ROW:
                 gate.job[s] = TO_SEND  # who does not answer keeps nobody waiting
     pump(node, gate, params, now, out)
 
