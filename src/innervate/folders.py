@@ -242,7 +242,8 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     found += [] if found else _of_values(folder, network, files)
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
-        found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME)
+        found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME,
+                                   checks.LOOKED_AT[network.medium])  # fmt: skip
         laid = {kind: {one[0] for one in fields} for kind, _name, fields in frames.LAYOUTS}
         found += sends.of_kinds(files, laid)
     return found

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import folders
+from innervate.dialect.folder import NOTED
 from innervate.folders import NetworkError as NetworkError
 from innervate.parts import DEFAULTS, MADE, MEDIA, PARTS
 
@@ -329,3 +330,16 @@ def _taken(network: Network, other: Network) -> NetworkError:
 def _absolute(package: str, place: str) -> str:
     """A place within a network's package, or one that is named in full."""
     return place if place.startswith("innervate.") or not package else f"{package}.{place}"
+
+
+def layouts_of(network: Any) -> Any:
+    """The layouts of a network's frames, if those are what goes over a wire."""
+    if not network.has("frames") or network.has("packets"):
+        return ()
+    return getattr(network.frames, "LAYOUTS", ())
+
+
+def dropped_of(declared: Any, layouts: Any) -> dict[Any, set[str]]:
+    """By kind, the fields of a frame that its layout has no bits for."""
+    names = {name for name, *_ in declared} - NOTED
+    return {kind: names - {one[0] for one in fields} for kind, _name, fields in layouts}

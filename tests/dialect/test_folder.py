@@ -242,6 +242,14 @@ def test_what_is_laid_out_is_declared(file):
         "news: sq is no field of FRAME", "no frame carries seq of FRAME"]  # fmt: skip
 
 
+def test_what_a_medium_looks_at_has_bits_in_every_layout(file):
+    path, layouts = file("LAYOUTS = ()\n"), laid(seq=("seq", 0, 8, False))
+    has, looked_at = [*FRAME, ("to", 0, 0, 3, "node", "")], {"to", "slots"}
+    assert said(folder.of_layouts(path, layouts, 2, FRAME, looked_at)) == []
+    found = [text for _, text in said(folder.of_layouts(path, layouts, 2, has, looked_at))]
+    assert found[0].endswith("the medium looks at to; give it bits in every layout")
+
+
 SENDS = """NEWS = 1
 def fill(frame, value):
     frame.kind = 0
@@ -281,7 +289,7 @@ def on_timer(state, params, now, timer, out):
 
 
 @pytest.mark.parametrize(("field", "wrong"), [
-    ("low", []), ("to", []), ("low[1]", []), ("seq", [7]), ("seq[0]", [7]),
+    ("low", []), ("low[1]", []), ("seq", [7]), ("seq[0]", [7]),
 ])  # fmt: skip
 def test_what_a_layout_has_no_bits_for_is_not_sent(file, field, wrong):
     path = file(FILLS.format(field=field))

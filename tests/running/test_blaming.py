@@ -91,3 +91,13 @@ def test_an_edit_is_compiled_anew_and_what_was_compiled_stays(own):
     own.change("protocol.py", "    node.value = item.value + 1\n", "    node.value = item.value\n")
     again = innervate.run(own.scenario)
     assert again.result.fingerprint == first.result.fingerprint
+
+
+def test_over_cables_a_field_called_as_one_of_the_air_is_as_any_other(own):
+    own.change("fields.py", '("version", 0, 0, 65535, "number", "of the news',
+               '("to", 0, 0, 7, "node", ""),\n    ("slots", 0, 0, 7, "places", ""),\n'
+               '    ("version", 0, 0, 65535, "number", "of the news')  # fmt: skip
+    own.change("frames.py", '0, 8, 0))),)', '0, 8, 0))), (2, "for", '
+               '(("to", 0, 3, 0), ("slots", 0, 3, 0))))')  # fmt: skip
+    innervate.run(own.scenario, plain=True)
+    assert not any(case.is_broken for case in innervate.explore(own.folder, states=50))

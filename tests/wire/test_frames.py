@@ -45,8 +45,10 @@ def test_bits_lie_where_the_layout_says():
 def test_what_was_encoded_is_read_back_and_nothing_else():
     found = SimpleNamespace(kind=9, heat=[0, 0], hops=7)
     assert CODEC.decode(CODEC.encode(SimpleNamespace(kind=BULK, heat=[-16, 3])), found) == OK
-    assert (found.kind, found.heat, found.hops) == (BULK, [-16, 3], 7)
+    assert (found.kind, found.heat, found.hops) == (BULK, [-16, 3], 0)
     assert not hasattr(found, SPARE)
+    assert CODEC.decode(CODEC.encode(ping()), found) == OK
+    assert (found.kind, found.heat) == (PING, [0, 0])
 
 
 def test_a_frame_is_refused_by_the_first_that_is_wrong():

@@ -12,6 +12,8 @@ MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
 MEASURED = {"rssi"}  # fields of a frame that are set by who receives it
 NOTED = {"kind", "made_at"} | MEASURED  # those that no layout has to name
+# Fields of a frame that a medium looks at, by medium.
+LOOKED_AT = {"cables": set(), "channel": {"slots"}, "field": {"to"}}
 FIELD = "a field is (name, length, low, high, unit, meaning)"
 HANDLERS = {
     "on_start": "(state, params, now, cause, out)",
@@ -233,7 +235,7 @@ def _lines_of(path):
     return found
 
 
-def of_layouts(path, layouts, kind_bits, frame):
+def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset()):
     """What is wrong with the layouts of frames: bits that do not hold what is declared.
 
     Args:
@@ -241,6 +243,7 @@ def of_layouts(path, layouts, kind_bits, frame):
         layouts: (kind, name, ((field, many, bits, signed), ...)) of each.
         kind_bits: bits of the kind.
         frame: the declared fields of a frame.
+        looked_at: fields that the medium looks at.
     """
     declared = {field[0]: field for field in frame}
     line, found, laid = _lines_of(path).get(("LAYOUTS", ""), 1), [], set()
@@ -253,6 +256,9 @@ def of_layouts(path, layouts, kind_bits, frame):
             wrong = _wrong_layout(declared, field, many, bits, is_signed) if field else ""
             if wrong:
                 found.append(Finding(path, line, f"{name}: {wrong}"))
+        for field in sorted(looked_at & declared.keys() - {one[0] for one in fields}):
+            what = f"{name}: the medium looks at {field}; give it bits in every layout"
+            found.append(Finding(path, line, what))
     for field in declared:
         if field not in laid | NOTED:
             what = f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out"

@@ -6,8 +6,6 @@ from innervate.dialect.access import REPORT_DELIVERED, REPORT_LEFT
 from innervate.dialect.checker import functions_of
 from innervate.dialect.folder import NOTED, Finding, called, constants_of, number
 
-MEDIUM = {"to", "slots"}  # fields that the medium looks at
-
 
 def of_channel(paths):
     """Reports that a channel takes for its own."""
@@ -71,7 +69,7 @@ def of_kinds(paths, layouts):
         found += _without_kind(path, function, own - kinds.keys(), layouts)
         for part, frame, field in _set_in(function):
             of = kinds.get(frame, {None}) if frame in own else {None}
-            if field in NOTED | MEDIUM or number(part.value, constants) == 0:
+            if field in NOTED or number(part.value, constants) == 0:
                 continue
             if of <= layouts.keys() and not any(field in layouts[kind] for kind in of):
                 what = f"{field} has no bits in the layout of kind {min(of)}, and is not sent"

@@ -33,7 +33,9 @@ def coded_of(role: Role, network: Network) -> Coded | None:
         shared.setdefault(fields, {})[kind] = name
     forms = tuple(Form(kinds, fields) for fields, kinds in shared.items())
     bytes_max = max((frames.KIND_BITS + width(form.fields) + 7) // 8 for form in forms)
-    return Coded((0, 0), frames.KIND_BITS, forms, REASONS, bytes_max + CRC_BYTES)
+    clears = not hasattr(frames, "encode")  # as wire.frames.Codec does
+    size_max = bytes_max + CRC_BYTES
+    return Coded((0, 0), frames.KIND_BITS, forms, REASONS, size_max, clears=clears)
 
 
 class Wire:
@@ -251,9 +253,18 @@ class Wire:
         else:
             behind = [f"frame->{name_of(to)} = frame->{name_of(frm)};"
                       for to, frm in form.same.items() if line == self._get]  # fmt: skip
+        if self.coded.clears and line == self._get:
+            found += self._clears(form)
         for name, many, bits, is_signed in form.fields:
             found += line(form, name, many, (bits, is_signed))
         return [*found, *behind, "break;"]
+
+    def _clears(self, form: Form) -> list[str]:
+        """What makes 0 that only other forms have."""
+        own = {SPARE, *(name for name, *_ in form.fields)}
+        others = {name: many for other in self.coded.forms for name, many, *_ in other.fields}
+        return [line for name, many in others.items() if name not in own
+                for line in self._each(form, name, many, "{place} = 0;")]  # fmt: skip
 
     def _put(self, form: Form, name: str, many: Any, how: tuple[int, int]) -> list[str]:
         bits = how[0]

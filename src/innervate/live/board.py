@@ -107,6 +107,7 @@ class Coded(NamedTuple):
             and these, or may end with bytes and their number, besides what its kind has.
         alone: a byte that is a frame by itself, its kind, and what fields it then has.
         payload_max: "module:function", parameters -> bytes of a payload at most.
+        clears: a decoder makes 0 what only other forms have.
     """
 
     version: tuple[int, int]
@@ -118,6 +119,7 @@ class Coded(NamedTuple):
     trail: int = 0
     alone: tuple[int, int, Mapping[str, int]] | None = None
     payload_max: str = ""
+    clears: bool = False
 
 
 class Role(NamedTuple):

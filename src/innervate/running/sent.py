@@ -13,7 +13,7 @@ from innervate.dialect.outbox import DELIVER, SEND
 from innervate.folders import NetworkError, shown
 from innervate.network import Network
 from innervate.sim.sent import FRAME_BROKEN, KIND_BROKEN
-from innervate.verify.frames import Frames, layouts_of
+from innervate.verify.frames import frames_of
 
 Here = Callable[[], tuple[str, int]]
 
@@ -33,7 +33,7 @@ class Sent:
 
     def __init__(self, world: Any, network: Network, here: Here) -> None:
         self.words, self.here, self.out = "", here, world.out
-        self.frames = Frames(network.fields.FRAME, layouts_of(network))
+        self.frames = frames_of(network)
         self.put_at: dict[int, tuple[str, int, str]] = {}  # by action: file, line, handler
         # By frame and field, of this call: where a value was set that cannot be.
         self.set_at: dict[tuple[int, str], tuple[str, int] | None] = {}

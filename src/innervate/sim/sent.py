@@ -6,12 +6,13 @@ that would be another there, or none, and only a simulation would carry it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 from innervate.dialect.folder import MEASURED
 from innervate.dialect.outbox import DELIVER, SEND
 from innervate.kernel.records import Declaration
+from innervate.network import dropped_of
 
 FRAME_BROKEN, KIND_BROKEN = 62, 63  # `run.broken`, below what a network's own rules have
 WORDS = {
@@ -20,19 +21,14 @@ WORDS = {
 }
 
 
-def kinds_of(network: Any) -> tuple[int, ...]:
-    """The kinds that a network's frames can have on a wire; () = its layouts do not say."""
-    if not network.has("frames") or network.has("packets"):
-        return ()
-    return tuple(kind for kind, *_ in getattr(network.frames, "LAYOUTS", ()))
-
-
-def look_of(declared: Declaration, kinds: Iterable[int] = ()) -> Callable[..., None]:
+def look_of(declared: Declaration, layouts: Any = ()) -> Callable[..., None]:
     """`look(world, node)`: marks a run as broken by what a call has put into its outbox.
+
+    What a layout has no bits for is not sent: as on a wire, it is what it is in a blank frame.
 
     Args:
         declared: the fields of a frame.
-        kinds: that a frame which is sent may have; () = any.
+        layouts: of the kinds that a frame which is sent may have; () = any.
     """
     lines = []
     for name, length, low, high, *_ in declared:
@@ -40,10 +36,12 @@ def look_of(declared: Declaration, kinds: Iterable[int] = ()) -> Callable[..., N
             lines += [f"    for k in range({length}):"] if length else []
             place, by = (f"{name}[k]", "    ") if length else (name, "")
             lines += [f"    {by}beyond |= (frame.{place} < {low}) | (frame.{place} > {high})"]
-    known = " or ".join(f"frame.kind == {kind}" for kind in kinds)
+    known = " or ".join(f"frame.kind == {kind}" for kind, *_ in layouts)
+    clears = _clears(declared, dropped_of(declared, layouts))
     text = "\n".join([
         "def is_declared(frame):", "    beyond = False", *lines, "    return not beyond",
         "def has_layout(frame):", f"    return {known or True}",
+        "def clear(frame):", *clears,
         "def look(world, node):",
         "    run, out = world.run[0], world.out",
         "    if run.checks and run.broken == 0:",
@@ -54,6 +52,9 @@ def look_of(declared: Declaration, kinds: Iterable[int] = ()) -> Callable[..., N
         f"                    run.broken, run.broken_node = {FRAME_BROKEN}, node",
         f"                elif what == {SEND} and not has_layout(out.frame[i]):",
         f"                    run.broken, run.broken_node = {KIND_BROKEN}, node",
+        "    for i in range(out.count[0]):",
+        f"        if out.action[i].kind == {SEND}:",
+        "            clear(out.frame[i])",
     ])  # fmt: skip
     made: dict[str, Any] = {}
     exec(compile(text, "what a protocol sends", "exec"), made)
@@ -61,7 +62,21 @@ def look_of(declared: Declaration, kinds: Iterable[int] = ()) -> Callable[..., N
     return look
 
 
+def _clears(declared: Declaration, dropped: dict[int, set[str]]) -> list[str]:
+    """The lines that make what a frame's layout has no bits for as in a blank frame."""
+    lines = []
+    for kind, names in dropped.items():
+        lines += [f"    if frame.kind == {kind}:"] if names else []
+        for name, length, low, high, *_ in declared:
+            blank, by = min(max(0, low), high), "        "
+            if name in names:
+                lines += [f"{by}for k in range({length}):"] if length else []
+                lines += [f"{by}    frame.{name}[k] = {blank}" if length
+                          else f"{by}frame.{name} = {blank}"]  # fmt: skip
+    return lines or ["    return"]
+
+
 def parts_of(look: Callable[..., None]) -> dict[str, Callable[..., Any]]:
     """What a look calls, and itself, by name: to be compiled with it."""
-    names = ("is_declared", "has_layout", "look")
+    names = ("is_declared", "has_layout", "clear", "look")
     return {name: look.__globals__[name] for name in names}

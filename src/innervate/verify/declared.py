@@ -20,7 +20,7 @@ from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import Graph
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
-from innervate.verify.frames import Frames, layouts_of
+from innervate.verify.frames import frames_of
 from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.net import Net
 from innervate.verify.scripts import STUCK, scenario_of
@@ -100,7 +100,7 @@ def net_of(network: Network, graph: Graph, params: dict[str, int], kind: type[Ne
     net.has_carrier &= net.on_air
     net.is_slotted = network.medium == "channel"
     net.is_addressed = network.medium == "field" and hasattr(net.frame, "to")
-    net.frames = Frames(network.fields.FRAME, layouts_of(network))
+    net.frames = frames_of(network)
     net.own = invariants_of(network, "node_")
     net.of_all = invariants_of(network, "network_")
     return net

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.dialect.folder import MEASURED
+from innervate.dialect.folder import LOOKED_AT, MEASURED
 from innervate.dialect.outbox import DELIVER, SEND
+from innervate.network import dropped_of, layouts_of
 
-MEDIUMS = ("to", "slots")  # what a medium looks at, whatever a layout says
 TIMED = "made_at"  # what latencies are measured by
 
 
@@ -17,14 +17,16 @@ class Frames:
     Args:
         declared: the fields of a frame.
         layouts: of its kinds (see wire/layout.py); () = they do not say what is on a wire.
+        looked_at: fields that the medium looks at, whatever a layout says.
 
     A protocol that does not set a field of a frame sends what an earlier one had there.
     """
 
-    def __init__(self, declared: Any, layouts: Any = ()) -> None:
-        self.declared = declared
+    def __init__(self, declared: Any, layouts: Any = (), looked_at: Any = ()) -> None:
+        self.declared, self.looked_at = declared, looked_at
         self.names = {name for name, *_ in declared}
         self.laid = {kind: {one[0] for one in fields} for kind, _name, fields in layouts}
+        self.dropped = dropped_of(declared, layouts)
 
     def blank(self, frame: Any) -> None:
         """Let none of a frame's fields be set."""
@@ -34,7 +36,7 @@ class Frames:
     def wrong(self, frame: Any, action: int, handler: str, found: str = "") -> str:
         """What is wrong with a frame that a handler sends or delivers; all of it is set then.
 
-        What was `found` before stays.
+        What a layout has no bits for is not sent. What was `found` before stays.
         """
         if action not in (SEND, DELIVER):
             return found
@@ -51,6 +53,8 @@ class Frames:
             if out and name not in MEASURED and not found:
                 found = (f"{name} of a frame that {handler} {does} is {out[0]}, "
                          f"declared {low} to {high}")  # fmt: skip
+            if action == SEND and name in self.dropped.get(kind, ()):
+                each = [min(max(0, low), high)] * len(each)
             setattr(frame, name, each if length else each[0])
         if action == SEND and self.laid and kind not in self.laid and not found:
             found = f"{handler} sends a frame of kind {kind}, which has no layout"
@@ -61,11 +65,9 @@ class Frames:
         if action != SEND:
             return {TIMED} & self.names
         known = {"kind", TIMED, *self.laid.get(kind, ())} if self.laid else set()
-        return {*known, *MEDIUMS} & self.names
+        return {*known, *self.looked_at} & self.names
 
 
-def layouts_of(network: Any) -> Any:
-    """The layouts of a network's frames, if those are what goes over a wire."""
-    if not network.has("frames") or network.has("packets"):
-        return ()
-    return getattr(network.frames, "LAYOUTS", ())
+def frames_of(network: Any) -> Frames:
+    """What looks at the frames of a network."""
+    return Frames(network.fields.FRAME, layouts_of(network), LOOKED_AT[network.medium])

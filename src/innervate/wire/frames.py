@@ -2,7 +2,7 @@
 
 from innervate.wire.bits import get, put
 from innervate.wire.crc import is_sealed, seal
-from innervate.wire.layout import pack, unpack, width
+from innervate.wire.layout import SPARE, pack, unpack, width
 
 CRC_BYTES = 2
 
@@ -31,6 +31,12 @@ class Codec:
         self.sizes = {kind: (kind_bits + width(fields) + 7) // 8 + CRC_BYTES
                       for kind, fields in self.fields.items()}  # fmt: skip
         self.SIZE_MAX = max(self.sizes.values())
+        known = {name: many for fields in self.fields.values() for name, many, *_ in fields}
+        self._others = {
+            kind: [(name, known[name]) for name in known
+                   if name != SPARE and name not in {one[0] for one in fields}]
+            for kind, fields in self.fields.items()
+        }  # fmt: skip
 
     def encode(self, frame: object) -> bytes:
         """The bytes of a frame record.
@@ -49,8 +55,8 @@ class Codec:
     def decode(self, data: bytes | bytearray | memoryview, frame: object) -> int:
         """Read received bytes into a frame record; any bytes at all will do.
 
-        Sets `kind` and the fields of that kind. Returns OK, or else the reason, with `frame` as it
-        was.
+        Sets `kind` and the fields of that kind; those that only others have are 0, as nobody sent
+        them. Returns OK, or else the reason, with `frame` as it was.
         """
         size = len(data)
         if not min(self.sizes.values()) <= size <= self.SIZE_MAX:
@@ -64,4 +70,9 @@ class Codec:
             return BAD_LENGTH
         frame.kind = kind  # type: ignore[attr-defined]
         unpack(self.fields[kind], data, self.kind_bits, frame)
+        for name, many in self._others[kind]:
+            for i in range(many):
+                getattr(frame, name)[i] = 0
+            if not many:
+                setattr(frame, name, 0)
         return OK

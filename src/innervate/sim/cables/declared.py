@@ -18,7 +18,7 @@ from innervate.dialect.arith import MASK30
 from innervate.folders import invariants_of
 from innervate.kernel import compilation
 from innervate.kernel.bits import mix
-from innervate.network import Network, networks
+from innervate.network import Network, layouts_of, networks
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim import clocks, wheel
 from innervate.sim.cables import loop, recorder
@@ -27,7 +27,7 @@ from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
-from innervate.sim.sent import WORDS, kinds_of, look_of, parts_of
+from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, put
 
 OUTBOX = 16
@@ -39,16 +39,16 @@ class Unfit(ValueError):
 
 def functions(
     protocol: ModuleType, fields: ModuleType, own: Mapping[str, Any] | None = None,
-    kinds: tuple[int, ...] = (),
+    layouts: Any = (),
 ) -> ModuleType:  # fmt: skip
     """What the medium calls (see `sim/cables`), of a protocol, its fields, its invariants.
 
-    `kinds` are those that its frames can have; () = any.
+    `layouts` are those of its frames; () = they do not say what is on a wire.
     """
     if SOURCE < protocol.TIMERS:
         raise Unfit(f"a node over cables has at most {SOURCE} timers, not {protocol.TIMERS}")
     do = ModuleType(f"{protocol.__name__} over cables")
-    look = look_of(fields.FRAME, kinds)
+    look = look_of(fields.FRAME, layouts)
     vars(do).update(parts_of(look))
     vars(do).update(_entries(protocol, look))
     vars(do).update(frames_of(fields.FRAME))
@@ -167,7 +167,7 @@ class DeclaredCables(Cables):
 
 def _functions(network: Network) -> ModuleType:
     rules = invariants_of(network, "node_")
-    return functions(network.protocol, network.fields, rules, kinds_of(network))
+    return functions(network.protocol, network.fields, rules, layouts_of(network))
 
 
 def plain_loop(kind: str) -> Callable[..., None]:

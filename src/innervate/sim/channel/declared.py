@@ -18,7 +18,7 @@ import numpy as np
 from innervate.dialect import arith, outbox, rng
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
-from innervate.network import Network, networks
+from innervate.network import Network, layouts_of, networks
 from innervate.sim import clocks, delays, heap, rows, taps
 from innervate.sim.cables.declared import Unfit, frames_of
 from innervate.sim.channel import listening, loop, medium, traffic
@@ -29,7 +29,7 @@ from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
-from innervate.sim.sent import WORDS, kinds_of, look_of, parts_of
+from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, get, put, row_dtype
 
 DELIVERY = ("time", "node", "port", "kind", "latency")
@@ -68,7 +68,7 @@ def functions(network: Network) -> ModuleType:
     do = ModuleType(f"{protocol.__name__} on a channel")
     names = {name for name, length, *_ in fields.FRAME if not length}
     vars(do).update({name: frames[name] for name in ("copy_frame", "digest")})
-    look = look_of(fields.FRAME, kinds_of(network))
+    look = look_of(fields.FRAME, layouts_of(network))
     vars(do).update(parts_of(look))
     vars(do).update(_entries(protocol, look, frames["copy_frame"], "made_at" in names))
     vars(do).update(_noted(frames["copy_frame"], frames["kind_of"], "made_at" in names))

@@ -20,7 +20,7 @@ from innervate.dialect.access import ALL
 from innervate.dialect.outbox import URGENT
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
-from innervate.network import Network, access_of, networks
+from innervate.network import Network, access_of, layouts_of, networks
 from innervate.scenario.declared.field import sizes_of
 from innervate.sim import clocks, heap, rows, taps
 from innervate.sim.cables.declared import Unfit, frames_of
@@ -32,7 +32,7 @@ from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import DEAD, OFF
 from innervate.sim.own import check_of, words_of
 from innervate.sim.recorded import Recorded
-from innervate.sim.sent import WORDS, kinds_of, look_of, parts_of
+from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
 
@@ -52,7 +52,7 @@ def functions(network: Network) -> ModuleType:
     names = {name for name, length, *_ in fields.FRAME if not length}
     frames = frames_of([one for one in fields.FRAME if one[0] != "rssi"])
     whole = frames_of(fields.FRAME)["copy_frame"]
-    look = look_of(fields.FRAME, kinds_of(network))
+    look = look_of(fields.FRAME, layouts_of(network))
     do = compilation.bound(
         f"{protocol.__name__} over a field",
         (whole, frames["digest"], frames["kind_of"], _frame_bytes(network.frames)),
