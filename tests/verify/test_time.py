@@ -64,17 +64,20 @@ def test_what_is_due_first_comes_first_and_at_once_in_either_order(wait, delays,
         assert step.state.nodes[1] == state.nodes[1]
 
 
-@pytest.mark.parametrize(("unit", "high", "moves"), [
-    ("us", MASK30, True), ("us ahead", MASK30, False), ("us", MASK30 - 1, False),
+@pytest.mark.parametrize(("name", "unit", "high", "moves"), [
+    ("at", "us", MASK30, True), ("at", "us ahead", MASK30, False), ("at", "us", MASK30 - 1, False),
+    ("made_at", "us", MASK30, False),
 ])  # fmt: skip
-def test_a_reading_of_the_clock_moves_as_time_passes_and_an_offset_does_not(unit, high, moves):
+def test_a_reading_of_the_clock_moves_as_time_passes_and_an_offset_does_not(
+    name, unit, high, moves
+):
     """`innervate docs own-network` says by what one is known."""
 
     def on_start(node, params, now, cause, out):
-        node.at = MOMENT
+        setattr(node, name, MOMENT)
         set_timer(out, 0, (now + 20) & MASK30)
 
-    fields = SimpleNamespace(STATE=(("at", 0, 0, high, unit, ""),), FRAME=(), PARAMS=())
+    fields = SimpleNamespace(STATE=((name, 0, 0, high, unit, ""),), FRAME=(), PARAMS=())
     protocol = SimpleNamespace(on_start=on_start, on_timer=lambda *_: None, TIMERS=1)
     net = declared.Net(protocol, fields, graph_of("pair"), {})
     (move,) = net.due(net.begin(declared.Budget()).state, 0)

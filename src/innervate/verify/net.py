@@ -18,7 +18,7 @@ from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.topology import PORTS, Graph
 from innervate.verify.draws import Draws
-from innervate.verify.frames import Frames
+from innervate.verify.frames import TIMED, Frames
 from innervate.verify.states import After, Budget, Move, Node, State, Step, happen, sent
 from innervate.verify.telling import ERRORS, first_broken, where
 from innervate.verify.values import ahead, put, values, with_one
@@ -69,7 +69,7 @@ class Net:
         self.all = [plain.make("Node", fields.STATE)() for _ in range(graph.cells)]
         self.given = getattr(fields, "GIVEN", ())
         self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
-                       if unit == "us" and high == MASK30}  # fmt: skip
+                       if unit == "us" and high == MASK30 and name != TIMED}  # fmt: skip
 
     def begins(self, budget: Budget) -> Iterator[Step]:
         """All ways in which the network can begin, by what its nodes draw."""
