@@ -266,6 +266,7 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     usual = [(name, getattr(fields, name, {})) for name in ("DEFAULTS", "EXPLORED")]
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
     found += checks.of_given(place, getattr(fields, "GIVEN", ()), fields.FRAME)
+    found += checks.of_messages(place, getattr(fields, "MESSAGES", ()))
     if network.medium in MEDIA_ON_AIR and not network.over:
         found += sends.of_delays(files)
     if network.medium == "channel":

@@ -7,7 +7,7 @@ from types import SimpleNamespace as Of
 import pytest
 
 from innervate.scenario import ScenarioError, bundled, dump, from_dict, load, loads, plan
-from innervate.scenario.cables import describe
+from innervate.scenario.cables import Happening, describe
 from innervate.scenario.declared.shared import Input, check_values, inputs_of
 from innervate.scenario.events import in_time, told
 from innervate.scenario.overrides import parse_value
@@ -90,9 +90,11 @@ def test_what_happens_to_a_node_is_told_it_as_its_network_says():
         "warm": lambda node, value: (3, {"node": node, "value": value}),
         "cool": lambda node, value: (5, {"of": (node, value)}),
     })  # fmt: skip
-    assert inputs_of(model, network, 2, ("kill",)) == [
-        Input(500_000, 1, 5, {"of": (1, 4)}), Input(1_000_000, 0, 1, {"v": 2}),
-        Input(1_000_000, 1, 1, {"v": 2}), Input(2_500_000, 0, 3, {"node": 0, "value": 9}),
+    found = inputs_of(model, network, 2, ("kill",))
+    assert [type(one) for one in found] == [Happening, Input, Input, Happening]
+    assert found == [
+        Happening(500_000, 1, 5, {"of": (1, 4)}), Input(1_000_000, 0, 1, {"v": 2}),
+        Input(1_000_000, 1, 1, {"v": 2}), Happening(2_500_000, 0, 3, {"node": 0, "value": 9}),
     ]  # fmt: skip
 
 

@@ -1,11 +1,12 @@
-"""Invariants that a network says itself: which is broken first, by whom, and how it is told."""
+"""What a network says itself: invariants, which is broken first, by whom; what messages are."""
 
 from types import SimpleNamespace as Of
 
 import pytest
 
+from innervate.scenario.cables import Happening, Input
 from innervate.sim import own
-from innervate.sim.own import OWN_BROKEN, check_of, words_of
+from innervate.sim.own import OWN_BROKEN, check_of, message_times, words_of
 
 
 def low(state, params, now):
@@ -47,3 +48,13 @@ def test_without_invariants_there_is_nothing_to_check():
     world = Of(run=[Of(checks=1, broken=0)], cells=[None], params=[None])
     check_of([], "cells")(world, 0, 0)
     assert world.run[0].broken == 0
+
+
+@pytest.mark.parametrize(("fields", "times"), [
+    (Of(), [20, 30, 30]), (Of(MESSAGES=(1,)), [20, 30]), (Of(MESSAGES=()), []),
+])  # fmt: skip
+def test_inputs_are_messages_but_of_kinds_that_are_none_and_own_words(monkeypatch, fields, times):
+    monkeypatch.setattr(own, "networks", lambda: {"geo": Of(fields=fields)})
+    inputs = [Input(30, 0, 1, {}), Input(20, 1, 1, {}), Input(30, 1, 2, {}),
+              Happening(40, 1, 1, {})]  # fmt: skip
+    assert message_times(Of(kind="geo", inputs=inputs)) == times

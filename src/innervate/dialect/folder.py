@@ -193,6 +193,14 @@ def of_given(path, given, frame):
     return found
 
 
+def of_messages(path, kinds):
+    """What is wrong with the kinds of inputs that are messages."""
+    if isinstance(kinds, (list, tuple)) and all(isinstance(one, int) for one in kinds):
+        return []
+    line = _lines_of(path).get(("MESSAGES", ""), 1)
+    return [Finding(path, line, "MESSAGES is the kinds of inputs that are to be delivered: (1,)")]
+
+
 def of_taken(path, fields, taken, table="PARAMS"):
     """Fields of a table that have a name of the medium's own, and would take its value's place."""
     lines = _lines_of(path)

@@ -45,6 +45,12 @@ class Input(NamedTuple):
     item: dict[str, int]
 
 
+class Happening(Input):
+    """What happens to a node, in a word of its network's own: no message of anybody."""
+
+    __slots__ = ()
+
+
 @dataclass(slots=True)
 class CablesPlan:
     """Everything a run over cables needs, as whole numbers.

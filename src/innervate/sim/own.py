@@ -1,4 +1,4 @@
-"""Invariants that a network says itself, looked at after every call of a run on any medium."""
+"""What a network says itself, of a run on any medium: its invariants, and what messages are."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 from innervate.folders import invariants_of
 from innervate.network import networks
+from innervate.scenario.cables import Happening
 
 OWN_BROKEN = 64  # `run.broken` of the first of them; below it are those of the media
 
@@ -33,6 +34,13 @@ def check_of(own: Iterable[Callable[..., Any]], states: str) -> Callable[..., No
     exec(compile(text, "invariants of a protocol", "exec"), made)
     check: Callable[..., None] = made["check_own"]
     return check
+
+
+def message_times(plan: Any) -> list[int]:
+    """When users give what is to be delivered, us: inputs of the kinds `MESSAGES`, or of all."""
+    kinds = getattr(networks()[plan.kind].fields, "MESSAGES", None)
+    given = [one for one in plan.inputs if not isinstance(one, Happening)]
+    return sorted(one.at_us for one in given if kinds is None or one.kind in kinds)
 
 
 def words_of(kind: str) -> dict[int, str]:

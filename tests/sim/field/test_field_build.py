@@ -196,14 +196,16 @@ def test_a_full_queue_grows_and_nothing_else(running):
 
 def test_who_is_about_to_start_is_not_off_and_who_is_not_there_yet_is(running):
     running.world.radios["state"], running.plan.absent = (OFF, OFF, ALIVE), [0, 1, 1]
+    running.message_times = []
     assert running.counts().off == (1,)
 
 
 def test_frames_and_messages_are_counted_by_name(running):
-    running.world.counters[:] = [3, 10, 17, 24, 31, 38, 45, 0, 59, 66, 73, 80]
+    running.world.counters[:] = [3, 10, 17, 24, 31, 38, 45, 0, 59, 66, 80]
     running.world.radios["state"], running.plan.absent = (ALIVE, DEAD, OFF), [1, 1, 1]
+    running.world.run["now"], running.message_times = 70, [0, 70, 70, 71]
     assert running.counts() == Counts(
-        nodes=3, off=(1, 2), sent=3, arrived=10, offered=73, delivered=80,
+        nodes=3, off=(1, 2), sent=3, arrived=10, offered=3, delivered=80,
         lost_by={"collision": 17, "sending": 24, "noise": 31, "off": 38, "broken_off": 45,
                  "busy": 59, "queue": 66}, is_shared=True,
     )  # fmt: skip

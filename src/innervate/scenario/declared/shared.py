@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from msgspec import Meta
 
 from innervate.network import Network
-from innervate.scenario.cables import Input
+from innervate.scenario.cables import Happening, Input
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.events import exact, in_time, refuse
 from innervate.scenario.explain import alternatives, nearest
@@ -205,7 +205,7 @@ def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]
     for event in model.event:
         if event.action not in actions:
             kind, item = network.happenings[event.action](event.node, event.value)
-            found.append(Input(round(1e6 * event.at_s), event.node, kind, dict(item)))
+            found.append(Happening(round(1e6 * event.at_s), event.node, kind, dict(item)))
     return sorted(found, key=lambda one: one.at_us)
 
 

@@ -9,6 +9,7 @@ first sender: latencies are taken from it; 0 is for what no user handed in, whic
 from __future__ import annotations
 
 import functools
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -25,7 +26,8 @@ from innervate.sim.cables import loop, recorder
 from innervate.sim.cables.build import Added, Records, build
 from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
-from innervate.sim.own import check_of, words_of
+from innervate.sim.counts import Counts
+from innervate.sim.own import check_of, message_times, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, put
@@ -163,6 +165,16 @@ class DeclaredCables(Cables):
     def broken_words(self) -> dict[int, str]:  # type: ignore[override]
         """What is broken, by number."""
         return {**Cables.broken_words, **WORDS, **words_of(self.plan.kind)}
+
+    @cached_property
+    def message_times(self) -> list[int]:
+        """When users give what is to be delivered, us."""
+        return message_times(self.plan)
+
+    def counts(self) -> Counts:
+        """Frames of all cables, and what users gave and got."""
+        offered = bisect_right(self.message_times, self.clock_us())
+        return super().counts()._replace(offered=offered)
 
 
 def _functions(network: Network) -> ModuleType:

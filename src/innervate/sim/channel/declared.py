@@ -8,6 +8,7 @@ on_carrier; TIMERS up to 2) and `fields`. A frame says by `slots` how long it is
 from __future__ import annotations
 
 import functools
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -27,7 +28,7 @@ from innervate.sim.channel.build import OUTBOX, Records, build
 from innervate.sim.channel.calls import handlers
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
-from innervate.sim.own import check_of, words_of
+from innervate.sim.own import check_of, message_times, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, get, put, row_dtype
@@ -211,6 +212,11 @@ class DeclaredChannel(Channel):
             made[name] = packets[column]
         return {**found, "deliveries": made}
 
+    @cached_property
+    def message_times(self) -> list[int]:
+        """When users give what is to be delivered, us."""
+        return message_times(self.plan)
+
     def counts(self) -> Counts:
         """Frames, one for each node that could hear it; what nodes were given and gave up."""
         numbers, radios = self.world.above.counters, self.world.radios
@@ -222,7 +228,7 @@ class DeclaredChannel(Channel):
             sent=int(numbers[listening.SENT]),
             arrived=int(numbers[listening.ARRIVED]),
             lost_by=lost,
-            offered=int(get(self.world.run, 0, "offers")),
+            offered=bisect_right(self.message_times, self.clock_us()),
             delivered=int(numbers[listening.DELIVERED]),
             is_shared=True,
         )

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 import importlib
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -30,7 +31,7 @@ from innervate.sim.field import access, build, calls, listening, loop, medium, p
 from innervate.sim.field import world as w
 from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import DEAD, OFF
-from innervate.sim.own import check_of, words_of
+from innervate.sim.own import check_of, message_times, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.status import POOL_FULL
@@ -295,6 +296,11 @@ class DeclaredField(Field):
         if status == POOL_FULL:
             self.world = grow_heap(self.world)
 
+    @cached_property
+    def message_times(self) -> list[int]:
+        """When users give what is to be delivered, us."""
+        return message_times(self.plan)
+
     def counts(self) -> Counts:
         """Frames, one for each node that could hear it; what nodes were given and gave up."""
         numbers, radios = self.world.counters, self.world.radios
@@ -306,7 +312,7 @@ class DeclaredField(Field):
             sent=int(numbers[listening.SENT]),
             arrived=int(numbers[listening.ARRIVED]),
             lost_by={name: many for name, many in lost.items() if many},
-            offered=int(numbers[listening.OFFERED]),
+            offered=bisect_right(self.message_times, self.clock_us()),
             delivered=int(numbers[listening.DELIVERED]),
             is_shared=True,
         )  # fmt: skip

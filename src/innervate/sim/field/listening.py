@@ -22,9 +22,8 @@ BROKEN_OFF = 6
 CUT = 7
 BUSY = 8
 FULL = 9
-OFFERED = 10
-DELIVERED = 11
-COUNTERS = 12
+DELIVERED = 10
+COUNTERS = 11
 LOST = {"collision": COLLIDED, "sending": SENDING, "noise": NOISY, "off": OFF,
         "broken_off": BROKEN_OFF, "cut": CUT, "busy": BUSY, "queue": FULL}  # fmt: skip
 
@@ -149,7 +148,6 @@ def offer(world, do, index, time):
     """Hand a node what its user has for it."""
     given = world.offers[index]
     node = given.node
-    world.counters[OFFERED] += 1
     if world.radios[node].state == ALIVE:
         do.take_item(world, index)
         calls.give(world, do, node, time, given.kind)
