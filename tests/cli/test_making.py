@@ -157,3 +157,14 @@ def test_a_measure_that_is_not_there_or_fails_is_told_with_its_line(own, capsys)
     more.write_text("def measures(nodes, reports, deliveries, plan):\n    return {'a': 1 // 0}\n")
     with pytest.raises(NetworkError, match=r"^gossip/more.py:2: ZeroDivisionError: .*, in measure"):
         run(own.scenario, plain=True)
+
+
+def test_a_new_network_has_numbers_that_none_beside_it_has(alone):
+    for name in ("one", "two", "three"):
+        made(alone / name)
+    for word, numbers in (
+        ("link_type", ["162", "159", "158"]),
+        ("key_kind", ["255", "254", "253"]),
+    ):
+        texts = [(alone / name / "network.py").read_text() for name in ("one", "two", "three")]
+        assert [text.partition(f"{word}=")[2].partition(",")[0] for text in texts] == numbers

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -43,6 +44,7 @@ def make(target: Path | None, on: str, over: str = "") -> int:
         work = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
     except OSError as error:
         raise UserError(f"{target.parent} cannot be written: {error.strerror}") from None
+    numbers = _free_numbers(target.parent)
     fresh = work / name  # which may be read by whom the user lets: `work` is the user's alone
     try:
         fresh.mkdir()
@@ -50,6 +52,8 @@ def make(target: Path | None, on: str, over: str = "") -> int:
             for pattern in sorted((PATTERNS / home).iterdir()):
                 made = pattern.name.removesuffix(".txt").replace(WORD, name)
                 text = pattern.read_text(encoding="utf-8").replace(WORD, name)
+                for old, new in numbers:
+                    text = text.replace(old, new)
                 (fresh / made).write_text(text.replace("OVER", over), encoding="utf-8")
         fresh.rename(target)
     finally:
@@ -60,6 +64,23 @@ def make(target: Path | None, on: str, over: str = "") -> int:
                     f"innervate run {target / name}.toml"):  # fmt: skip
         print(f"  {command}")
     return 0
+
+
+def _free_numbers(folder: Path) -> list[tuple[str, str]]:
+    """What a pattern says of the numbers that tell networks apart, and what is free of these.
+
+    By one Wireshark knows whose frames it has, by the other nodes that share keys: taken are those
+    of the networks that are known, and of the folders beside.
+    """
+    beside = "".join(one.read_text(encoding="utf-8", errors="replace")
+                     for one in folder.glob(f"*/{folders.NETWORK_FILE}"))  # fmt: skip
+    found = []
+    for word, most, least in (("link_type", 162, 147), ("key_kind", 255, 1)):
+        taken = {str(getattr(one, word)) for one in networks().values()}
+        taken |= set(re.findall(rf"\b{word} *= *(\d+)", beside))
+        free = [one for one in range(most, least - 1, -1) if str(one) not in taken]
+        found.append((f"{word}={most}", f"{word}={free[0] if free else most}"))
+    return found
 
 
 def _is_module(name: str) -> bool:
