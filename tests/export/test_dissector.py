@@ -18,6 +18,7 @@ from innervate.networks.skin import frames as skin
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire import crc, seal
 from innervate.wire.bits import put
+from innervate.wire.frames import Codec
 from innervate.wire.layout import REST, SPARE
 from tests.export.tshark_runs import fields_of, tshark
 
@@ -230,6 +231,14 @@ def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     assert sent[:2] == ("station 2", "all")
     assert "window 4" in sent[2]
     assert came[:2] == ("station 7", "all")
+    layouts = networks()["flooding"].frames
+    frame = plain.make("Frame", networks()["flooding"].fields.FRAME)()
+    frame.kind = layouts.LAYOUTS[0][0]
+    data = Codec(layouts.LAYOUTS, layouts.KIND_BITS).encode(frame)
+    blocks = [pcapng.section(), pcapng.interface(networks()["flooding"].link_type, "node 2")]
+    blocks += [pcapng.packet(0, at, data, way) for at, way in enumerate((out, into))]
+    path.write_bytes(b"".join(blocks))
+    assert [ends[:2] for ends in columns(tshark, path)] == [("node 2", ""), ("", "node 2")]
     alarm, _ = mesh_record(mesh_const.ALARM, 0, [5], bytes([12] + [0] * 17))
     alarm.link_src, alarm.link_dst, alarm.origin, alarm.dest, alarm.seq = 3, 255, 5, 254, 77
     capture = capture_of(tmp_path / "mesh.pcapng", "mesh", [mesh.encode(alarm)])

@@ -120,13 +120,14 @@ local function body(self, tvb, tree, kind, at, stop)
 end
 
 -- Where a frame comes from and goes to, as its interface says: "cell 7 port 1; A to B" is A's end of
--- a cable. On the air only who sends it itself is known so.
+-- a cable. On the air who sends it is known where it left, who hears it where it came in.
 local function ends()
   local says, way, name = interface.says(), interface.way(), interface.name()
   way = way and way.value
   local here, there = (says and tostring(says) or ""):match("; (.+) to (.+)$")
   if here and way == INBOUND then here, there = there, here end
   if not here and way ~= INBOUND then here = name and tostring(name) end
+  if not there and way == INBOUND then there = name and tostring(name) end
   return here, there
 end
 
