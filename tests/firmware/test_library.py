@@ -1,13 +1,18 @@
 """A library's files in a folder."""
 
+import subprocess
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from innervate.cli import main
 from innervate.firmware import library, tools
 from innervate.firmware.errors import FirmwareError
 from innervate.networks.mesh.board import node
+from tests.own import alone, own
 
+__all__ = ["alone", "own"]
 FILES = SimpleNamespace(library=SimpleNamespace(prefix="own"), texts={"own.h": "int a;\n"})
 
 
@@ -53,3 +58,13 @@ def test_a_stations_packet_is_as_long_as_its_slots_without_the_crc(slots, most):
     assert library._told(made, "PACKET_BYTES x PER_TURN, HAS_GATE", 0) == f"{most} x 4, 0"
     role.driver, role.has_gate = "node", True
     assert library._told(made, "PACKET_BYTES HAS_GATE", 0) == "PACKET_BYTES gate != 0"
+
+
+@pytest.mark.parametrize(("word", "given"), [("", "item"), ("    item.value = 3\n", "&own")])
+def test_an_item_that_the_protocol_writes_into_is_a_copy_of_the_users(own, word, given):
+    own.change("protocol.py", "    node.value = item.value\n",
+               f"{word}    node.value = item.value\n")  # fmt: skip
+    assert not main(["firmware", "gossip", "--out", "c"])
+    source = Path("c/gossip_node.c")
+    assert f"now, kind, {given}, " in source.read_text()
+    subprocess.run(["gcc", "-std=c99", "-Werror", "-fsyntax-only", source], check=True)

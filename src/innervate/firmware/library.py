@@ -188,7 +188,15 @@ def _sections(library: Library, sealed: bool) -> frozenset[str]:
     found = {"lines" if role.driver == "node" else "air", "sealed" if sealed else "clear", "small"}
     if role.driver == "node":
         found.add("hooks" if role.hooks else "ports")
+        found.add("writes" if _writes_item(library) else "keeps")
     return frozenset(found | ({"gate"} if role.has_gate else set()))
+
+
+def _writes_item(library: Library) -> bool:
+    """True if the protocol changes what its user hands down, which is the user's."""
+    given = [made for made in library.program.handlers if made.name == "on_input"]
+    return any(made.types[name].what in ("item", "frame")
+               for made in given for name in made.changed)  # fmt: skip
 
 
 def _told(library: Library, text: str, key_kind: int) -> str:

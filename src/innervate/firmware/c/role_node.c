@@ -357,7 +357,13 @@ void role_node_give(role_node_t *node, int32_t kind, const role_item_t *item)
 {
     if (!node->broken) {
         const int32_t now = role_node_now(node);
+/*+ keeps */
         role_on_input(&node->state, /*gate*/node->params, now, kind, item, &node->out);
+/*- */
+/*+ writes */
+        role_item_t own = *item; /* which the protocol writes into */
+        role_on_input(&node->state, /*gate*/node->params, now, kind, &own, &node->out);
+/*- */
         role_drain(node);
     }
 }
