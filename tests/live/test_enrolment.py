@@ -85,10 +85,27 @@ def test_what_is_no_authority_is_refused_in_a_line(folder, text):
         Authority(folder)
 
 
-def test_a_list_that_is_none(folder):
+@pytest.mark.parametrize("text", ["no digits", "", "\n"])
+def test_a_list_that_is_none(folder, text):
     folder.mkdir()
-    (folder / LIST).write_text("no digits")
+    (folder / LIST).write_text(text)
     with pytest.raises(LiveError, match="not a list of nodes that are put out"):
         read_list(folder / LIST)
     with pytest.raises(LiveError, match="cannot be read: No such file"):
         read_list(folder / "other")
+
+
+def test_a_folder_that_lost_its_authority_gets_no_other_one(folder):
+    Authority(folder).enrol(3)
+    own = (folder / "n3.identity").read_text()
+    (folder / "authority.key").unlink()
+    with pytest.raises(LiveError, match="holds n3.identity, and no authority.key; put that back"):
+        Authority(folder)
+    assert [path.name for path in folder.iterdir()] == ["n3.identity"]
+    assert (folder / "n3.identity").read_text() == own
+
+
+def test_an_authority_has_a_folder(tmp_path):
+    (tmp_path / "keys").write_text("")
+    with pytest.raises(LiveError, match="keys: a file lies here; name a folder"):
+        Authority(tmp_path / "keys")

@@ -316,6 +316,15 @@ def test_one_command_makes_a_file_for_each_node(tmp_path, monkeypatch, capsys):
     assert authority.issued[-1] == (7, 5)
 
 
+def test_who_is_asked_for_with_one_that_cannot_be_is_not_made_either(tmp_path, capsys):
+    keys = str(tmp_path / "keys")
+    assert cli(["live", "enrol", keys, "1"]) == 0
+    assert cli(["live", "enrol", keys, "--nodes", "2"]) == 2
+    assert "node 1 is enrolled already" in capsys.readouterr().err
+    assert Authority(tmp_path / "keys").issued == [(1, 1)]
+    assert not (tmp_path / "keys" / "n0.identity").exists()
+
+
 BROKEN = [
     "",
     "number = 1",

@@ -18,6 +18,8 @@ def enrol(folder: Path, numbers: list[int], nodes: int) -> int:
         raise errors.UserError("which nodes? name their numbers, or how many with --nodes")
     authority = Authority(folder)
     for number in wanted:
+        authority.check(number)  # all of them, before the first is made
+    for number in wanted:
         print(authority.enrol(number))
     return 0
 

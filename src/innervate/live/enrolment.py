@@ -44,6 +44,18 @@ class Authority:
         self.version = 0
         if self._path.exists():
             self._read()
+        else:
+            self._check_new()
+
+    def _check_new(self) -> None:
+        """Nodes that another key enrolled would not know those of a new one."""
+        if self.folder.exists() and not self.folder.is_dir():
+            raise LiveError(f"{self.folder}: a file lies here; name a folder")
+        if left := sorted(path.name for path in self.folder.glob("*.identity")):
+            raise LiveError(
+                f"{self.folder}: holds {left[0]}, and no {AUTHORITY}; put that back, or enrol all "
+                "nodes anew in another folder"
+            )
 
     def _read(self) -> None:
         try:
@@ -65,11 +77,11 @@ class Authority:
         except ValueError as error:
             raise LiveError(f"{self._path}: {error}; {NONE}") from None
 
-    def enrol(self, number: int) -> Path:
-        """Make the identity of a node; its file.
+    def check(self, number: int) -> None:
+        """That a node can have the number.
 
         Raises:
-            LiveError: the number is none, or a node that was not put out has it.
+            LiveError: it is none, or a node that was not put out has it.
         """
         if not 0 <= number <= NUMBER_MAX:
             raise LiveError(f"numbers of nodes are 0 to {NUMBER_MAX}, not {number}")
@@ -78,6 +90,14 @@ class Authority:
                 f"node {number} is enrolled already; put it out first: "
                 f"innervate live revoke {self.folder} {number}"
             )
+
+    def enrol(self, number: int) -> Path:
+        """Make the identity of a node; its file.
+
+        Raises:
+            LiveError: the number is none, or a node that was not put out has it.
+        """
+        self.check(number)
         serial = 1 + max((one for _number, one in self.issued), default=0)
         self.issued.append((number, serial))
         path = self.folder / f"n{number}.identity"
@@ -141,8 +161,11 @@ def read_list(path: Path) -> bytes:
         LiveError: it cannot be read, or is none.
     """
     try:
-        return bytes.fromhex(path.read_text(encoding="utf-8"))
+        data = bytes.fromhex(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise LiveError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError:
-        raise LiveError(f"{path}: not a list of nodes that are put out") from None
+        data = b""
+    if not data:
+        raise LiveError(f"{path}: not a list of nodes that are put out")
+    return data
