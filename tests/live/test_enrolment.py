@@ -99,7 +99,7 @@ def test_a_folder_that_lost_its_authority_gets_no_other_one(folder):
     Authority(folder).enrol(3)
     own = (folder / "n3.identity").read_text()
     (folder / "authority.key").unlink()
-    with pytest.raises(LiveError, match="holds n3.identity, and no authority.key; put that back"):
+    with pytest.raises(LiveError, match=r"holds n3\.identity, and no authority"):
         Authority(folder)
     assert [path.name for path in folder.iterdir()] == ["n3.identity"]
     assert (folder / "n3.identity").read_text() == own
