@@ -66,7 +66,7 @@ def running(folder, name):
     folder.mkdir(parents=True, exist_ok=True)
     with socket.socket(socket.AF_UNIX) as sock:
         sock.bind(str(folder / f"{name}.sock"))
-        yield
+        yield sock
     (folder / f"{name}.sock").unlink()
 
 
@@ -90,6 +90,20 @@ def test_what_live_up_started_last_is_found_without_its_folder(own, tmp_path, mo
                 assert status.where() == second, "who named a folder leaves no note"
         assert status.where() == own
         assert list(own.iterdir()) == []
+
+
+def test_those_that_run_on_are_found_again_when_a_newer_live_up_has_ended(own, tmp_path):
+    first, second = tmp_path / "first", tmp_path / "second"
+    second.mkdir()
+    with status.findable(first):
+        with running(first, "n1") as sock:
+            sock.listen()
+            with status.findable(second):
+                assert status.where() == second
+            assert status.find("n1") == first / "n1.sock"
+        with status.findable(second):
+            pass
+        assert status.where() == own, "nobody runs there any more"
 
 
 def test_where_the_own_folder_is_not_ours_nodes_run_all_the_same(tmp_path, monkeypatch):

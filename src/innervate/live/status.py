@@ -64,7 +64,10 @@ def where() -> Path:
 
 @contextmanager
 def findable(run: Path) -> Iterator[None]:
-    """Leave a note of where the nodes of a `live up` are, until it ends or a newer one does."""
+    """Leave a note of where the nodes of a `live up` are, until it ends or a newer one does.
+
+    Those whose note it took the place of are found again if they run on.
+    """
     if os.environ.get("INNERVATE_RUN"):
         yield  # who said where has their own way to find them
         return
@@ -73,7 +76,9 @@ def findable(run: Path) -> Iterator[None]:
     except LiveError:  # somebody else's: nodes run all the same, and are found by their folder
         yield
         return
-    link = here / UP
+    link, before = here / UP, None
+    with suppress(OSError):
+        before = Path(os.readlink(link))
     with suppress(OSError):  # then they are found by their folder alone
         here.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
         link.unlink(missing_ok=True)
@@ -84,6 +89,8 @@ def findable(run: Path) -> Iterator[None]:
         with suppress(OSError):
             if Path(os.readlink(link)) == run:
                 link.unlink()
+                if before is not None and before != run and any(map(answers, _sockets(before))):
+                    link.symlink_to(before)
 
 
 class Writer:
