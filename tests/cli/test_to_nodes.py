@@ -188,3 +188,19 @@ def test_a_cable_is_cut_and_restored_at_one_node(folder, what):
     node = Node(folder, "n1", [{"ok": True}])
     assert live.change("n1", 2, what) == 0
     assert node.asked == [{"do": what, "port": 2}]
+
+
+def test_what_cannot_be_counted_or_read_is_said_before_a_node_is_asked(folder, monkeypatch):
+    node = Node(folder, "n1", [STATUS])
+    with pytest.raises(UserError, match="--count must be a whole number from 0, not -1"):
+        live.listen("n1", -1, False, False)
+    monkeypatch.setattr("sys.stdin", None)  # as Python has it where it was closed
+    with pytest.raises(UserError, match="- reads standard input, which is closed"):
+        live.send("n1", 3, "-", {"reliable": True}, False)
+    assert node.asked == []
+
+
+def test_a_message_need_not_be_text(folder):
+    node = Node(folder, "n1", [{"state": "delivered", "reason": ""}])
+    assert live.send("n1", 3, "\udcff", {"reliable": True}, False) == 0
+    assert node.asked[0]["payload"] == "ff"

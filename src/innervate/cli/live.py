@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from innervate.cli import errors, live_status
 from innervate.live import status
 from innervate.live.errors import LiveError
+from innervate.live.receipts import ALL, FINAL
 from innervate.network import known
 
 if TYPE_CHECKING:
@@ -72,21 +73,34 @@ def show(names: list[str], as_json: bool) -> int:
 def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
     """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
     where = status.find(name)
-    payload = sys.stdin.buffer.read() if text == "-" else text.encode()
+    payload = _read() if text == "-" else text.encode(errors="surrogateescape")
     request = {"do": "send", "to": to, "payload": payload.hex(), **how,
-               "wait": how["reliable"] and to != 255}  # fmt: skip
+               "wait": how["reliable"] and to != ALL}  # fmt: skip
     state = "refused"
     for answer in status.ask(where, request):
         state = answer["state"]
         reason = f": {answer['reason']}" if answer["reason"] else ""
         print(json.dumps(answer) if as_json else f"{state}{reason}", flush=True)
-        if state in ("delivered", "expired", "refused") or not request["wait"]:
+        if state in FINAL or not request["wait"]:
             break
     return 0 if state == "delivered" or (state == "accepted" and not request["wait"]) else 1
 
 
+def _read() -> bytes:
+    """All of standard input.
+
+    Raises:
+        UserError: there is none.
+    """
+    if sys.stdin is None:
+        raise errors.UserError("- reads standard input, which is closed")
+    return sys.stdin.buffer.read()
+
+
 def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     """Print messages that come in at a node."""
+    if count < 0:
+        raise errors.UserError(f"--count must be a whole number from 0, not {count}")
     heard, where = 0, status.find(name)
     words = known(status.ask_one(where, {"do": "status"})["kind"]).live_words
     request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}

@@ -10,6 +10,7 @@ DELIVERED = "delivered"
 EXPIRED = "expired"
 REFUSED = "refused"
 FINAL = (DELIVERED, EXPIRED, REFUSED)
+ALL = 255  # the recipient that is all nodes: nobody acknowledges to have been one of them
 STOPPED = "node stopped"  # why what was under way has expired, and nothing more is accepted
 
 
