@@ -58,6 +58,11 @@ def test_messages_are_sent(tmp_path):
     with innervate.live_up(PAIR, folder=tmp_path, keys="key") as nodes:
         until(lambda: all(told["table"] for told in nodes.status().values()))
         assert nodes.send("n1", 0, b"here") == "delivered"
+        assert nodes.send("n1", 255, b"all") == "accepted", "nobody acknowledges it"
+        with pytest.raises(TypeError, match="send takes no reliabel; it takes reliable, priority"):
+            nodes.send("n1", 0, b"here", reliabel=False)
+        with pytest.raises(TypeError, match="a payload is bytes, not str"):
+            nodes.send("n1", 0, "here")
     assert (tmp_path / "n1.log").exists()
 
 
@@ -66,3 +71,18 @@ def test_what_cannot_be_brought_up_leaves_nothing_running(tmp_path):
         with pytest.raises(innervate.LiveError, match="of another network runs here"):
             innervate.live_up(SKIN, folder=tmp_path)
         assert len(nodes.status()) == 3
+
+
+@pytest.mark.parametrize("way", [{"cables": "usb"}, {"keys": "kee"}, {"keys": None}])
+def test_a_way_that_is_none_is_refused_and_not_taken_for_another(way, tmp_path):
+    with pytest.raises(innervate.LiveError, match=r"(cables|keys) must be one of .*, not"):
+        innervate.live_up(SKIN, folder=tmp_path, **way)
+    assert list(tmp_path.iterdir()) == [], "no node was started, in the clear or otherwise"
+
+
+def test_a_file_is_no_folder_for_nodes(tmp_path):
+    (tmp_path / "run").write_text("")
+    with pytest.raises(innervate.LiveError, match="run is a file; name another --folder"):
+        innervate.live_up(SKIN, folder=tmp_path / "run")
+    with pytest.raises(innervate.LiveError, match="cannot be made: Not a directory"):
+        innervate.live_up(SKIN, folder=tmp_path / "run" / "of")

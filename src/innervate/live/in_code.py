@@ -14,11 +14,12 @@ from typing import Any, Literal, Self, TypeVar
 from innervate import scenario as scenarios
 from innervate.live import play, run_up, status
 from innervate.live.errors import LiveError
+from innervate.live.receipts import ALL, FINAL, check_bytes
 from innervate.network import networks
 from innervate.scenario.given import Changes, Given, load
 
 Answer = TypeVar("Answer")
-ENDED = ("delivered", "expired", "refused")
+HOW = ("reliable", "priority", "in_order")
 
 
 class Nodes:
@@ -79,19 +80,25 @@ class Nodes:
 
         Args:
             name: the node that sends.
-            to: number of the recipient.
+            to: number of the recipient; 255 all, 254 the monitor.
             payload: the message.
             how: reliable, priority, ... as `innervate live send` has them; reliable if left out.
 
         Raises:
             LiveError: there is no such node, or it takes no messages.
+            TypeError: the payload is no bytes, or no message is sent so.
         """
+        check_bytes(payload)
+        if unknown := how.keys() - HOW:
+            said = ", ".join(sorted(unknown))
+            raise TypeError(f"send takes no {said}; it takes {', '.join(HOW)}")
         how = {"reliable": True, **how}
-        request = {"do": "send", "to": to, "payload": payload.hex(), "wait": how["reliable"], **how}
+        request = {"do": "send", "to": to, "payload": payload.hex(), **how}
+        request["wait"] = how["reliable"] and to != ALL
         state = "refused"
         for answer in status.ask(self._network.socket(self._known(name)), request):
             state = str(answer["state"])
-            if state in ENDED or not request["wait"]:
+            if state in FINAL or not request["wait"]:
                 break
         return state
 

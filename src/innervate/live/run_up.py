@@ -24,6 +24,8 @@ OURS = "# As `innervate live up` brought it up; the next one in this folder repl
 MANY = 50  # nodes
 NODE_MB, KEYED_MB = 27, 34  # that a node's process holds, in the clear and with keys
 MARK = "made-by-live-up"  # among keys that may be replaced
+CABLES = ("udp", "pty", "netns")
+SEALS = ("", "key", "identities")
 
 
 class Way(NamedTuple):
@@ -65,7 +67,14 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
 
 
 def prepared(plan: Any, way: Way) -> Processes:
-    """The processes to be of a plan, in their folder, with the keys that are wanted."""
+    """The processes to be of a plan, in their folder, with the keys that are wanted.
+
+    Raises:
+        LiveError: that is no way to bring nodes up, or the folder cannot be had.
+    """
+    for what, given, known in (("cables", way.cables, CABLES), ("keys", way.sealed, SEALS)):
+        if given not in known:
+            raise LiveError(f"{what} must be one of {', '.join(map(repr, known))}, not {given!r}")
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
     keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
     network = Processes(plan, folder.absolute(), way.cables, keys, way.images)

@@ -75,9 +75,13 @@ class Processes:
         """Make the folder, or take it over: sockets of nodes that were killed go.
 
         Raises:
-            LiveError: a node with the name of one of ours runs there.
+            LiveError: it cannot be made, or a node with the name of one of ours runs there.
         """
-        self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+        try:
+            self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+        except OSError as error:
+            why = "is a file" if self.folder.is_file() else f"cannot be made: {error.strerror}"
+            raise LiveError(f"{self.folder} {why}; name another --folder") from None
         for name in self.names:
             if status.answers(self.socket(name)):
                 raise LiveError(
