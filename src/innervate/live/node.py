@@ -319,6 +319,11 @@ class LiveNode:
         self.arrivals.hand_up()
 
 
+def is_broken(path: Path, now: int, most_us: int) -> bool:
+    """True if the path cannot be used, or nothing was heard on it for so long."""
+    return not path.up or not path.heard_at or now - path.heard_at > most_us
+
+
 def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
     silent_us = now - path.heard_at if path.heard_at else None
     return {
@@ -327,6 +332,6 @@ def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
         "port": path.port,
         "up": path.up and not path.cut,
         "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),
-        "broken": not path.up or silent_us is None or silent_us > most_us,
+        "broken": is_broken(path, now, most_us),
         "counters": dict(sorted(path.counters.items())),
     }

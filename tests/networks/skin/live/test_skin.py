@@ -144,6 +144,18 @@ def test_a_command_of_the_pc_comes_to_its_cell_once_or_to_all():
     assert at_cell["commands received"] == at_pc["commands sent"] == 2
 
 
+def test_behind_a_broken_cable_the_pc_serves_nobody():
+    async def main():
+        async with Skin(2, 1, [(0, 0)]) as skin:
+            await until(lambda: skin.pc.status()["cells"] == [2])
+            for path in skin.cables["pc", 0]:
+                path.cut = True
+            await until(lambda: skin.pc.status()["paths"][0]["broken"])
+            return skin.pc.status()["cells"], skin.pc.send_command(1).ports
+
+    assert asyncio.run(main()) == ([0], 0)
+
+
 def test_a_command_that_nobody_hands_down_is_said():
     async def main():
         async with Skin(1, 1, [(0, 0)]) as skin:

@@ -6,9 +6,10 @@ import asyncio
 from collections.abc import AsyncGenerator, Callable
 from typing import TYPE_CHECKING, Any
 
+from innervate.live.engine import clock_us
 from innervate.live.links import Link
 from innervate.live.machine import machine
-from innervate.live.node import Answerer, LiveNode
+from innervate.live.node import Answerer, LiveNode, is_broken
 from innervate.live.state import State
 from innervate.live.streams import Stream
 from innervate.networks.skin.live.items import Command, Frame, Sent, Touch, put
@@ -156,7 +157,19 @@ class SinkNode(LiveNode):
         pc = self.stack.node
         engine.input(GIVE, item)
         self.outcomes["commands sent"] += 1
-        return Sent(pc.own[0].command, sum(size > 0 for size in pc.size))
+        return Sent(pc.own[0].command, sum(size > 0 for size in self._served()))
+
+    def _served(self) -> list[int]:
+        """How many cells each interface port serves: none behind a broken cable."""
+        sizes, now = list(self.stack.node.size), clock_us()
+        for path in self.paths:
+            if is_broken(path, now, self.stack.silent_us):
+                sizes[path.port] = 0
+        return sizes
+
+    def status(self) -> dict[str, Any]:
+        """As of all nodes."""
+        return {**super().status(), "cells": self._served()}
 
     def _asked_for_command(self, request: dict[str, Any]) -> dict[str, Any]:
         cell = request.get("cell")
