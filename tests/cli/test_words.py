@@ -43,6 +43,14 @@ def test_what_is_the_matter_with_a_node_is_said_in_capitals():
     assert "STATE" not in "".join(live_status.lines(told))
 
 
+def test_who_is_put_out_is_told_so():
+    for revoked, is_out in (([4], True), ([3], False), ([], False)):
+        told = {**TOLD, "keys": {"identity": {"serial": 4, "list": 1, "revoked": revoked}}}
+        said = "  PUT OUT: its identity is revoked, and nobody answers it; enrol it anew"
+        assert (live_status.lines(told)[1] == said) == is_out
+
+
+
 @pytest.mark.parametrize(
     ("change", "end"),
     [({}, ""), ({"up": False}, "  CUT HERE"), ({"broken": True, "up": False}, "  BROKEN"),

@@ -40,6 +40,8 @@ def broken(told: list[dict[str, Any]]) -> list[str]:
 
 def lines(told: dict[str, Any]) -> list[str]:
     """A node's status, line by line."""
+    from innervate.web.live_map import is_put_out
+
     words = known(told["kind"]).live_words
     key = ("sealed" if told["sealed"] else "no key") + ", in C" * (told.get("engine") == "c")
     found = [f"{told['name']}: {told['kind']} {told['role']}, up {told['up_s']:g} s, {key}"]
@@ -49,6 +51,8 @@ def lines(told: dict[str, Any]) -> list[str]:
         found.append(f"  STATE NOT WRITTEN: {state['trouble']}; last {since}, to {state['file']}")
     for number, where in ((told.get("keys") or {}).get("twins") or {}).items():
         found.append(f"  TWO NODES HAVE NUMBER {number}: {where}")
+    if is_put_out(told):
+        found.append("  PUT OUT: its identity is revoked, and nobody answers it; enrol it anew")
     found += words.lines(told)
     for name, path in zip(words.ports(told), told["paths"], strict=False):
         heard = "never" if path["heard_s"] is None else f"{path['heard_s']:.1f} s ago"

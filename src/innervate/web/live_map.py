@@ -102,6 +102,12 @@ class Map:
         return spread(len(self.places), pairs)
 
 
+def is_put_out(one: Status) -> bool:
+    """True if the node's own identity stands in the list of those whom nobody answers any more."""
+    identity = (one.get("keys") or {}).get("identity") or {}
+    return identity.get("serial") in identity.get("revoked", ())
+
+
 def _port(address: str) -> str:
     return address.rpartition(":")[2]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from innervate.analysis.headline import DEGRADED, OK, Headline, every, silent
 from innervate.analysis.ways import NOWHERE, Numbers, reach
-from innervate.web.live_map import Link, Map, Place, Status
+from innervate.web.live_map import Link, Map, Place, Status, is_put_out
 
 Told = Mapping[int, Status]
 
@@ -119,12 +119,14 @@ class State:
         return bool(paths) and not any(paths)
 
     def _is_up(self, link: Link) -> bool:
-        """Both ends answer, and neither has been told to drop what comes over the link.
+        """Both ends answer, are members, and were not told to drop what comes over the link.
 
         A node that drops all that comes forgets by which paths it heard whom.
         """
         for place, paths in ((link.a, link.paths_a), (link.b, link.paths_b)):
-            if place.node not in self.told or self._carries_nothing(place):
+            if place.node not in self.told or is_put_out(self.told[place.node]):
+                return False
+            if self._carries_nothing(place):
                 return False
             up = {path["port"]: path["up"] for path in self.word(place, "paths", ())}
             if paths and not any(up.get(path, True) for path in paths):

@@ -69,6 +69,20 @@ def test_the_alarm_of_a_robot_that_is_silent_stays():
     assert MeshState(where, told).fields()["alarm"] == [0, 1]
 
 
+def test_who_was_put_out_has_no_way_though_nobody_has_noticed_yet():
+    def near(who):
+        return [{"node": who, "quality": None, "suspect": False, "ports": []}]
+
+    keys = {"identity": {"serial": 2, "list": 1, "revoked": []}}
+    told = {0: node(0, role="gateway", neighbours=near(1)), 1: node(1, neighbours=near(0))}
+    told[1]["keys"] = keys
+    assert MeshState(MeshMap(told), told).headline().level == "ok"
+    keys["identity"]["revoked"] = [2]
+    found = MeshState(MeshMap(told), told).headline()
+    assert (found.level, found.nodes) == ("down", (1,))
+    assert found.text.startswith("1 of 2 nodes is cut off from the gateway")
+
+
 def test_every_alarm_is_told_once_and_old_ones_with_their_age():
     view, names = MeshLiveView(), ["n0", "n1"].__getitem__
     told = {0: node(0, alarms=[alarm("cross", 2, 2.0), alarm("predict", 1, 61.0)]), 1: node(1)}
