@@ -50,7 +50,6 @@ def test_who_is_put_out_is_told_so():
         assert (live_status.lines(told)[1] == said) == is_out
 
 
-
 @pytest.mark.parametrize(
     ("change", "end"),
     [({}, ""), ({"up": False}, "  CUT HERE"), ({"broken": True, "up": False}, "  BROKEN"),

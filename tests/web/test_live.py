@@ -324,7 +324,7 @@ def test_a_mesh_of_processes_loses_a_node_and_has_it_again():
     )  # fmt: skip
 
     async def look(network, page):
-        await page.until(lambda: len(page.scene["links"]) == len(RING))
+        await page.until(lambda: page.scenes and len(page.scene["links"]) == len(RING))
         await page.until(lambda: page.state.get("unconnected") == 0)
         links = page.scene["links"]
         await network.end_node("n2", gently=False)
