@@ -174,3 +174,10 @@ def test_an_interface_is_named_by_its_address(tmp_path, interface):
         build(load(write(tmp_path, GOOD.replace(serial, group))))
     said = f'link.1.interface: "{interface}" is no IPv4 address; write that of the interface'
     assert said in str(caught.value)
+
+
+def test_a_group_is_an_address_of_groups(tmp_path):
+    group = 'kind = "multicast"\ngroup = "10.0.0.1:4700"\ninterface = "127.0.0.1"'
+    serial = 'kind = "serial"\ndevice = "/dev/null"'
+    with pytest.raises(LiveError, match=r"link\.1\.group: 10\.0\.0\.1 is no multicast group"):
+        build(load(write(tmp_path, GOOD.replace(serial, group))))

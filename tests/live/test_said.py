@@ -1,12 +1,15 @@
 """What is the matter with a node is said by its process: what its sealer finds, too."""
 
 import asyncio
+import os
 
 import pytest
 
 from innervate.live import main
+from innervate.live.build import open_keys
 from innervate.live.machine import Machine, on
 from innervate.live.nodefile import load
+from innervate.live.serial import SerialLink
 
 KEY = bytes(range(32))
 FILE = """\
@@ -100,3 +103,41 @@ def test_a_node_whose_protocol_is_gone_says_why_and_ends(node):
     assert process.failed
     assert process.ending.is_set()
     assert machine.said == ["n3: n3: the board does not answer"]
+
+
+def test_a_device_that_is_not_there_is_said_and_when_it_is(node, tmp_path):
+    process, machine = node
+    device, link = tmp_path / "ttyUSB0", SerialLink(str(tmp_path / "ttyUSB0"), 115_200)
+    process.node.links.append(link)
+
+    async def look():
+        await link.open(lambda path, data: None)
+        process._look()
+        device.write_text("")
+        link._try_open()
+        assert link.trouble == f"{device}: no serial port; trying again"
+        device.unlink()
+        far, near = os.openpty()
+        device.symlink_to(os.ttyname(near))
+        link._try_open()
+        process._look()
+        process._look()
+        link.close()
+        for fd in (far, near):
+            os.close(fd)
+
+    asyncio.run(look())
+    assert machine.said == [f"n3: {device}: No such file or directory; trying again",
+                            f"n3: serial {device}: there again"]  # fmt: skip
+
+
+def test_keys_that_other_users_can_read_are_named(tmp_path):
+    path, key = tmp_path / "n3.toml", tmp_path / "net.key"
+    key.write_text(KEY.hex())
+    for text, who in ((FILE.format(key=KEY.hex()), path), (FILE.format(key="file:net.key"), key)):
+        path.write_text(text)
+        for mode, found in ((0o600, []), (0o640, [who]), (0o604, [who])):
+            path.chmod(0o600)
+            key.chmod(0o600)
+            who.chmod(mode)
+            assert open_keys(load(path)) == found

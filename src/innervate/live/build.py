@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ipaddress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from innervate.live import private
 from innervate.live.errors import LiveError
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
@@ -66,7 +68,13 @@ def _link(table: Any, where: str, port: int) -> Link:
         from innervate.live.udp import MulticastLink
 
         own = _interface(table.interface, f"{where}.interface")
-        return MulticastLink(_ipv4(table.group, f"{where}.group"), own, port)
+        group = _ipv4(table.group, f"{where}.group")
+        if not 224 <= int(group[0].partition(".")[0]) < 240:
+            raise LiveError(
+                f"{where}.group: {group[0]} is no multicast group; they are 224.0.0.0 to "
+                "239.255.255.255, like 239.77.0.1"
+            )
+        return MulticastLink(group, own, port)
     if isinstance(table, SerialTable):
         from innervate.live.serial import SerialLink
         from innervate.live.serial_port import is_speed
@@ -136,6 +144,18 @@ def sealer_of(loaded: Loaded, state: State) -> Sealer | None:
     sealer = Sealer(ring, table.number, state, table.nodes)
     sealer.has_bound_ends = table.keys.ends
     return sealer
+
+
+def open_keys(loaded: Loaded) -> list[Path]:
+    """Files of the node's keys that other users of the machine can read."""
+    table = loaded.table.keys
+    if table is None:
+        return []
+    named = [text[5:] for text in table.secret.values() if text.startswith("file:")]
+    within = len(named) < len(table.secret)  # a key stands in the node's file itself
+    named += [] if table.identity is None else [table.identity]
+    files = [loaded.path.parent / name for name in named] + [loaded.path] * within
+    return [path for path in files if private.is_open(path)]
 
 
 def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:

@@ -65,10 +65,12 @@ class Link:
 
     Attributes:
         frame_max: bytes that it carries at once, as sealed; on IP what Ethernet does not cut up.
+        trouble: why it carries nothing now, for its user; "" = it does, or nothing is known.
     """
 
     paths: list[Any]
     frame_max = 1472
+    trouble = ""
 
     async def open(self, receive: Receiver) -> None:
         """Start to receive.

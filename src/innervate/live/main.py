@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.live import hangup, status, tap
-from innervate.live.build import build, keys_of
+from innervate.live.build import build, keys_of, open_keys
 from innervate.live.engine import Engine
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
@@ -71,6 +71,7 @@ class Process:
         if sealer is not None:
             sealer.said = self.notices.tell
         self._callers: Counter[str] = Counter()  # as they were told last
+        self._troubles: set[str] = set()
 
     async def run(self) -> None:
         """Until a signal says stop."""
@@ -87,6 +88,8 @@ class Process:
                     await self.page.start()
                 await self.node.start()
             self._say(self._ready())
+            for path in open_keys(self.loaded):
+                self._say(f"{path}: other users can read this key; chmod 600 it, or draw another")
             self._look()
             while not self.ending.is_set():
                 await self._sleep(SAVE_S)
@@ -147,8 +150,12 @@ class Process:
             self._callers = Counter(self.node.callers)
             counts = ", ".join(f"{what} {count}" for what, count in self._callers.items())
             self.notices.tell("callers", f"too many callers: {counts} (since the start)")
-        for name, text in self.node.troubles().items():
+        troubles = self.node.troubles()
+        for name, text in troubles.items():
             self.notices.tell(name, text)
+        for name in self._troubles - troubles.keys():
+            self.notices.over(name, f"{name}: there again")
+        self._troubles = set(troubles)
 
     async def _sleep(self, seconds: float) -> None:
         try:

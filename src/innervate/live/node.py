@@ -263,7 +263,7 @@ class LiveNode:
 
     def troubles(self) -> dict[str, str]:
         """What its user should mend, a line each, by a name for each."""
-        return {}
+        return {link.paths[0].name: link.trouble for link in self.links if link.trouble}
 
     def counters(self) -> Counter[str]:
         """What happened how often: handler calls, frames dropped by reason, outcomes."""

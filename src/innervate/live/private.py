@@ -11,6 +11,7 @@ from innervate.live.errors import LiveError
 
 FILE = 0o600
 FOLDER = 0o700
+OTHERS_READ = stat.S_IRGRP | stat.S_IROTH
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 
@@ -35,6 +36,14 @@ def write(path: Path, text: str) -> None:
     """
     with create(path) as file:
         file.write(text.encode())
+
+
+def is_open(path: Path) -> bool:
+    """True if other users can read a file."""
+    try:
+        return bool(path.stat().st_mode & OTHERS_READ)
+    except OSError:
+        return False
 
 
 def checked(path: Path) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 from contextlib import suppress
 
 from innervate.live.errors import LiveError
@@ -83,9 +84,13 @@ class SerialLink(Link):
     def _try_open(self) -> None:
         try:
             self._port = machine().open_serial(self.device, self.baud)
-        except OSError:
+        except OSError as error:
+            none = error.errno == errno.ENOTTY
+            why = "no serial port" if none else error.strerror or "cannot be opened"
+            self.trouble = f"{self.device}: {why}; trying again"
             self._later()
             return
+        self.trouble = ""
         self._decoder = cobs.Decoder(FRAME_MAX)
         self.path.up = True
         asyncio.get_running_loop().add_reader(self._port.fileno(), self._readable)

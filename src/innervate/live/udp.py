@@ -82,6 +82,7 @@ class UdpLink(Link):
 
     def __init__(self, bind: Address, peers: list[Address], first_port: int = 0) -> None:
         self.bind = bind
+        self.where = f"{bind[0]}:{bind[1]}"
         self.socket: socket.socket | None = None  # sends; hears, too
         self._others: list[socket.socket] = []
         self.paths: list[UdpPath] = [
@@ -101,8 +102,8 @@ class UdpLink(Link):
         try:
             self._open()
         except OSError as error:
-            where = f"{self.bind[0]}:{self.bind[1]}"
-            raise LiveError(f"cannot use UDP address {where}: {error.strerror or error}") from None
+            why = error.strerror or error
+            raise LiveError(f"cannot use UDP address {self.where}: {why}") from None
 
     def _open(self) -> None:
         sock = self._make()
@@ -223,6 +224,7 @@ class MulticastLink(UdpLink):
         super().__init__((interface, 0), [group], port)
         self.group = group
         self.interface = interface
+        self.where = f"{group[0]}:{group[1]} on interface {interface}"
         self._group: UdpPath = self.paths[0]
         self._group.is_group = True
         self._group.filter = packed([TAKE])

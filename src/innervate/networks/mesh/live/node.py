@@ -217,11 +217,12 @@ class MeshNode(LiveNode):
         return not pending
 
     def troubles(self) -> dict[str, str]:
-        """Whether neighbours have a longer MTU than this node."""
+        """Besides those of all nodes, whether neighbours have a longer MTU than this one."""
+        found = super().troubles()
         if not self.counters()["dropped: " + TOO_LONG]:
-            return {}
+            return found
         mtu = self.stack.params.mtu
-        return {"mtu": f"frames come that are longer than protocol.mtu = {mtu}, and are dropped; "
+        return {**found, "mtu": f"frames come that are longer than protocol.mtu = {mtu}, and are dropped; "
                 "write the same mtu into all nodes' files"}  # fmt: skip
 
     def counters(self) -> Counter[str]:
