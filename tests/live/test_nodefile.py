@@ -51,7 +51,10 @@ KEYS_1_AND_16 = f'{{1 = "{"a" * 64}", 16 = "{"b" * 64}"}}'
         ('"127.0.0.1:4701"', '"127.0.0.1:123456"', "is no address"),
         ('"127.0.0.1:4701"', '"localhost:4701"', '"localhost:4701" is no IPv4 address with'),
         ('"127.0.0.1:4701"', '"[::1]:4701"', '"[::1]:4701" is no address'),
-        ('kind = "udp"', 'kind = "upd"', "upd"),
+        ('kind = "udp"', 'kind = "upd"', "'upd'; it can be udp, serial, multicast, medium"),
+        ('kind = "udp"', 'kind = "udp"\nbindd = ""', 'unknown key "bindd"; see: innervate docs'),
+        ("number = 3", "", '"number" is missing'),
+        ("number = 3", 'number = 3\nengine = "rust"', "'rust'; it can be python, c, auto"),
         ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
         (
             "nodes = 9",

@@ -20,6 +20,9 @@ from innervate.network import find, networks
 PYTHON, C = "python", "c"  # what runs a node's protocol
 HOST = re.compile(r"\w[\w-]*(\.\w[\w-]*)*\.?")
 HOST_MAX = 253  # characters
+UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")
+MISSING = re.compile(r"Object missing required field `(.*)`")
+CHOICES = {"engine": (PYTHON, C, "auto"), "kind": ("udp", "serial", "multicast", "medium")}
 
 
 class UdpTable(Struct, frozen=True, forbid_unknown_fields=True, tag="udp", tag_field="kind"):
@@ -231,4 +234,16 @@ def _readable(message: str, raw: dict[str, Any]) -> str:
             table = table[part]
         kind = str if "Expected `str`" in what else int
         name += f".{next(key for key, value in table.items() if type(value) is not kind)}"
-    return f"{name}: {what}" if name else message
+    what = _plain(what, name.rpartition(".")[2])
+    return f"{name}: {what}" if name else what
+
+
+def _plain(what: str, key: str) -> str:
+    """A validator's words as ours, where it says less than is known."""
+    if found := UNKNOWN.fullmatch(what):
+        return f'unknown key "{found[1]}"; see: innervate docs live'
+    if found := MISSING.fullmatch(what):
+        return f'"{found[1]}" is missing'
+    if what.startswith("Invalid ") and key in CHOICES:
+        return f"{what}; it can be {', '.join(CHOICES[key])}"
+    return what

@@ -222,8 +222,11 @@ class MeshNode(LiveNode):
         if not self.counters()["dropped: " + TOO_LONG]:
             return found
         mtu = self.stack.params.mtu
-        return {**found, "mtu": f"frames come that are longer than protocol.mtu = {mtu}, and are dropped; "
-                "write the same mtu into all nodes' files"}  # fmt: skip
+        found["mtu"] = (
+            f"frames come that are longer than protocol.mtu = {mtu}, and are dropped; "
+            "write the same mtu into all nodes' files"
+        )
+        return found
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, messages by what became of them."""
