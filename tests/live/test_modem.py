@@ -1,10 +1,13 @@
 """What a radio modem says to its board and to its channel: ages in place of times."""
 
+import asyncio
+
 import pytest
 
 from innervate.live.engine import clock_us
 from innervate.live.links import Path
 from innervate.live.modem import AGE_MAX, CARRIER, FRAME, SEND, Modem
+from innervate.live.modem import run as run_modem
 from tests.live import time_by_hand
 
 
@@ -80,3 +83,18 @@ def test_what_no_board_says_is_counted_and_not_sent(data):
     one = modem()
     one._said(one.link.path, data)
     assert (one.unsound, one.radio.sent) == (1, [])
+
+
+def test_a_device_that_is_not_there_is_said(tmp_path, capsys):
+    said = []
+
+    async def main():
+        running = asyncio.create_task(run_modem(str(tmp_path / "tty"), 115_200, 1, "127.0.0.1:9"))
+        async with asyncio.timeout(3):
+            while len(said) < 2:
+                await asyncio.sleep(0)
+                said.extend(capsys.readouterr().out.splitlines())
+        running.cancel()
+
+    asyncio.run(main())
+    assert said[1] == f"modem: {tmp_path}/tty: No such file or directory; trying again"

@@ -163,3 +163,13 @@ def test_what_says_nothing_of_parents_is_told(kind, description, why, tmp_path):
     path.write_bytes(b"".join(blocks))
     with pytest.raises(ExportError, match=why):
         recoveries(path)
+
+
+def test_a_capture_of_others_is_no_skins_also_if_nothing_was_sent(tmp_path):
+    path = tmp_path / "quiet.pcapng"
+    for interface in (b"", pcapng.interface(149, "s0", "station 0")):
+        path.write_bytes(pcapng.section() + interface)
+        with pytest.raises(ExportError, match="no capture of a skin"):
+            recoveries(path)
+    path.write_bytes(pcapng.section() + pcapng.interface(147, "pc.0", "pc port 0"))
+    assert recoveries(path) == []

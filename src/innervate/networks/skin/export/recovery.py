@@ -272,7 +272,7 @@ def recoveries(path: Path) -> list[Healing]:
     capture = Capture(path)
     watcher = Watcher(capture)
     packets = sorted(capture.packets(), key=lambda packet: packet.time_ns)
-    if packets and {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
+    if {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
         raise ExportError(f"{path} is no capture of a skin; only skins have parents")
     for packet in packets:
         watcher.take(packet)
