@@ -19,6 +19,7 @@ from innervate.web.stage import WAITING_MAX, Stage
 )  # fmt: skip
 def test_the_address_of_a_page(host, shown):
     assert serve._address(host, 80, "secret") == f"http://{shown}:80/?token=secret"
+    assert serve._address(host, 80, "a b/c&d#e").endswith(":80/?token=a%20b%2Fc%26d%23e")
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", ""])
