@@ -24,6 +24,27 @@ def test_a_file_is_there_whole_or_not_at_all(tmp_path, full_disk):
     assert [path.name for path in tmp_path.iterdir()] == ["own.h"]
 
 
+def test_what_is_left_of_a_sealed_library_is_named(tmp_path, capsys):
+    library.write(library.made_of("skin", [], sealed=True), tmp_path)
+    bare = library.made_of("skin", [])
+    library.write(bare, tmp_path)
+    left = library.left(bare, tmp_path)
+    assert left == [*library.SEAL, *library.EXAMPLE]
+    assert main(["firmware", "skin", "--out", str(tmp_path)]) == 0
+    assert f"remove them: {', '.join(left)}\n" in capsys.readouterr().out
+    for name in left:
+        (tmp_path / name).unlink()
+    assert library.left(bare, tmp_path) == []
+    assert library.left(library.made_of("skin", [], sealed=True), tmp_path) == [
+        "examples/skin_node/skin_node.ino", "bare/skin_main.c"]  # fmt: skip
+
+
+def test_a_library_has_a_folder(tmp_path):
+    (tmp_path / "lib").write_text("")
+    with pytest.raises(FirmwareError, match="lib: a file lies here; name a folder"):
+        library.write(FILES, tmp_path / "lib")
+
+
 def test_a_role_is_of_a_network_and_as_large_as_it_has_to_be():
     for name, of in (("skin", "skin"), ("csma", "mesh"), ("mesh", "mesh"), ("rpl", "rpl")):
         network, role = library.role_of(name)

@@ -36,6 +36,8 @@ def firmware(network: str, settings: list[str], wanted: Wanted, as_json: bool) -
     more = f" and {len(lines) - len(own)} files around them" if len(lines) > len(own) else ""
     print(f"{wanted.out}: {', '.join(own)}{more}")
     print(f"made from {made.role.entry}, source {made.digest()}, ABI {emit.ABI}")
+    if old := library.left(files, wanted.out):
+        print(f"{wanted.out} still holds files of another library; remove them: {', '.join(old)}")
     return 0
 
 

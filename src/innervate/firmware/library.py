@@ -250,6 +250,8 @@ def write(files: Files, folder: Path) -> dict[str, int]:
         FirmwareError: the folder has something else in it, or a file cannot be written.
     """
     named = f"{files.library.prefix}.h"
+    if folder.exists() and not folder.is_dir():
+        raise FirmwareError(f"{folder}: a file lies here; name a folder")
     if folder.exists() and not (folder / named).exists() and any(folder.iterdir()):
         raise FirmwareError(f"{folder}: not empty, and holds no {named}; name another folder")
     for name, text in files.texts.items():
@@ -258,6 +260,13 @@ def write(files: Files, folder: Path) -> dict[str, int]:
         except OSError as error:
             raise FirmwareError(f"{folder / name} cannot be written: {error.strerror}") from None
     return {name: len(text.splitlines()) for name, text in files.texts.items()}
+
+
+def left(files: Files, folder: Path) -> list[str]:
+    """What lies there of a library that was written before, sealed or not, and is none of this."""
+    mains = (*DRIVER, *PORTS, *(file for group in MAINS.values() for file in group))
+    ours = [*SEAL, *EXAMPLE, *(file.replace("role", files.library.prefix) for file in mains)]
+    return [name for name in ours if name not in files.texts and (folder / name).exists()]
 
 
 def _put(path: Path, text: str) -> None:
