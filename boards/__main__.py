@@ -2,12 +2,11 @@
 
 `python -m boards [NETWORK] [FOLDER] [name=value ...]`: a cell of the skin if no network is named,
 into build/board if no folder is; names are parameters of the protocol (of the skin see
-docs/skin.md), which all nodes must share.
+docs/skin.md), which all nodes must share. Made again, a main.py that was changed stays as it is.
 """
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from innervate.live.parameters import check_parameters
 from innervate.network import networks
 
 HERE = Path(__file__).resolve().parent / "micropython"
+MAIN = "main.py"  # the maker's, once he has changed it
 ROOM = Path(__file__).resolve().parent.parent / "src"
 
 
@@ -62,7 +62,7 @@ def files_of(role: Role, params: dict[str, int]) -> dict[str, bytes]:
             f"TIMERS = {timers}\nROOM = {role.room}\n"
         )
     made = {f"{name}.mpy": mpy(text, name.rpartition("/")[2]) for name, text in sources.items()}
-    return {**made, "main.py": (HERE / f"{program.main}.py").read_bytes()}
+    return {**made, MAIN: (HERE / f"{program.main}.py").read_bytes()}
 
 
 def numbers_of(role: Role, arguments: list[str]) -> dict[str, int]:
@@ -98,7 +98,8 @@ def main(arguments: list[str]) -> int:
         return 2
     named = words.pop(0) if words and words[0] in known else next(iter(known))
     if len(words) > 1:
-        print(f"{words[1]}: one folder is enough", file=sys.stderr)
+        text = f"{words[0]} {words[1]}: a network ({', '.join(known)}), then one folder is enough"
+        print(text, file=sys.stderr)
         return 2
     folder, role = Path(words[0] if words else "build/board"), known[named]
     try:
@@ -106,16 +107,33 @@ def main(arguments: list[str]) -> int:
     except (LiveError, BoardMissing) as error:
         print(error, file=sys.stderr)
         return 2
-    if folder.exists() and not (folder / "node.mpy").exists() and any(folder.iterdir()):
+    if (
+        folder.exists()
+        and not (folder / "node.mpy").exists()
+        and (not folder.is_dir() or any(folder.iterdir()))
+    ):
         print(f"{folder}: not empty and not made by this command; name another", file=sys.stderr)
         return 2
-    shutil.rmtree(folder, ignore_errors=True)
-    for name, content in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(content)
+    try:
+        _write(folder, files)
+    except OSError as error:
+        print(f"{error.filename}: cannot be written: {error.strerror}", file=sys.stderr)
+        return 2
     print(f"{folder}: {len(files)} files, {sum(map(len, files.values()))} bytes")
     print(f"copy it: mpremote cp -r {folder}/. : + reset")
     return 0
+
+
+def _write(folder: Path, files: dict[str, bytes]) -> None:
+    """Write all but a main.py that its maker has changed, and leave alone what else is his."""
+    own, ours = folder / MAIN, [path.read_bytes() for path in HERE.glob("*main.py")]
+    is_his = own.exists() and own.read_bytes() not in ours
+    for name, content in files.items():
+        if name == MAIN and is_his:
+            print(f"{own} is yours, and stays as it is")
+            continue
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
 
 
 if __name__ == "__main__":

@@ -116,6 +116,27 @@ def test_the_folder_is_made_and_made_again(tmp_path, capsys, files):
     assert "mpremote" in capsys.readouterr().out
 
 
+def test_what_a_maker_wrote_stays_when_the_folder_is_made_again(tmp_path, capsys):
+    made = tmp_path / "board"
+    assert build.main([str(made)]) == 0
+    (made / "main.py").write_text("NUMBER = 7\n")
+    (made / "sensors.py").write_text("mine")
+    node = (made / "node.mpy").read_bytes()
+    assert build.main([str(made), "k=9"]) == 0
+    assert f"{made}/main.py is yours, and stays as it is" in capsys.readouterr().out
+    assert (made / "main.py").read_text() == "NUMBER = 7\n"
+    assert (made / "sensors.py").read_text() == "mine"
+    assert (made / "node.mpy").read_bytes() != node
+
+
+def test_a_file_is_no_folder_for_a_board(tmp_path, capsys):
+    (tmp_path / "board").write_text("mine")
+    assert build.main([str(tmp_path / "board")]) == 2
+    assert "not made by this command; name another" in capsys.readouterr().err
+    assert build.main([str(tmp_path / "board" / "of")]) == 2
+    assert "cannot be written: Not a directory" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [(["k=x"], "whole number"), (["kk=3"], "protocol.kk is unknown"),
