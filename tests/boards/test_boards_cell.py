@@ -177,6 +177,25 @@ def test_the_readme_is_right():
         assert (build.HERE / target).exists(), target
 
 
+def test_the_whole_folder_takes_as_much_memory_as_the_documents_say():
+    uart = "class Uart:\n    def any(self): return 0\n    def read(self, *_): return None\n"
+    steps = (
+        f"import gc\n{uart}", "before = gc.mem_alloc()", "from cell import Cell",
+        "cell = Cell(1, [Uart() for _ in range(4)], 7, lambda frame: None, 20_000)",
+        "print(gc.mem_alloc() - before)",
+    )  # fmt: skip
+    try:
+        made = build.files_of(roles()["skin"], skin_parameters({}))
+        taken = int(nodejs.run(made, 256 * 1024, *steps))
+    except BoardMissing as missing:
+        pytest.skip(str(missing))
+    readme = (build.HERE / "README.md").read_text(encoding="utf-8")
+    page = (build.HERE.parents[1] / "docs" / "boards.md").read_text(encoding="utf-8")
+    for text in (readme, page):
+        (said,) = re.findall(r"(?:a cell with four UARTs \||boards skin`, takes) ([\d,]+)", text)
+        assert abs(int(said.replace(",", "")) - taken) < 100
+
+
 def test_what_the_boards_files_repeat_is_the_protocols():
     for path in (build.HERE / "driver.py", build.HERE / "cell.py", nodejs.HERE / "replay.py"):
         for node in ast.parse(path.read_text(encoding="utf-8")).body:
