@@ -82,7 +82,8 @@ def explain(error: BaseException) -> tuple[str, int]:
     for module, name, code in _KNOWN:
         kind: Any = getattr(sys.modules.get(module), name, None)
         if kind is not None and isinstance(error, kind):
-            hint = "" if code == USERS else "; please report it with the scenario"
+            ours = code != USERS and not getattr(error, "is_foreseen", False)
+            hint = "; please report it with the scenario" if ours else ""
             return _one_line(str(error)) + hint, code
     if isinstance(error, MemoryError):
         return "not enough memory; make the scenario smaller or shorter", OURS

@@ -26,7 +26,13 @@ Progress = Callable[[int, int], None]
 
 
 class InvariantBroken(Exception):
-    """A checker found something that must not happen; says what, where, when and which seed."""
+    """A checker found something that must not happen; says what, where, when and which seed.
+
+    Attributes:
+        is_foreseen: the scenario does what the protocol is known not to stand.
+    """
+
+    is_foreseen = False
 
 
 class Ended(NamedTuple):
@@ -93,7 +99,7 @@ class Simulation(ABC):
             self.mark_broken()
         status = int(get(self.world.run, 0, "status"))
         if status == BROKEN:
-            raise InvariantBroken(self.broken_line())
+            raise self.broken()
         self.grow(status)
         move_rows(self.world, self._kept, self.tables, self.wide)
         return status
@@ -182,6 +188,10 @@ class Simulation(ABC):
     @abstractmethod
     def schedule(self, fault: Any) -> None:
         """Something is to be done to the network at `fault.at_us`, which has not come yet."""
+
+    def broken(self) -> InvariantBroken:
+        """What is to be raised about the broken invariant."""
+        return InvariantBroken(self.broken_line())
 
     def broken_line(self) -> str:
         """The broken invariant, in one line."""

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from innervate.cli.errors import explain
 from innervate.networks.skin.analysis.summary import summarize
-from innervate.networks.skin.sim import simulate, stack
+from innervate.networks.skin.sim import observer, proved, simulate, stack
 from innervate.sim.cables import calls
 from innervate.sim.cables.world import OFF
 from innervate.sim.status import COLD
@@ -109,3 +110,13 @@ def test_plain_and_compiled_runs_say_the_same(of, rule, latency):
 
 def test_without_checks_nothing_is_said():
     assert said(restarted("feasible", 10_000), checks=False) == []
+
+
+@pytest.mark.parametrize("left", [0, 1 << proved.RESTART, 1 << proved.PC_STAYS])
+def test_that_strict_stands_no_restart_of_the_pc_is_known_and_said(left):
+    running = simulate.simulation(plan_of(free(TWO, **fast("strict"))), plain=True)
+    running.world.run[0].broken = observer.BROKEN_LOOP
+    running.world.run[0].outside = left
+    error, is_known = running.broken(), left == 1 << proved.PC_STAYS
+    assert str(error).endswith("; rule strict does not stand that the PC is restarted") == is_known
+    assert explain(error)[0].endswith("; please report it with the scenario") != is_known

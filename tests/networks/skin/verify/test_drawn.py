@@ -34,6 +34,15 @@ def test_the_greatest_skin_that_may_be_drawn():
     }  # fmt: skip
 
 
+def test_under_strict_the_pc_is_not_restarted(monkeypatch):
+    monkeypatch.setattr(fuzz, "_skin_event", lambda *_: {"action": "restart", "pc": True})
+    for rule, events in (("feasible", 12), ("strict", 0)):
+        draw = Draw(1, 0.95)
+        draw.choice = lambda values, rule=rule: rule if rule in values else values[-1]
+        found = fuzz.drawn(draw, 7)
+        assert (found["protocol"]["rule"], len(found["event"])) == (rule, events)
+
+
 @pytest.mark.parametrize(("share", "balances", "in_step"), [
     (0.09, True, True), (0.1, True, False), (0.49, True, False), (0.5, False, False),
 ])  # fmt: skip

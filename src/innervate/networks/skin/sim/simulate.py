@@ -14,6 +14,7 @@ from innervate.networks.skin.sim import build as builder
 from innervate.networks.skin.sim import observer, script, static_stack
 from innervate.networks.skin.sim import stack as skin_stack
 from innervate.networks.skin.sim.counters import LOOPED, NO_ROUTE
+from innervate.networks.skin.sim.proved import PC_STAYS
 from innervate.sim import taps
 from innervate.sim.cables import loop
 from innervate.sim.cables import world as w
@@ -78,6 +79,15 @@ class SkinSimulation(Cables):
     sink = (fields.SINK, fields.SINK_PORT)
     dropped: ClassVar[Mapping[str, int]] = {"no_route": NO_ROUTE, "loop": LOOPED}
 
+    def broken(self) -> InvariantBroken:
+        """Said with it, if the PC was restarted under rule strict (docs/prove.md)."""
+        error = super().broken()
+        if not int(get(self.world.run, 0, "outside")) >> PC_STAYS & 1:
+            return error
+        foreseen = InvariantBroken(f"{error}; rule strict does not stand that the PC is restarted")
+        foreseen.is_foreseen = True
+        return foreseen
+
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> SkinSimulation:
     """A plan's skin before its first event; `kept` as in `sim.recorded`, and `orders`."""
@@ -118,6 +128,6 @@ def _played(plan: Any, asked: Recorded) -> Result:
     world, now = script.play(plan, stack, asked.checks, asked.trail)
     played = SkinSimulation(plan, world, lambda *_: None)
     if int(get(world.run, 0, "status")) == BROKEN:
-        raise InvariantBroken(played.broken_line())
+        raise played.broken()
     move_rows(world, played._kept, played.tables, played.wide)
     return played.result(Ended(now, wall_s() - started, False, played.take()), False)

@@ -50,6 +50,8 @@ def drawn(draw: random.Random, seed: int) -> Tables:
         for _ in range(draw.randint(0, 12))
         if (event := _skin_event(draw, duration_s, columns, rows, cables))
     ]
+    if tables["protocol"]["rule"] == "strict":  # which stands no restart of the PC, as is known
+        tables["event"] = [event for event in tables["event"] if "pc" not in event]
     return tables
 
 
