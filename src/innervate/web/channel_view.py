@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from innervate.network import networks
-from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.scenario.actions.action import Action
+from innervate.scenario.actions.channel import JOIN, KILL, TABLE
 from innervate.scenario.declared.channel import Fault
 from innervate.web.declared_view import DeclaredView, shown_by
 from innervate.web.engine import Engine
@@ -22,6 +23,7 @@ class ChannelView(DeclaredView):
     """Nodes in a circle, as all hear each other; who is off is apart from the others."""
 
     can: tuple[str, ...] = ("kill", "revive")
+    actions: ClassVar[tuple[Action, ...]] = TABLE
     around: ClassVar[float] = 1.5  # from one node to the next, in their diameters
 
     def __init__(self, engine: Engine, history: History) -> None:

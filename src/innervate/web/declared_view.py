@@ -12,7 +12,8 @@ from innervate.analysis.summary import headline
 from innervate.analysis.ways import reach
 from innervate.network import Network, networks
 from innervate.plot.happened import event_words
-from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
+from innervate.scenario.actions.action import Action
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE, TABLE
 from innervate.scenario.cables import Fault
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
@@ -38,6 +39,7 @@ class DeclaredView(View):
         {"id": "delivered", "label": "messages delivered so far", "unit": ""},
     ]
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
+    actions: ClassVar[tuple[Action, ...]] = TABLE
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from innervate.analysis.spread import spread
-from innervate.scenario.actions.field import ACTIONS, CUT, HARM, KILL, RESTORE, REVIVE
+from innervate.scenario.actions.action import Action
+from innervate.scenario.actions.field import ACTIONS, CUT, HARM, KILL, RESTORE, REVIVE, TABLE
 from innervate.scenario.declared.field import Fault
 from innervate.sim.field.states import ALIVE
 from innervate.web.channel_view import ChannelView
@@ -19,6 +20,7 @@ class FieldView(ChannelView):
     """Nodes at their places, or by who hears whom; links that can be cut."""
 
     can: tuple[str, ...] = ("kill", "revive", "cut", "heal")
+    actions: ClassVar[tuple[Action, ...]] = TABLE
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links, and the fields that nodes can be coloured by."""

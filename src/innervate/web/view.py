@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import copy
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from innervate.analysis.headline import Headline
+from innervate.scenario.actions.action import Action
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import LOSS, RETURN, SERIES, History, Logbook
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive
 from innervate.web.recovery import Recovery
+from innervate.web.taken import Taken
 
 
 @dataclass(slots=True)
@@ -23,6 +25,7 @@ class Memory:
     fault: Any = None  # the newest that took something away
     event_us: int = 0  # when something was done last, whatever it was
     told_us: int = 0  # faults before this are told
+    taken: Taken = field(default_factory=Taken)
 
 
 class View(ABC):
@@ -39,6 +42,7 @@ class View(ABC):
     can: tuple[str, ...]
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
+    actions: ClassVar[tuple[Action, ...]] = ()  # of the medium, by the numbers that faults have
     memory: Any
     saves: bool = True  # what was done to it can be written as a scenario's events
     is_still: bool = True  # the network is held, so that there is time to count all anew
@@ -132,9 +136,25 @@ class View(ABC):
         """Tables of the scenario, besides its events, that commands have changed."""
         return {}
 
-    def begin_fault(self, fault: Any) -> None:
-        """Something is done to the network now."""
+    def changes(self, fault: Any) -> bool:
+        """Take in what a fault does; false if all is as it was, as when the dead are killed."""
+        if not self.actions:
+            return True
+        action, thing = self.actions[fault.action], fault.node
+        if action.target == "link":
+            thing = tuple(sorted((fault.node, fault.other)))
+        elif action.target == "cable":
+            thing = min(fault.end, int(self.plan.graph.peer[fault.end]))
+        absent = {node for node, off in enumerate(getattr(self.plan, "absent", ())) if off}
+        taken: Taken = self.memory.taken
+        return taken.changes(self.actions, action, thing, absent)
+
+    def begin_fault(self, fault: Any) -> bool:
+        """Something is done to the network now; false if that changes nothing."""
         memory, cause = self.memory, self.words(fault)
+        if not self.changes(fault):
+            self.log.say(fault.at_us, f"{cause}: nothing changed")
+            return False
         memory.event_us = fault.at_us
         if self.takes(fault):
             memory.recovery, memory.fault = Recovery(cause, fault.at_us), fault
@@ -142,6 +162,7 @@ class View(ABC):
             memory.recovery.close()
         self.log.calm()
         self.log.say(fault.at_us, cause, mark=LOSS if self.takes(fault) else RETURN)
+        return True
 
     def tell_faults(self) -> list[Any]:
         """Begin all faults that have happened and were not told yet; them, in order of time."""

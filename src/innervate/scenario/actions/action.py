@@ -14,6 +14,7 @@ class Action(NamedTuple):
         key: of an event's table, that only this action has; "" = none.
         harms: it makes things worse: recordings show it as a warning.
         mends: the action that it undoes; "" = none.
+        revives: a node that is off is on after it, though it undoes nothing else.
     """
 
     word: str
@@ -21,6 +22,7 @@ class Action(NamedTuple):
     key: str = ""
     harms: bool = False
     mends: str = ""
+    revives: bool = False
 
 
 def words(table: tuple[Action, ...]) -> tuple[str, ...]:

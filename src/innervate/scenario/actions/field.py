@@ -9,7 +9,7 @@ TABLE = (
     Action("restore", "link", mends="cut"),
     Action("jam", "node", "noise_dbm", harms=True),
     Action("quiet", "node", mends="jam"),
-    Action("restart", "node"),
+    Action("restart", "node", revives=True),
 )
 ACTIONS, HARM = words(TABLE), harmful(TABLE)
 KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)

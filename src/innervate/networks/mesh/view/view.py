@@ -17,7 +17,7 @@ from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
 from innervate.plot.words import number_of
-from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE
+from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE, TABLE
 from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
@@ -55,6 +55,7 @@ class MeshView(View):
     speed: ClassVar[float] = 1.0
     slow: ClassVar[float] = 0.2
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
+    actions = TABLE
     check_us: ClassVar[int] = 10_000
 
     def __init__(self, engine: Engine, history: History) -> None:

@@ -24,7 +24,7 @@ from innervate.networks.radio.protocol.constants import (
 )
 from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.scenario.planning import duration_us
-from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.scenario.actions.channel import JOIN, KILL, TABLE
 from innervate.sim.heap import AIRS
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
@@ -56,6 +56,7 @@ class RadioView(View):
     speed: ClassVar[float] = 0.1
     slow: ClassVar[float] = 0.0
     can: tuple[str, ...] = ("kill", "revive")
+    actions = TABLE
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -99,6 +100,7 @@ class RadioView(View):
             if code == REPORT_STOPPED:
                 self._stop(node, at)
             else:
+                self.memory.taken.gone(node)
                 self.log.say(at, f"station {node} left")
         packets = rows["packets"]
         came = packets[packets["receivers"] > 0]
@@ -229,10 +231,11 @@ class RadioView(View):
                 return found
         return [-1] * self.plan.stations
 
-    def begin_fault(self, fault: Any) -> None:
+    def begin_fault(self, fault: Any) -> bool:
         """A team has nothing to recover: what matters is who waits, and that is shown."""
-        super().begin_fault(fault)
+        changed = super().begin_fault(fault)
         self.memory.recovery = None
+        return changed
 
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""

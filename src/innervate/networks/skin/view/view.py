@@ -30,7 +30,7 @@ from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import SkinCables
 from innervate.plot.words import number_of
-from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE, TABLE
 from innervate.scenario.cables import Fault
 from innervate.sim.cables.wires import LOST_BROKEN, LOST_CUT, OFFERED
 from innervate.sim.cables.world import DEAD
@@ -69,6 +69,7 @@ class SkinView(View):
     speed: ClassVar[float] = 0.1
     slow: ClassVar[float] = 0.05
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
+    actions = TABLE
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -175,7 +176,8 @@ class SkinView(View):
         """A mark of the observer: something was done to the skin."""
         given = index - len(self.plan.scenario.model.event)
         fault = self._planned[index] if given < 0 else self.engine.given[given]
-        self.begin_fault(fault)
+        if not self.begin_fault(fault):
+            return
         if fault.action in (KILL, REVIVE):
             (self.memory.dead.add if fault.action == KILL else self.memory.dead.discard)(fault.node)
         recovery = self.memory.recovery
