@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from innervate import scenario
-from innervate.scenario.actions.channel import JOIN, KILL
+from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.web.channel_view import ChannelView
 from innervate.web.errors import Refused
 from innervate.web.messages import Cut, Kill, Revive
@@ -52,7 +52,8 @@ def view():
     made.plan = SimpleNamespace(nodes=4, absent=[0, 0, 1, 0], kind="x")
     made.shown, made.own = [{"name": "value"}], {}
     states = np.zeros(4, [("value", np.int64)])
-    radios = np.zeros(6, [("alive", np.int64)])  # of more than there are nodes
+    # Of more than there are nodes.
+    radios = np.zeros(6, [("alive", np.int64), ("leaving", np.int64)])
     world = SimpleNamespace(run={"handled": [0]}, radios=radios, stations=states,
                             params=np.zeros(1, [("a", np.int64)]))  # fmt: skip
     made.engine = SimpleNamespace(world=world)
@@ -61,7 +62,8 @@ def view():
 
 def test_who_is_on_is_who_was_there_at_first_and_then_who_was_switched_on(view):
     assert view.arrays(False)["node_up"].tolist() == [1, 1, 0, 1]
-    assert view.arrays(False)["unconnected"] == 1
+    assert view.arrays(False)["absent"].tolist() == [0, 0, 1, 0]
+    assert (view.arrays(False)["unconnected"], view.arrays(False)["away"]) == (0, 1)
     view.engine.world.run["handled"] = [1]
     assert view.arrays(False)["unconnected"] == 4
     view.engine.world.radios["alive"][[0, 2, 5]] = 1
@@ -70,6 +72,22 @@ def test_who_is_on_is_who_was_there_at_first_and_then_who_was_switched_on(view):
     assert (told["node_up"].tolist(), told["unconnected"], told["apart"]) == ([1, 0, 1, 0], 2, 0)
     assert (told["link_up"].tolist(), told["flights"]) == ([], [])
     assert told["fields"] == {"value": [5, 6, 7, 8]}
+
+
+def test_who_has_left_is_not_among_those_that_are_switched_off(view):
+    view.engine.world.run["handled"] = [1]
+    view.engine.world.radios["leaving"][[1, 2, 4]] = 2
+    view.engine.world.radios["alive"][1] = 1  # it tells the others yet
+    told = view.arrays(False)
+    assert (told["absent"].tolist(), told["unconnected"], told["away"]) == ([0, 0, 1, 0], 2, 1)
+
+
+@pytest.mark.parametrize(("absent", "action", "expected"), [
+    ([0, 0, 1, 0], KILL, True), ([0] * 4, LEAVE, True), ([0] * 4, KILL, False),
+])  # fmt: skip
+def test_legends_name_the_absent_where_somebody_is_at_times(view, absent, action, expected):
+    view.plan.absent, view.plan.faults = absent, [view.make(7, 0, {"action": action, "node": 1})]
+    assert view.has_absent() is expected
 
 
 def test_nodes_that_are_on_are_switched_off_and_others_on(view):

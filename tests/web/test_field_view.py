@@ -10,7 +10,7 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.field.declared import simulation
-from innervate.sim.field.states import ALIVE
+from innervate.sim.field.states import ALIVE, DEAD, OFF
 from innervate.web.engine import Engine
 from innervate.web.errors import Refused
 from innervate.web.field_view import FieldView
@@ -77,6 +77,17 @@ def test_what_is_cut_can_be_restored_and_nothing_else():
     assert (mended.action, view.takes(mended)) == (RESTORE, False)
     with pytest.raises(Refused, match="no link 3; they are numbered 0 to 2"):
         view.cut(3, False)
+
+
+def test_who_is_yet_to_come_is_not_among_those_that_are_switched_off():
+    view = shown()
+    view.plan.absent = [0, 1, 1, 0, *view.plan.absent[4:]]
+    view.engine.world.run["handled"][0] = 1
+    view.engine.world.radios["state"][: view.plan.nodes] = ALIVE
+    view.engine.world.radios["state"][1:4] = OFF, DEAD, DEAD  # the second came, and was killed
+    told = view.arrays(False)
+    assert told["absent"].tolist()[:4] == [0, 1, 0, 0]
+    assert (told["unconnected"], told["away"]) == (2, 1)
 
 
 def test_who_is_on_can_be_switched_off_and_who_is_off_on():

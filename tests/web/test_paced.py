@@ -77,6 +77,9 @@ class Seen:
         None,
     )
 
+    def has_absent(self):
+        return True
+
     def __init__(self, engine, history):
         self.engine, self.history, self.log = engine, history, Logbook(history)
         self.checks, self.done, self.forgot = [], [], []
@@ -137,6 +140,7 @@ def test_what_it_is_and_can(made):
     scene = made.scene()
     assert (scene["duration_s"], scene["t_s"], scene["nodes"]) == (2.0, 0.0, 3)
     assert (scene["kind"], scene["name"], scene["source"]) == ("skin", "x", "simulation")
+    assert scene["absent"] is True
     with pytest.raises(Refused, match="how a skin writes its events is not known"):
         made.do(Save())
 

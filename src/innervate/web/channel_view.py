@@ -48,11 +48,13 @@ class ChannelView(DeclaredView):
 
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes."""
-        on, states = self._on(), self.engine.world.stations
+        on, away, states = self._on(), self._away(), self.engine.world.stations
         return {
             "node_up": on.astype(np.int64),
+            "absent": away.astype(np.int64),
             "link_up": np.zeros(0, np.int64),
-            "unconnected": int(np.count_nonzero(~on)),
+            "unconnected": int(np.count_nonzero(~on & ~away)),
+            "away": int(np.count_nonzero(away)),
             "apart": 0,
             "fields": self.coloured(states),
             "flights": [],
@@ -81,3 +83,9 @@ class ChannelView(DeclaredView):
         if not int(self.engine.world.run["handled"][0]):
             return np.array(self.plan.absent) == 0
         return self.engine.world.radios["alive"][: self.plan.nodes] != 0
+
+    def _away(self) -> Any:
+        """Per node, true while it is yet to come, or has left."""
+        if not int(self.engine.world.run["handled"][0]):
+            return np.array(self.plan.absent) != 0
+        return ~self._on() & (self.engine.world.radios["leaving"][: self.plan.nodes] != 0)

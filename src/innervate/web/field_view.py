@@ -10,7 +10,7 @@ from innervate.analysis.spread import spread
 from innervate.scenario.actions.action import Action
 from innervate.scenario.actions.field import ACTIONS, CUT, HARM, KILL, RESTORE, REVIVE, TABLE
 from innervate.scenario.declared.field import Fault
-from innervate.sim.field.states import ALIVE
+from innervate.sim.field.states import ALIVE, OFF
 from innervate.web.channel_view import ChannelView
 from innervate.web.errors import Refused
 from innervate.web.messages import number
@@ -72,3 +72,8 @@ class FieldView(ChannelView):
         if not int(self.engine.world.run["handled"][0]):
             return np.array(self.plan.absent) == 0
         return self.engine.world.radios["state"][: self.plan.nodes] == ALIVE
+
+    def _away(self) -> Any:
+        """Per node, true while it is yet to come."""
+        state = self.engine.world.radios["state"][: self.plan.nodes]
+        return (state == OFF) & (np.array(self.plan.absent) != 0)

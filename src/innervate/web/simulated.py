@@ -87,6 +87,7 @@ class Simulated(Source):
             "can": list(self.can),
             "duration_s": self.plan.duration_us / 1e6,
             "t_s": self.engine.now_us / 1e6,
+            **({"absent": True} if self.view.has_absent() else {}),
             **self.view.scene(),
         }
 

@@ -14,7 +14,7 @@ from innervate.web.errors import Refused
 from innervate.web.history import LOSS, RETURN, SERIES, History, Logbook
 from innervate.web.messages import Command, Cut, Heal, Kill, Revive
 from innervate.web.recovery import Recovery
-from innervate.web.taken import Taken
+from innervate.web.taken import LEAVE, Taken
 
 
 @dataclass(slots=True)
@@ -148,6 +148,12 @@ class View(ABC):
         absent = {node for node, off in enumerate(getattr(self.plan, "absent", ())) if off}
         taken: Taken = self.memory.taken
         return taken.changes(self.actions, action, thing, absent)
+
+    def has_absent(self) -> bool:
+        """True if somebody is yet to come, or leaves: off at times, though nothing failed."""
+        leaving = [i for i, action in enumerate(self.actions) if action.word == LEAVE]
+        leaves = any(fault.action in leaving for fault in self.plan.faults)
+        return leaves or any(getattr(self.plan, "absent", ()))
 
     def begin_fault(self, fault: Any) -> bool:
         """Something is done to the network now; false if that changes nothing."""

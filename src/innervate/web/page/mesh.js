@@ -7,7 +7,7 @@ import {
   affected, affectedSample, arrow, boxRound, cross, cutSample, flightSample, flights, stroke, word,
 } from "./shapes.js";
 import { symbol } from "./symbols.js";
-import { off, offWord, plural } from "./words.js";
+import { off, offWords, plural } from "./words.js";
 
 const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, poor ones dotted
 const FAIR = 0.6;
@@ -100,7 +100,7 @@ export class MeshView {
       symbol(context, 13, 8, role === "monitor" ? 3.5 : 5, role, up);
     };
     const found = [...roles].map((role) => [shape(role), role]);
-    found.push([shape("node", 0), offWord(this.network)], affectedSample);
+    found.push([shape("node", 0), offWords(this.network)], affectedSample);
     found.push([line("soft", 1.4, []), "good link"], [line("soft", 1.4, [5, 4]), "fair"],
       [line("soft", 1.4, [1.5, 4]), "poor"]);
     found.push(cutSample);

@@ -1,6 +1,6 @@
 // Numbers, events and what is selected.
 import { NO_DATA } from "./network.js";
-import { ago, clock, duration, offWord, plural } from "./words.js";
+import { absentWord, ago, clock, duration, offWord, plural } from "./words.js";
 
 const LEVELS = { ok: "✓", degraded: "!", down: "✕", "no data": "?" };
 const MARKS = { info: "·", good: "✓", bad: "✕" };
@@ -75,7 +75,7 @@ export function showNumbers(network) {
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
   const who = apart === unconnected ? "cut off" : `${apart} of them cut off`;
   const off = apart && tellsWays ? `; ${who}` : "";
-  const away = network.now.away ? `; ${network.now.away} more not in the team` : "";
+  const away = network.now.away ? `; ${network.now.away} more ${absentWord(network.kind)}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
     isKnown ? `${of}${off}${away}` : "nobody answers", unconnected ? "bad" : "");
 }

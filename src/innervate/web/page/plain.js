@@ -4,7 +4,7 @@ import { Labels } from "./labels.js";
 import { MeshView, NAME_PX } from "./mesh.js";
 import { affected, affectedSample, arrow, cross, cutSample, stroke, word } from "./shapes.js";
 import { LAYERS } from "./stage.js";
-import { off, offWord } from "./words.js";
+import { off, offWords } from "./words.js";
 
 const FONT = "12px system-ui, sans-serif";
 
@@ -43,7 +43,7 @@ export class PlainView extends MeshView {
     const disc = (fill, up = 1) => (context) => this.#disc(context, 13, 8, 5, fill, up);
     const found = this.colour === "" ? [[disc(colours.d[5]), "node"]]
       : [[disc(colours.h[0]), `${this.colour}: least`], [disc(colours.h[7]), "most"]];
-    found.push([disc(colours.faint, 0), offWord(this.network)], affectedSample);
+    found.push([disc(colours.faint, 0), offWords(this.network)], affectedSample);
     if (this.network.links.length) found.push(cutSample);
     return found;
   }

@@ -4,7 +4,7 @@ import { Labels } from "./labels.js";
 import { LAYERS } from "./stage.js";
 import { affected, affectedSample, cross, stroke, word } from "./shapes.js";
 import { boxSamples } from "./timeline.js";
-import { off, offWord } from "./words.js";
+import { off, offWords } from "./words.js";
 
 /** What a station does: letter in its disc, words, colour. The numbers are those of a state. */
 export const DOING = [
@@ -79,7 +79,7 @@ export class RadioView {
     const known = isLive ? [0, SENDS, WAITS]
       : [...DOING.keys()].filter((state) => state !== TURNS || turnaround);
     return [...known.map((state) => [disc(state), DOING[state].words]),
-      [disc(0, 0), offWord(this.network)], affectedSample, ...(isLive ? [] : boxSamples())];
+      [disc(0, 0), offWords(this.network)], affectedSample, ...(isLive ? [] : boxSamples())];
   }
 
   draw(layer, context, stage) {

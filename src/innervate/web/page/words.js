@@ -75,15 +75,23 @@ function tick(t_s, step) {
 export function off(network, i) {
   const { kind, now, scene } = network;
   if (scene.source === "live") return now.cut_off[i] ? "cut off" : "does not answer";
-  return now.absent?.[i] ? (ABSENT[kind] ?? "not there") : "switched off";
+  return now.absent?.[i] ? absentWord(kind) : "switched off";
 }
 
 /** Who is not there by plan: whoever has left a team is told no other from who has not come. */
 const ABSENT = { radio: "not in the team", mesh: "yet to come" };
 
-/** The same for a legend. */
+export const absentWord = (kind) => ABSENT[kind] ?? "not there";
+
+/** The same for a number of nodes. */
 export function offWord(network) {
   return network.scene.source === "live" ? "cut off, or silent" : "switched off";
+}
+
+/** The same for a legend: who is not there by plan is drawn the same. */
+export function offWords(network) {
+  const { kind, scene } = network;
+  return scene.absent ? `${offWord(network)}, or ${absentWord(kind)}` : offWord(network);
 }
 
 export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;
