@@ -66,6 +66,15 @@ def test_examples_are_commands_and_pages_are_there(sh, words):
     assert all(example in said for example in examples)
 
 
+@pytest.mark.parametrize("words", ["run", "sweep", "papers"])
+def test_help_breaks_no_line_where_the_sources_do(sh, monkeypatch, words):
+    monkeypatch.setenv("COLUMNS", "300")
+    assert sh(*words.split(), "--help") == 0
+    assert not re.findall(r"│ {9,}\S.*", sh.out)
+    above = sh.out.partition("╭")[0].strip().split("\n\n")
+    assert not [paragraph for paragraph in above if "\n" in paragraph.strip()]
+
+
 def test_every_command_has_something_below_its_help():
     bare = {"scenarios", "doctor"}  # they have no more to say
     assert {name for name in manpage.commands() if " " not in name} - bare <= set(BELOW)

@@ -23,6 +23,7 @@ from innervate.cli.files_app import (
     scenarios,
     schema,
 )
+from innervate.cli.flowing import Flowing
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
     PAGE_DEFAULTS,
@@ -48,6 +49,7 @@ app = App(
     name="innervate",
     help=HELP,
     help_format="plaintext",
+    help_formatter=Flowing(),
     version=f"innervate {innervate.__version__}",
     version_flags=["--version"],
     suppress_keyboard_interrupt=False,

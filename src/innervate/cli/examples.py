@@ -14,7 +14,7 @@ BELOW: dict[str, tuple[str, tuple[str, ...]]] = {
     )),
     "sweep": ("sweeps", (
         "innervate sweep my-skin.toml --vary protocol.k=2..8 --repeat 30",
-        "innervate sweep my-skin.toml --vary protocol.k=2..8 --until recoveries.routed_ms.ci=5%",
+        "innervate sweep demo --vary protocol.k=2..8 --until recoveries.routed_ms.ci=5%",
     )),
     "size": ("sweeps", ("innervate size ur5.urdf --links '*arm_link' --pitch 40 --rate 250",)),
     "papers": ("readings", ("innervate papers radio --quick", "innervate papers --only fig8a")),
