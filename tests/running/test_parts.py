@@ -276,8 +276,11 @@ def test_in_a_cell_a_bar_is_shown_now_and_then_and_gone_in_the_end(monkeypatch):
     ]  # fmt: skip
     now[0] = 200.0
     states = [SimpleNamespace(done=2, goal=5), SimpleNamespace(done=1, goal=5)]
-    bar.swept(SimpleNamespace(states=states))
+    bar.swept(SimpleNamespace(states=states, lacks=""))
     assert cell.shown[-1] == ("3 of 10 runs", 3, 10)
+    now[0] = 250.0
+    bar.swept(SimpleNamespace(states=states, lacks="waits for workers"))
+    assert cell.shown[-1] == ("waits for workers", 3, 10)
     now[0] = 300.0
     assert bar.explored("ring", 4, 0) is False
     assert cell.shown[-1] == ("ring", 4, 0)

@@ -332,7 +332,8 @@ class Died(Exception):
 
 @pytest.mark.parametrize(("together", "lost"), [(True, [0, 1]), (False, [0])])
 def test_with_a_worker_all_batches_under_way_may_be_lost(monkeypatch, together, lost):
-    engine = SimpleNamespace(died=(Died,), falls_together=together, renew=lambda: None)
+    engine = SimpleNamespace(died=(Died,), falls_together=together, look_s=None,
+                             renew=lambda: None)  # fmt: skip
     made = Scheduler(make_plan(SKIN, repeat=4), SimpleNamespace(), engine)
     futures = []
     for repeat in range(2):
@@ -341,7 +342,7 @@ def test_with_a_worker_all_batches_under_way_may_be_lost(monkeypatch, together, 
         made._running[future] = [Job("p", (), repeat, 1)]
         futures.append(future)
 
-    def wait(running, return_when=None):
+    def wait(running, timeout=None, return_when=None):
         return (set(futures[:1]) if return_when else set(running)), set()
 
     monkeypatch.setattr(scheduler, "wait", wait)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import threading
@@ -106,6 +107,30 @@ def check_scheduler_killed(scheduler, four):
     assert not before.complete
     done = innervate.sweep(four, vary=VARY, out="out", repeat=4, workers=1)
     assert done.ran == 24 - before.results.filter(before.results["repeat"] < 4).height
+
+
+def test_a_scheduler_without_workers_is_told_and_waited_for(scheduler, four):
+    """Ctrl-C ends the wait; or a worker comes, and all is run."""
+    address, _ = scheduler
+    asked = ("sweep", four.name, "--repeat", 2, "--dask", address)
+    sweep = start(*asked, cwd=four.parent)
+    assert sweep.stderr.readline() == (
+        f"four: waits, as the scheduler has no workers; start one with: dask worker {address}\n"
+    )
+    sweep.send_signal(signal.SIGINT)
+    _, told = sweep.communicate(timeout=TIMEOUT_S)
+    assert sweep.returncode == 130
+    assert re.fullmatch(r"innervate: interrupted; 0 of 2 runs done; they are kept in .*\n", told)
+    sweep = start(*asked, cwd=four.parent)
+    assert "no workers" in sweep.stderr.readline()
+    options = (address, "--no-nanny", "--no-dashboard", "--nthreads", 1)
+    worker = start(*options, cwd=four.parent, module="distributed.cli.dask_worker", **QUIET)
+    reader = drain(worker)
+    assert "Written:" in sweep.communicate(timeout=TIMEOUT_S)[0]
+    worker.kill()
+    worker.wait(TIMEOUT_S)
+    reader.join(TIMEOUT_S)
+    worker.stderr.close()
 
 
 def test_no_scheduler_there(four, monkeypatch):

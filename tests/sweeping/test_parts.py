@@ -115,7 +115,7 @@ class Clock:
 class Conducted:
     """As far as a display looks at it."""
 
-    done, failed, total, left_s = 30, 2, 100, 250.0
+    done, failed, total, left_s, lacks = 30, 2, 100, 250.0, ""
 
     class plan:
         until = ()

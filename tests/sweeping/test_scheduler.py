@@ -272,7 +272,7 @@ class Dying(Noting):
     def renew(self):
         self.renewed += 1
 
-    def wait(self, running, return_when=None):
+    def wait(self, running, timeout=None, return_when=None):
         """The first is lost at once, all others while one waits for all."""
         ended = list(running)[: 1 if return_when == FIRST_COMPLETED else None]
         for future in ended:

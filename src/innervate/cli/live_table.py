@@ -65,7 +65,11 @@ class LiveTable:
         if conductor.failed:
             self.words += f", {conductor.failed} failed"
         now, ended = time.monotonic(), conductor.done == conductor.total
-        if self._live is not None and (now - self._last >= DRAW_EVERY_S or ended):
+        if conductor.lacks and self._live is None:
+            print(f"{self._name}: {conductor.lacks}", file=sys.stderr, flush=True)
+        elif self._live is not None and (
+            now - self._last >= DRAW_EVERY_S or ended or conductor.lacks
+        ):
             self._last = now
             self._live.update(self._table(conductor), refresh=True)
         elif not self._terminal and now - self._last >= LINE_EVERY_S:
@@ -77,7 +81,7 @@ class LiveTable:
 
         there = [m for m in self._measures if any(m in s.values for s in conductor.states)]
         shown = there[:MEASURES_MAX]
-        title = f"{self._name}: {self.words}{_left(conductor)}"
+        title = f"{self._name}: {conductor.lacks or self.words + _left(conductor)}"
         table = Table(title=title, title_justify="left", box=None, pad_edge=False)
         table.add_column("point", no_wrap=True, overflow="ellipsis")
         for head in ("runs", *shown):

@@ -56,7 +56,7 @@ class Bar:
         """A sweep's progress: runs so far."""
         done = sum(state.done for state in scheduler.states)
         total = sum(state.goal for state in scheduler.states)
-        self.show(f"{done} of {total} runs", done, total)
+        self.show(scheduler.lacks or f"{done} of {total} runs", done, total)
 
     def explored(self, what: str, part: int, of: int) -> bool:
         """An exploration's progress; it is never ended from here."""

@@ -41,6 +41,7 @@ class Engine:
         died: errors of a batch whose worker died.
         lost: errors of a batch when the whole engine is gone.
         falls_together: when a worker dies, all batches under way are lost with it.
+        look_s: after so long without a result ask `lacks`; None = never, workers are its own.
     """
 
     workers = 1
@@ -48,6 +49,7 @@ class Engine:
     died: tuple[type[BaseException], ...] = ()
     lost: tuple[type[BaseException], ...] = ()
     falls_together = False
+    look_s: float | None = None
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
         """Run `work(*args)` on some worker; its result comes by the future."""
@@ -55,6 +57,10 @@ class Engine:
 
     def renew(self) -> None:
         """Make it fit for work again after a worker died."""
+
+    def lacks(self) -> str:
+        """What it lacks to go on, in words; "" = nothing."""
+        return ""
 
     def close(self) -> None:
         """End it without waiting for what it was given."""
@@ -133,7 +139,10 @@ class Pool(Engine):
 class Cluster(Engine):
     """A Dask cluster that is running already."""
 
+    look_s = _ASK_EVERY_S
+
     def __init__(self, address: str) -> None:
+        self._address = address
         distributed: Any = import_module("distributed")
         closed: Any = import_module("distributed.comm.core").CommClosedError
 
@@ -159,10 +168,19 @@ class Cluster(Engine):
     @property
     def workers(self) -> int:  # type: ignore[override]
         """Threads of all workers at present; they may come and go."""
+        return max(1, self._count())
+
+    def lacks(self) -> str:
+        """Workers, if there are none."""
+        start = f"start one with: dask worker {self._address}"
+        return "" if self._count() else f"waits, as the scheduler has no workers; {start}"
+
+    def _count(self) -> int:
+        """Threads of all workers, as they were two seconds ago at most."""
         now = time.monotonic()
-        if now - self._asked_s > _ASK_EVERY_S:
+        if now - self._asked_s >= _ASK_EVERY_S:
             self._asked_s = now
-            self._threads = max(1, sum(self._client.nthreads().values()))
+            self._threads = sum(self._client.nthreads().values())
         return self._threads
 
     @property

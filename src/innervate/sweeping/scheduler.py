@@ -65,6 +65,7 @@ class Scheduler:
     Attributes:
         states: how far every point is.
         ran: runs done by this process.
+        lacks: what nothing goes on without, in words; "" = it goes on.
     """
 
     def __init__(
@@ -79,6 +80,7 @@ class Scheduler:
         self.plan = plan
         self.states = [State(point) for point in plan.points]
         self.ran = 0
+        self.lacks = ""
         self._jobs = jobs
         self._engine = engine
         self._progress = progress or (lambda scheduler: None)
@@ -202,9 +204,21 @@ class Scheduler:
     def _submit(self, jobs: list[Job]) -> None:
         self._running[self._engine.submit(run_batch, self.plan.base, jobs)] = jobs
 
+    def _first_ended(self) -> set[Future[Done]]:
+        """Wait for something, and say what that waits for where nothing can come."""
+        while True:
+            look_s = self._engine.look_s
+            ended, _ = wait(self._running, timeout=look_s, return_when=FIRST_COMPLETED)
+            lacks = "" if ended else self._engine.lacks()
+            if lacks != self.lacks:
+                self.lacks = lacks
+                self._progress(self)
+            if ended:
+                return ended
+
     def _collect(self) -> None:
         """Wait for something, and keep it."""
-        ended, _ = wait(self._running, return_when=FIRST_COMPLETED)
+        ended = self._first_ended()
         suspects = self._take(ended)
         if suspects and self._engine.falls_together:
             others, _ = wait(self._running)
