@@ -65,6 +65,9 @@ def test_of_measures_a_few_are_shown_or_all_that_somebody_asked_for():
     assert made.to_show(["x", "never.happened"]) == ["x", "never.happened"]
     assert made.to_show(["protocol.k"]) == list(SHOWN[:SHOWN_MAX])  # a column of its own
     assert made.to_show([*SHOWN]) == list(SHOWN)
+    none = polars.lit(None, polars.Float64).alias(SHOWN[0])
+    made.results = made.results.with_columns(none)  # which is not among the few
+    assert made.to_show() == [one for one in SHOWN if one in made.measures][1 : SHOWN_MAX + 1]
 
 
 def test_over_what_a_figure_takes_means():

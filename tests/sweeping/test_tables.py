@@ -112,6 +112,17 @@ def test_what_a_summary_does_not_name_as_it_never_happened_counts_as_none():
         assert made[name].to_list() == wanted, name
 
 
+def test_a_figure_that_no_run_has_is_a_column_of_numbers():
+    """Tables of sweeps in which something happened, and did not, have columns of the same kind."""
+    runs = Runs({"alarms.latency_ms": None, "word": "a"}, {"alarms.latency_ms": None})
+    made = tables.results(PLAN, runs, (2, 0))
+    assert (made.schema["alarms.latency_ms"], made.schema["word"]) == (FLOAT, TEXT)
+    assert made["alarms.latency_ms"].to_list() == [None, None]
+    assert tables.measures(made, ["k"]) == ["alarms.latency_ms"]
+    (row,) = tables.points(made, PLAN.points[:1], ["alarms.latency_ms"], 0.95).rows(named=True)
+    assert (row["runs"], row["mean"]) == (0, None)
+
+
 def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     path = tmp_path / "results.parquet"
     path.write_text("before")

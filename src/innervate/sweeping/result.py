@@ -88,7 +88,8 @@ class Sweep:
     def to_show(self, wanted: Sequence[str] = ()) -> list[str]:
         """The measures that somebody sees first: all those wanted, valued or not; or a few."""
         asked = [one for one in wanted if one not in self.plan.keys]
-        there = self.measures
+        height = self.results.height
+        there = [one for one in self.measures if self.results[one].null_count() < height]
         return asked or ([one for one in SHOWN if one in there] or there)[:SHOWN_MAX]
 
     @property

@@ -38,9 +38,12 @@ def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataF
         jobs: the runs.
         repeats: how many runs of every point belong to it; those that are missing are left out.
     """
-    columns = _columns(_rows(plan, jobs, repeats), (*FIRST, *plan.keys, *AFTER))
+    aside = (*FIRST, *plan.keys, *AFTER)
+    columns = _columns(_rows(plan, jobs, repeats), aside)
     _count_none(columns)
-    return _frame(columns)
+    never = [name for name, values in columns.items()
+             if name not in aside and all(value is None for value in values)]  # fmt: skip
+    return _frame(columns, never)
 
 
 def _rows(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> Iterator[dict[str, Any]]:
@@ -95,10 +98,7 @@ def frame(
     whole numbers is Int64, of numbers Float64, of truths Boolean, else String; those of `numbers`
     are Float64 even if there is no value in them.
     """
-    import polars
-
-    made = _frame(_columns(rows, first))
-    return made.with_columns(polars.col(*numbers).cast(polars.Float64)) if numbers else made
+    return _frame(_columns(rows, first), numbers)
 
 
 def _columns(rows: Iterable[dict[str, Any]], first: Iterable[str]) -> Columns:
@@ -115,10 +115,11 @@ def _columns(rows: Iterable[dict[str, Any]], first: Iterable[str]) -> Columns:
     return columns
 
 
-def _frame(columns: Columns) -> polars.DataFrame:
+def _frame(columns: Columns, numbers: Sequence[str]) -> polars.DataFrame:
     import polars
 
-    return polars.DataFrame([_series(name, values) for name, values in columns.items()])
+    made = polars.DataFrame([_series(name, values) for name, values in columns.items()])
+    return made.with_columns(polars.col(*numbers).cast(polars.Float64)) if numbers else made
 
 
 def _series(name: str, values: list[Any]) -> polars.Series:
