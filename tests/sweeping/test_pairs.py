@@ -3,6 +3,7 @@
 import polars
 import pytest
 
+from innervate.cli import sweeping
 from innervate.sweeping import SweepError, make_plan
 from innervate.sweeping.result import SHOWN, SHOWN_MAX, Sweep
 from tests.sweeping.test_plan import SKIN
@@ -57,6 +58,20 @@ def test_figures_of_what_never_happened_are_numbers_all_the_same():
                         (compared, "difference"), (compared, "low")):  # fmt: skip
         assert found.schema[name] == polars.Float64
         assert (found[name] * 2).null_count() == found.height
+
+
+def test_points_without_a_value_of_what_until_names_are_said():
+    made = table((0, 0, None), (0, 1, None), (1, 0, None), (1, 1, 2.0))
+    assert made.without_value() == {}
+    plan = make_plan(SKIN, vary={"protocol.k": [2, 3]}, until=("x.ci=5%", "list.y.ci=1"))
+    made = Sweep(plan, made.results, made.timings)
+    assert made.without_value() == {"x": [0], "list.y": [0, 1]}
+    assert sweeping.never_lines(made) == [
+        "--until x: no run of point 0 has a value of it, so that there is no interval",
+        "--until list.y: no run of points 0, 1 has a value of it, so that there is no interval",
+    ]
+    failed = made.results.with_columns(status=polars.lit("failed"))
+    assert Sweep(plan, failed, made.timings).without_value() == {}
 
 
 def test_of_measures_a_few_are_shown_or_all_that_somebody_asked_for():

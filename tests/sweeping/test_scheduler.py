@@ -63,6 +63,15 @@ def conducted(tmp_path, monkeypatch):
     return begun
 
 
+@pytest.mark.parametrize(("name", "value", "goal"), [("x", 1.0, 4), ("list.x", 1.0, 12),
+                                                    ("list.x", None, 40)])  # fmt: skip
+def test_what_never_happens_is_not_waited_for_beyond_three_batches(conducted, name, value, goal):
+    """Of runs that failed nobody knows whether it would have."""
+    made = conducted(Noting(lambda repeat: value), repeat=40, batch=4, until=f"{name}.ci=5%")
+    made.run()
+    assert (made.done, made.states[0].goal, made.states[0].finished) == (goal, goal, True)
+
+
 def test_what_is_there_is_not_run_again(conducted):
     engine = Noting()
     made = conducted(engine, repeat=5, there=[(0, 1.0), (3, 1.0)])

@@ -99,7 +99,19 @@ def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     more = len(done.plan.points) - POINTS_MAX
     if more > 0:
         lines.append(f"... and {more} more points")
-    return lines + headline_lines(done) + failed_lines(done)
+    return lines + never_lines(done) + headline_lines(done) + failed_lines(done)
+
+
+def never_lines(done: Sweep) -> list[str]:
+    """Which measures of --until have no value at some points, so that these end without one."""
+    lines = []
+    for measure, points in done.without_value().items():
+        some = ", ".join(map(str, points[:REASONS_MAX]))
+        more = f" and {len(points) - REASONS_MAX} more" if len(points) > REASONS_MAX else ""
+        where = f" of point{'s' if len(points) > 1 else ''} {some}{more}"
+        lines.append(f"--until {measure}: no run{where if len(done.plan.points) > 1 else ''} has a "
+                     "value of it, so that there is no interval")  # fmt: skip
+    return lines
 
 
 def headline_lines(done: Sweep) -> list[str]:

@@ -92,6 +92,15 @@ class Sweep:
         there = [one for one in self.measures if self.results[one].null_count() < height]
         return asked or ([one for one in SHOWN if one in there] or there)[:SHOWN_MAX]
 
+    def without_value(self) -> dict[str, list[int]]:
+        """By measure of `until`, the points that have runs of which none has a value of it."""
+        found = {}
+        done = self.results.filter(self.results["status"] == "done")
+        for measure in dict.fromkeys(rule.measure for rule in self.plan.until):
+            there = done.drop_nulls(measure) if measure in done.columns else done.clear()
+            found[measure] = sorted({*done["point"]} - {*there["point"]})
+        return {measure: points for measure, points in found.items() if points}
+
     @property
     def provenance(self) -> dict[str, Any]:
         """What the results come from."""

@@ -23,6 +23,7 @@ from innervate.sweeping.work import Done, Job, Outcome, run_batch
 BATCH_S = 0.25  # about how long a batch takes: what a kill may cost, and often enough for a display
 BATCH_MAX = 500
 DEATHS_MAX = 3
+NEVER_BATCHES = 3  # repeats after which what `until` names is taken for what never happens
 NAMED_MAX = 8  # figures that an error names
 
 
@@ -146,7 +147,9 @@ class Scheduler:
         """All repeats up to the goal are there: is that enough?"""
         rules = self.plan.until
         enough = bool(rules) and all(rule.met(state.series(rule.measure)) for rule in rules)
-        state.finished = enough or state.goal >= self.plan.repeat
+        tried = state.done - state.failed >= NEVER_BATCHES * self.plan.batch
+        vain = tried and not all(state.series(rule.measure) for rule in rules)
+        state.finished = enough or vain or state.goal >= self.plan.repeat
 
     def _count(self, state: State, repeat: int, figures: dict[str, Any] | None) -> None:
         state.done += 1
