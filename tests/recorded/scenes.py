@@ -356,7 +356,8 @@ def answers(graph: Any) -> Iterator[tuple[str, Drawn]]:
     asked = SimpleNamespace(pitch_mm=25.0, reach_mm=40.0, loss_max=0.01, recovery_ms_max=50.0,
                             ports=(1, 2, 3))  # fmt: skip
     answer = SimpleNamespace(
-        question=asked, frames=False, cells=9, graphs=dict.fromkeys((1, 2, 3), graph),
+        question=asked, frames=False, cells=9, is_single=False,
+        graphs=dict.fromkeys((1, 2, 3), graph),
         table=SimpleNamespace(iter_rows=lambda named: iter(rows)),
         where={3: ["n1", "n5", "n9"], 1: ["n1"]},
         needed={100.0: 3, 1000.0: None, 500.0: None, 50.0: 1},

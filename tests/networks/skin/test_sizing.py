@@ -9,7 +9,7 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import main
-from innervate.networks.skin.plot.answer import answer_lines
+from innervate.networks.skin.plot.answer import ALONE, answer_lines, answer_record
 from innervate.networks.skin.sizing import Question, judged, parse_ports, size
 from innervate.sweeping import SweepError
 
@@ -43,7 +43,11 @@ def test_a_number_of_ports_is_enough_only_if_every_single_failure_heals():
     assert (three["within"], three["enough"], three["isolated_max"]) == (True, True, 0)
     assert answer.needed == {250.0: 3}
     lines = answer_lines(answer)
-    assert "250 Hz: 3 ports are enough" in lines[-3]
+    assert "250 Hz: 3 ports are enough for 1 % lost" in lines[-3]
+    once = replace(answer, sweep=replace(answer.sweep, plan=replace(answer.sweep.plan, repeat=1)))
+    assert "250 Hz: 3 ports are enough in the one run made for 1 % lost" in answer_lines(once)[-4]
+    assert (answer_lines(once)[-1], lines.count(ALONE)) == (ALONE, 0)
+    assert answer_record(answer)["intervals"] is True
     assert "every single failure of a cable or cell heals" in lines[-3]
     assert lines[-2].startswith("With 2 ports 3 single failures cut off cells for good: cable ")
     assert "(8 cells)" in lines[-2]
@@ -115,12 +119,14 @@ def test_runs_that_fail_and_cells_that_stay_without_a_way_are_named(tmp_path, ca
     assert main(["size", rod(tmp_path), *tokens]) == 1  # for a script: none of them is enough
     lines = capsys.readouterr().out.splitlines()
     assert "250 Hz: none of up to 2 ports is enough for 1 % lost, ways back in 50 ms." in lines
+    assert ALONE in lines
     (wayless,) = (line for line in lines if line.startswith("250 Hz, 2 ports: in 1 run cells"))
     assert "protocol.max_depth" in wayless
     assert lines[lines.index("2 of 4 runs failed:") + 1].startswith("  2 x scenario.toml: arm_")
     assert main(["size", rod(tmp_path), *tokens, "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
     assert (found["enough"], found["cells"], list(found["failed"].values())) == (False, 74, [2])
+    assert (found["repeat"], found["intervals"]) == (1, False)
     assert found["rates"] == [{"rate_hz": 250.0, "ports": None, "on": [],
                                "ports_but_for_single_failures": None}]  # fmt: skip
     assert [(row["ports"], row["failed"], row["unhealed"]) for row in found["tried"]] == [

@@ -100,6 +100,11 @@ class Answer:
     weak: dict[int, list[Weak]]
 
     @property
+    def is_single(self) -> bool:
+        """One run of every combination: nothing is known of how much runs differ."""
+        return self.sweep.plan.repeat == 1
+
+    @property
     def where(self) -> dict[int, list[str]]:
         """For every number of ports the names of the cells that they are on."""
         return {ports: cells_with_ports(graph) for ports, graph in self.graphs.items()}

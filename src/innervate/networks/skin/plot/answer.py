@@ -15,11 +15,13 @@ if TYPE_CHECKING:
     from innervate.topology import Graph
 
 NAMED_MAX = 4
+ALONE = "One run of each shows no spread, and no interval: --repeat 20 runs each 20 times."
 
 
 def answer_lines(answer: Answer) -> list[str]:
     """The answer for people: a table, then how many ports, where, and what does not heal."""
-    return [*_table(answer), "", *_verdicts(answer), *_wayless(answer), *_unhealed(answer)]
+    said = [*_verdicts(answer), *_wayless(answer), *_unhealed(answer)]
+    return [*_table(answer), "", *said, *([ALONE] if answer.is_single else [])]
 
 
 def answer_record(answer: Answer) -> dict[str, Any]:
@@ -33,6 +35,8 @@ def answer_record(answer: Answer) -> dict[str, Any]:
         "reach_mm": asked.reach_mm,
         "loss_ratio_max": asked.loss_max,
         "recovery_ms_max": asked.recovery_ms_max,
+        "repeat": answer.sweep.plan.repeat,
+        "intervals": not answer.is_single,
         "enough": all(ports is not None for ports in answer.needed.values()),
         "rates": [
             {"rate_hz": rate, "ports": ports, "on": answer.where.get(ports, []) if ports else [],
@@ -76,16 +80,17 @@ def _table(answer: Answer) -> list[str]:
 def _verdicts(answer: Answer) -> list[str]:
     """How many ports every rate needs."""
     asked, lines = answer.question, []
+    once = " in the one run made" if answer.is_single else ""
     limits = f"{100 * asked.loss_max:g} % lost, ways back in {asked.recovery_ms_max:g} ms"
     for rate, ports in answer.needed.items():
         begin, least = f"{rate:g} Hz:", answer.carries[rate]
         none = f"{begin} none of {_tried(asked.ports)} is enough"
         if ports is not None:
             places = ", ".join(answer.where[ports])
-            lines.append(f"{begin} {_are(ports)} enough for {limits}, and every single failure of "
-                         f"a cable or cell heals, on {places}.")  # fmt: skip
+            lines.append(f"{begin} {_are(ports)} enough{once} for {limits}, and every single "
+                         f"failure of a cable or cell heals, on {places}.")  # fmt: skip
         elif least is not None:
-            lines.append(f"{none}: {_are(least)} enough for "
+            lines.append(f"{none}: {_are(least)} enough{once} for "
                          f"{limits}, but not every single failure heals.")  # fmt: skip
         else:
             lines.append(f"{none} for {limits}.")

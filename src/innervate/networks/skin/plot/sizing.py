@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 Columns = Mapping[str, Sequence[Any]]
 AXES = "xyz"
 SLANT = 0.3
+MEANS = "mean, 95 % interval"
 
 
 def write(answer: Answer, folder: Path) -> Path:
@@ -30,10 +31,13 @@ def write(answer: Answer, folder: Path) -> Path:
     limits = (asked.loss_max, asked.recovery_ms_max)
     with style.house():
         title = f"{graph.cells} cells, {number_of(ports, 'port')}"
-        return style.save(draw(columns, graph, limits, title), folder, "size")[0]
+        what = "one run" if answer.is_single else MEANS
+        return style.save(draw(columns, graph, limits, title, what), folder, "size")[0]
 
 
-def draw(columns: Columns, graph: Any, limits: tuple[float, float], title: str) -> Figure:
+def draw(
+    columns: Columns, graph: Any, limits: tuple[float, float], title: str, what: str = MEANS
+) -> Figure:
     """Three panels.
 
     Args:
@@ -41,13 +45,14 @@ def draw(columns: Columns, graph: Any, limits: tuple[float, float], title: str) 
         graph: the cells and cables of the number of ports that is shown.
         limits: (share lost, ms) that are allowed.
         title: above the map.
+        what: the curves are.
     """
     with style.house():
         made, (loss, back, cells) = style.panels(style.WIDE_IN, 2.6, 1, 3)
         _curves(loss, columns, "loss_cell", 100.0, limits[0])
-        loss.set_ylabel("lost on the way (%)\nmean, 95 % interval")
+        loss.set_ylabel(f"lost on the way (%)\n{what}")
         _curves(back, columns, "recovery_ms_cell", 1.0, limits[1])
-        back.set_ylabel("recovery from a cut cable (ms)\nmean, 95 % interval")
+        back.set_ylabel(f"recovery from a cut cable (ms)\n{what}")
         _map(cells, graph)
         cells.set_title(title)
         return made
