@@ -1,11 +1,14 @@
 """Scenarios that are built in code: `innervate.Skin`, `Radio`, `Mesh` and models of others."""
 
+import tomllib
+
 import pytest
 from msgspec import structs
 
 import innervate
 from innervate import scenario as scenarios
 from innervate.scenario.keys import Table
+from innervate.sweeping import make_plan
 
 SKIN = innervate.Skin(
     name="palm",
@@ -91,6 +94,12 @@ def parts(hint):
     if isinstance(hint, type) and issubclass(hint, Table):
         return {hint}
     return {table for inner in getattr(hint, "__args__", ()) for table in parts(inner)}
+
+
+def test_a_sweep_of_it_has_its_name():
+    given = scenarios.from_dict(tomllib.loads(SAME))
+    assert {make_plan(one).name for one in (SKIN, tomllib.loads(SAME), given)} == {"palm"}
+    assert make_plan("line").name == "line"
 
 
 def test_a_sweep_takes_it_too():

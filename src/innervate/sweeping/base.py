@@ -35,6 +35,7 @@ class Base:
         folder: where relative paths in it start.
         settings: (dotted key, value) that hold for every run.
         kind: of network.
+        name: of a scenario that is no file, which the copy's name says nothing of.
     """
 
     text: str
@@ -42,6 +43,7 @@ class Base:
     folder: str
     settings: Settings = ()
     kind: str = ""
+    name: str = ""
 
     def scenario(self, settings: Iterable[tuple[str, Any]] = (), seed: int | None = None) -> Any:
         """The scenario with these settings besides.
@@ -89,9 +91,10 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
         source = given.load(source)
     if isinstance(source, Scenario):
         text, label = scenarios.dump(source, whole=False), "scenario.toml"
-        folder = source.source.folder
+        folder, name = source.source.folder, source.name
     else:
         text, label, folder = scenarios.read(source)
+        name = ""
     file = Path(label).name
     settings = tuple(_setting(c) for c in changes) if not isinstance(changes, Mapping) else ()
     if isinstance(changes, Mapping):
@@ -99,7 +102,7 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
     if file in TAKEN:
         file, settings = "scenario.toml", (("name", Path(file).stem), *settings)
     kind = dict(settings).get("kind") or _kind(text)
-    return Base(text, file, os.path.abspath(folder or "."), settings, str(kind))
+    return Base(text, file, os.path.abspath(folder or "."), settings, str(kind), name)
 
 
 def _kind(text: str) -> Any:

@@ -185,7 +185,7 @@ def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
         until=tuple(parse_until(rule) for rule in rules),
         root=_first(planned.get("seed"), file.seed if file else None, -1),
         paired=pairs,
-        name=(file.name if file is not None else "") or Path(base.file).stem,
+        name=(file.name if file is not None else "") or base.name or Path(base.file).stem,
         plots=planfile.plots_of(file, str(scenario)) if file is not None else (),
         repeat=_count("repeat", planned, file, REPEAT_UNTIL if rules else 1),
         batch=_count("batch", planned, file, BATCH),
