@@ -84,6 +84,11 @@ def test_all_that_is_asked_of_a_sweep_reaches_it():
     assert not SweepOptions().how["retry"]
 
 
+def test_figures_to_show_are_named_one_by_one_or_with_commas():
+    assert SweepOptions(show=["a.b,c", "d, a.b,"]).shown == ("a.b", "c", "d")
+    assert SweepOptions().shown == ()
+
+
 def points(*states):
     return [SimpleNamespace(point=SimpleNamespace(index=i), done=done, finished=finished)
             for i, (done, finished) in enumerate(states)]  # fmt: skip

@@ -65,7 +65,7 @@ class SweepOptions:
     dask
         Address of a Dask scheduler to run on, like tcp://scheduler:8786.
     show
-        A figure to show while it runs and at the end; may be given again.
+        Figures to show while it runs and at the end, like a,b; may be given again.
     retry
         Run again what failed.
     """
@@ -92,6 +92,12 @@ class SweepOptions:
             "seed": self.seed, "until": self.until or [], "batch": self.batch,
             "paired": self.paired or [],
         }  # fmt: skip
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """The figures of --show, each once."""
+        named = (name.strip() for text in self.show or () for name in text.split(","))
+        return tuple(dict.fromkeys(name for name in named if name))
 
     @property
     def how(self) -> dict[str, Any]:

@@ -27,11 +27,11 @@ def sweep(file: str, options: SweepOptions) -> int:
 
     plan: SweepPlan = room.make_plan(file, **options.planned)
     folder = options.out or Path("sweeps") / (plain_name(plan.name) or "sweep")
-    wanted = tuple(dict.fromkeys([*(options.show or ()), *(rule.measure for rule in plan.until)]))
+    wanted = tuple(dict.fromkeys([*options.shown, *(rule.measure for rule in plan.until)]))
     with LiveTable(plan.name, wanted or SHOWN) as table:
         try:
             done = room.sweep(
-                plan, out=folder, **options.how, show=options.show or (),
+                plan, out=folder, **options.how, show=options.shown,
                 follow=wanted or SHOWN, progress=table,
             )  # fmt: skip
         except KeyboardInterrupt:
