@@ -37,7 +37,8 @@ def main() -> None:
         received = run.tables["received"]
         hops = received.select(pl.col("hops").mean()).collect().item()
         print(
-            f"{ports} ports: {100 * data['loss_ratio']:5.1f} % of the samples lost, "
+            f"{ports} {'port:  ' if ports == 1 else 'ports: '}"
+            f"{100 * data['loss_ratio']:5.1f} % of the samples lost, "
             f"{hops:.1f} cells on the way, cells behind each port {loads}"
         )
 

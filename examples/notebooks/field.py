@@ -31,5 +31,5 @@ run.plot("field")
 # %%
 alarms = run.mesh["alarms"]
 print(f"{alarms['delivered']} of {alarms['sent']} alarms reached the monitor")
-print(f"the slowest after {alarms['latency_ms']['max']} ms")
-print(f"the robot got {alarms['overrun_m']['max']} m out")
+print(f"the slowest after {alarms['latency_ms']['max']:.1f} ms")
+print(f"the robot got {alarms['overrun_m']['max']:.2f} m out")

@@ -96,6 +96,7 @@ def test_recovery_times(monkeypatch, capsys):
 
 def test_ports_needed(monkeypatch, capsys):
     lines = run_script("ports_needed.py", monkeypatch, capsys)
+    assert [line.split(":")[0] for line in lines] == ["1 port", "2 ports", "3 ports", "4 ports"]
     lost = [float(line.split(":")[1].split("%")[0]) for line in lines]
     assert lost == sorted(lost, reverse=True)
     assert lost[0] > 50 > 10 > lost[-1]

@@ -117,5 +117,6 @@ def fault_words(plan: Any, fault: Any) -> str:
     else:
         what = graph.label(fault.node)
     more = f", loss {fault.loss_q15 / LOSS_ONE:.3g}" if fault.action == LOOSE else ""
-    more += f", {fault.frames} frames" if fault.frames else ""
+    if fault.frames:
+        more += f", {fault.frames} frame{'s' if fault.frames > 1 else ''}"
     return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} {what}{more}"

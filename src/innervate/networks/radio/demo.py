@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from innervate.plot.words import ms_words
+from innervate.plot.words import ms_words, number_of
 
 if TYPE_CHECKING:
     from innervate.running import Run
@@ -33,6 +33,6 @@ def lines(run: Run) -> list[str]:
     return [
         *(f"{'+' + ms_words((at_us - start_us) / 1e3):>10}   {what}" for at_us, what in steps),
         "",
-        f"Order: {order}. {lost} packets lost without their sender knowing.",
+        f"Order: {order}. {number_of(lost, 'packet')} lost without their sender knowing.",
         f"The packets alone take {ms_words(took_ms)}.",
     ]

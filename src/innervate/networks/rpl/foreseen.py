@@ -34,7 +34,8 @@ def foreseen(plan: Any) -> list[str]:
         if max(hops) > params["hops"]:
             far = sum(one > params["hops"] for one in hops)
             found.append(
-                f"protocol.hops is {params['hops']}, and {far} of {plan.nodes} nodes are farther "
+                f"protocol.hops is {params['hops']}, and {far} of {plan.nodes} nodes "
+                f"{'is' if far == 1 else 'are'} farther "
                 f"from the root, up to {max(hops)} hops: no packet comes from there"
             )
     return found

@@ -41,12 +41,16 @@ def _steps(recovery: Recovery, cells: int) -> list[tuple[str, str]]:
     cut, settled = recovery["cut_cells"], recovery["converged_ms"]
     steps: list[tuple[float, str]] = []
     if cut:
-        steps.append((0.0, f"{cut} of {cells} cells have lost their way to the PC"))
+        have = "has lost its" if cut == 1 else "have lost their"
+        steps.append((0.0, f"{cut} of {cells} cells {have} way to the PC"))
     if recovery["detected_ms"]:
         steps.append((recovery["detected_ms"], "the cell at the cable has noticed"))
     gone, routed = recovery["cut_off"], recovery["others_ms"]
     if gone:
-        steps.append((0.0, f"{gone} of {cells} cells are cut off: no cable joins them any more"))
+        are, whom = ("is", "it") if gone == 1 else ("are", "them")
+        steps.append(
+            (0.0, f"{gone} of {cells} cells {are} cut off: no cable joins {whom} any more")
+        )
     if routed:
         whom = "every other cell" if recovery["cut_off_total"] else "every cell"
         steps.append((routed, f"{whom} has a way again"))

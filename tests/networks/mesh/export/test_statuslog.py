@@ -47,7 +47,7 @@ def test_links_that_carried_nothing_are_told(tmp_path, quality, notes):
     assert len(found.notes) == notes
     assert found.notes[-1].startswith("a status says nothing of delays")
     if notes == 2:
-        assert found.notes[0].startswith("1 links carried nothing")
+        assert found.notes[0].startswith("1 link carried nothing")
 
 
 @pytest.mark.parametrize("more", [

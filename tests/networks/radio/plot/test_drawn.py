@@ -165,7 +165,7 @@ def test_a_packet_in_its_turn_is_labelled_by_its_place_and_no_other_frame_is():
     assert first.labels == ("data 4", "D4", "D")
     assert first.tip == "station 1: data, 1000 to 1500 us, 5 slots, place 4 of the round"
     assert pulse.labels == ("CR-R", "C")
-    assert pulse.tip == "station 2: CR-R, 2000 to 2100 us, 1 slots"
+    assert pulse.tip == "station 2: CR-R, 2000 to 2100 us, 1 slot"
     assert other.labels == ("data", "D")
 
 

@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from innervate.analysis.words import number_of
 from innervate.export.errors import ExportError
 from innervate.networks.mesh.export.fit import Mesh
 
@@ -53,7 +54,8 @@ def measure(path: Path) -> Mesh:
     if not found.ways:
         raise ExportError(f"{path}: no node has a neighbour yet; ask again a little later")
     if unknown:
-        found.notes.append(f"{unknown // 2} links carried nothing to acknowledge: taken as perfect")
+        links = number_of(unknown // 2, "link")
+        found.notes.append(f"{links} carried nothing to acknowledge: taken as perfect")
     found.notes.append("a status says nothing of delays: the fit is a network over IP")
     return found
 

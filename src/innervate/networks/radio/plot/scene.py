@@ -196,7 +196,9 @@ def _boxes(result: Any, on_air: Air, found: Groups, which: Any) -> list[Box]:
         start, end = int(on_air.start[place]), int(on_air.end[place])
         words = frame_words(protocol, kind)
         labels: tuple[str, ...] = (words.name, words.letter)
-        tip = f"station {node}: {words.name}, {start} to {end} us, {(end - start) / slot:g} slots"
+        long = (end - start) / slot
+        slots = "1 slot" if long == 1 else f"{long:g} slots"
+        tip = f"station {node}: {words.name}, {start} to {end} us, {slots}"
         turn = turns.get((node, int(decided[place])))
         if turn is not None and kind == DATA:
             labels = (f"{words.name} {turn[0]}", f"{words.letter}{turn[0]}", words.letter)

@@ -6,6 +6,7 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
+from innervate.analysis.words import number_of
 from innervate.scenario.shrink import Tables, with_fewer_keys
 
 SHARE = (0.0, 0.25)
@@ -50,4 +51,4 @@ def smaller(tables: Tables) -> Iterator[Tables]:
 def trouble(summary: Any) -> str:
     """What a run broke that no checker is for."""
     lost = summary["lost_silently"]
-    return f"{lost} packets lost silently" if lost else ""
+    return f"{number_of(lost, 'packet')} lost silently" if lost else ""

@@ -38,8 +38,9 @@ def foreseen(made: Plan) -> list[str]:
         found.append(f"at the end no cable joins {apart:,} of {whole:,} cells with the PC")
     if deep:
         found.append(
-            f"at the end {deep:,} of {whole:,} cells are more than {most} hops from the PC, and "
-            f"can have no way; raise protocol.max_depth"
+            f"at the end {deep:,} of {whole:,} cells {'is' if deep == 1 else 'are'} more than "
+            f"{most} hop{'' if most == 1 else 's'} from the PC, and can have no way; raise "
+            "protocol.max_depth"
         )
     return found
 
