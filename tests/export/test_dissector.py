@@ -204,6 +204,25 @@ def columns(tshark, capture):
             for line in lines]  # fmt: skip
 
 
+@pytest.mark.parametrize(("kind", "said", "all_"), [
+    ("rpl", {"kind": 3, "src": 2, "to": 5}, {"kind": 1, "src": 2, "to": 65535}),
+    ("flooding", {"kind": 1, "origin": 2, "dest": 5}, {"kind": 2, "origin": 2, "dest": 255}),
+])  # fmt: skip
+def test_who_receives_a_frame_sees_from_and_for_whom_it_is(kind, said, all_, tmp_path, tshark):
+    network, frames = networks()[kind], []
+    for values in (said, all_):
+        frame = plain.make("Frame", network.fields.FRAME)()
+        for name, value in values.items():
+            setattr(frame, name, value)
+        frames.append(Codec(network.frames.LAYOUTS, network.frames.KIND_BITS).encode(frame))
+    blocks = [pcapng.section(), pcapng.interface(network.link_type, "node 9", "node 9")]
+    blocks += [pcapng.packet(0, at, data, pcapng.INBOUND) for at, data in enumerate(frames)]
+    path = tmp_path / "air.pcapng"
+    path.write_bytes(b"".join(blocks))
+    to_one, to_all = columns(tshark, path)
+    assert (to_one[:2], to_all[:2]) == (("node 2", "node 5"), ("node 2", "all"))
+
+
 def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     beacon = plain.make("Frame", skin_fields.FRAME)()
     beacon.kind, beacon.dist, beacon.sq = skin.BEACON, 3, 12

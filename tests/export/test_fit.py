@@ -177,7 +177,7 @@ def test_what_nodes_say_of_themselves_is_fitted(tmp_path, capsys):
     assert [(link.a, link.b, link.quality) for link in links] == [
         ("n0", "n1", (0.9, 0.9)), ("n1", "n2", (1.0, 1.0)),
     ]  # fmt: skip
-    assert "1 links carried nothing" in capsys.readouterr().out
+    assert "1 link carried nothing" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("blank", "is_one"), [(0, True), (63, True), (64, False)])

@@ -120,15 +120,19 @@ local function body(self, tvb, tree, kind, at, stop)
 end
 
 -- Where a frame comes from and goes to, as its interface says: "cell 7 port 1; A to B" is A's end of
--- a cable. On the air who sends it is known where it left, who hears it where it came in.
-local function ends()
+-- a cable. On the air who sends it is known where it left, who hears it where it came in; frames may
+-- say more.
+local function ends(self, found)
   local says, way, name = interface.says(), interface.way(), interface.name()
   way = way and way.value
   local here, there = (says and tostring(says) or ""):match("; (.+) to (.+)$")
   if here and way == INBOUND then here, there = there, here end
   if not here and way ~= INBOUND then here = name and tostring(name) end
   if not there and way == INBOUND then there = name and tostring(name) end
-  return here, there
+  local said = self.ends
+  if not said or not found then return here, there end
+  local function node(number) return number == said.all and "all" or string.format("node %d", number) end
+  return node(found[said.from]), node(found[said.to])
 end
 
 -- A type of `bits` bits, its fields, a CRC and nothing else.
@@ -140,29 +144,29 @@ local function usual(self, tvb, tree)
   end
   local kind, range = number(tvb, 0, self.bits)
   tree:add(self.kind, range, kind)
-  local name, behind = body(self, tvb, tree, kind, self.bits, 8 * size - 16)
+  local name, behind, found = body(self, tvb, tree, kind, self.bits, 8 * size - 16)
   if behind and math.ceil(behind / 8) ~= size - 2 then
     complain(self, tree, MALFORMED, "Malformed: too long for its type")
   end
   show_crc(self, tvb, tree)
-  return name, ends()
+  return name, ends(self, found)
 end
 
 -- A sealed frame: only who shook hands can say more.
 local function sealed(self, tvb, tree)
   local kind = tvb(0, 1):uint()
   tree:add(self.sealed, tvb(0, 1))
-  if kind < SEALED_FRAME or kind > SEALED_LAST then return "handshake", ends() end
+  if kind < SEALED_FRAME or kind > SEALED_LAST then return "handshake", ends(self) end
   tree:add(self.index, tvb(1, 4))
   tree:add(self.counter, tvb(5, 4))
-  return string.format("sealed for %08x", tvb(1, 4):uint()), ends()
+  return string.format("sealed for %08x", tvb(1, 4):uint()), ends(self)
 end
 
 -- A kind of network: what it is called, the link type of its frames, how they are read (nil: as is
 -- usual), and their layouts.
 local function define(name, encap, run, layouts)
   local proto = Proto("innervate_" .. name, "innervate " .. name)
-  local self = { kinds = {}, experts = {}, bits = layouts.bits }
+  local self = { kinds = {}, experts = {}, bits = layouts.bits, ends = layouts.ends }
   local prefix, made = "innervate." .. name .. ".", {}
   local function field(make, abbr, ...)
     local one = make(prefix .. abbr, ...)

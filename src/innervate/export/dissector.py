@@ -26,7 +26,8 @@ class Frames(NamedTuple):
 
     Attributes:
         layouts: a Lua table: `kinds` by number, `others` that have a name and no fields, `bits` of
-            the type that a frame begins with, `common` and `ack` for frames with a header.
+            the type that a frame begins with, `common` and `ack` for frames with a header, `ends`:
+            the fields that say `from` whom `to` whom a frame is, and what there means `all`.
         run: Lua that says `local function run(self, tvb, tree)`, which reads a frame and returns
             its line, source and destination; "" = a type, the type's fields and a CRC.
         constants: numbers, texts or tables in Lua that `run` speaks of.
@@ -111,7 +112,10 @@ def usual(network: Network) -> Frames:
     """Of a network whose frames are a type, the type's fields and a CRC."""
     says = meanings(network.fields.FRAME)
     made = kinds(network.frames.LAYOUTS, says)
-    return Frames(f"{{ bits = {network.frames.KIND_BITS}, kinds = {made} }}")
+    ends = ""
+    if hasattr(network.frames, "ENDS"):
+        ends = 'ends = {{ from = "{}", to = "{}", all = {} }}, '.format(*network.frames.ENDS)
+    return Frames(f"{{ bits = {network.frames.KIND_BITS}, {ends}kinds = {made} }}")
 
 
 def kinds(layouts: Iterable[tuple[int, str, Any]], says: Mapping[str, str]) -> str:

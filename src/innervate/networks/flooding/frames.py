@@ -10,6 +10,7 @@ HEADER = (
     ("dest", 0, 8, 0),
     ("id", 0, 16, 0),
 )
+ENDS = ("origin", "dest", 255)  # of the whole way: who passes a packet on is not in it
 LAYOUTS = (
     (1, "packet", (*HEADER, ("body", 8, 16, 0))),
     (2, "ack", (*HEADER, ("ack", 0, 16, 0))),

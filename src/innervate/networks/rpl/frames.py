@@ -24,6 +24,7 @@ NEAR = (*LENGTH, ("near", 4, 8, 0))
 FAR = (*NEAR, ("far", 12, 8, 0))
 PATH = (("path", 0, 8, 0),)
 INFO = (("info", 0, 8, 0),)
+ENDS = ("src", "to", 65535)  # of a hop
 LAYOUTS = (
     (
         1,

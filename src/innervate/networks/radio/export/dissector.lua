@@ -4,7 +4,7 @@ local function run(self, tvb, tree)
   local size = tvb:len()
   if size == 1 then
     if tvb(0, 1):uint() ~= CARRIER then complain(self, tree, MALFORMED, "Malformed: too short") end
-    return "CR-R or pulse", (ends()), "all"
+    return "CR-R or pulse", (ends(self)), "all"
   elseif size < 3 then
     complain(self, tree, MALFORMED, "Malformed: too short")
     return "damaged"
@@ -21,5 +21,5 @@ local function run(self, tvb, tree)
   end
   show_crc(self, tvb, tree)
   local source = found and found.source and string.format("station %d", found.source)
-  return name, source or (ends()), "all"
+  return name, source or (ends(self)), "all"
 end
