@@ -115,10 +115,12 @@ def warnings(made: MeshPlan) -> list[str]:
     hops = hops_from(made, gateway)
     if max(hops) > PATH_MAX:
         far = [made.names[node] for node, count in enumerate(hops) if count > PATH_MAX]
-        found.append(f"{listed(far)}: more than {PATH_MAX} hops, the longest path, to the gateway")
+        found.append(f"{listed(far)}: more than {PATH_MAX} hops over good links, the longest path, "
+                     "to the gateway")  # fmt: skip
     elif max(hops) > SOURCE_ROUTE_MAX and made.params["mtu"] == 64:
         far = [made.names[node] for node, count in enumerate(hops) if count > SOURCE_ROUTE_MAX]
-        found.append(f"{listed(far)}: too far for tables at an MTU of 64; set protocol.mtu = 127")
+        found.append(f"{listed(far)}: over good links too far for tables at an MTU of 64; set "
+                     "protocol.mtu = 127")  # fmt: skip
     found += _distribution(made)
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
