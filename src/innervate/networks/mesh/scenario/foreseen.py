@@ -26,14 +26,16 @@ HALF = 0.5
 ACKED_MIN = RATIO_MIN / (ALL_ACKED + 1)
 ON_A_LEG = 8  # places that are looked at between two points of a robot's way
 MOMENTS_MAX = 300
+BadLinks = dict[int, tuple[float, int, int]]  # by node, see _badly_reached()
 
 
 def foreseen(made: MeshPlan) -> list[str]:
     """A sentence for each; none if all is well."""
+    bad = _badly_reached(made)
     return [
         *_acks(made),
-        *_bad_ways(made),
-        *_at_the_end(made),
+        *_bad_ways(made, bad),
+        *_at_the_end(made, bad),
         *_too_much(made),
         *_out_of_reach(made),
     ]
@@ -53,11 +55,11 @@ def _acks(made: MeshPlan) -> list[str]:
     ]
 
 
-def _bad_ways(made: MeshPlan) -> list[str]:
+def _bad_ways(made: MeshPlan, bad: BadLinks) -> list[str]:
     """Who has no way to the gateway but over links that are worse than retries make up for."""
-    gateway, bad = made.ranks.index(0), _badly_reached(made)
     if not bad:
         return []
+    gateway = made.ranks.index(0)
     share, a, b = min(bad.values())
     there, back = (made.radio.prob_q15[i * made.nodes + j] / ONE for i, j in ((a, b), (b, a)))
     return [
@@ -71,7 +73,7 @@ def _bad_ways(made: MeshPlan) -> list[str]:
     ]
 
 
-def _badly_reached(made: MeshPlan) -> dict[int, tuple[float, int, int]]:
+def _badly_reached(made: MeshPlan) -> BadLinks:
     """Nodes whose best way to the gateway has a bad link: the worst on it, see _worst_links()."""
     worst = _worst_links(made, made.ranks.index(0))
     return {node: link for node, link in worst.items()
@@ -101,7 +103,7 @@ def _worst_links(made: MeshPlan, gateway: int) -> dict[int, tuple[float, int, in
     return found
 
 
-def _at_the_end(made: MeshPlan) -> list[str]:
+def _at_the_end(made: MeshPlan, bad: BadLinks) -> list[str]:
     """Who is missing when all events have happened, and who is then cut off."""
     on = [not absent for absent in made.absent]
     cut: set[tuple[int, int]] = set()
@@ -128,7 +130,7 @@ def _at_the_end(made: MeshPlan) -> list[str]:
             and not _drowned(made, noise, a, b) and not _drowned(made, noise, b, a)]  # fmt: skip
     hops = distances(neighbours(made.nodes, left), leader)
     at_first = distances(neighbours(made.nodes, working), leaders[0])
-    known = {node for node in _badly_reached(made) if at_first[node] < 0}  # said by _bad_ways()
+    known = {node for node in bad if at_first[node] < 0}  # said by _bad_ways()
     apart = [
         made.names[node]
         for node, far in enumerate(hops)
