@@ -76,9 +76,11 @@ CASES = [
      (1, 2), (3, 4), (3, 5), (4, 5)), links(*every_pair(6))),
     ("mesh", "the gateway n1 has 4 neighbours", links(*every_pair(5)), links(*every_pair(6))),
     ("mesh", "n25: more than 24 hops", line(26), line(25)),
-    ("mesh", "n20: over good links too far for tables at an MTU of 64", line(21) + "[protocol]\nmtu = 64",
+    ("mesh", "n20: over good links too far for tables at an MTU of 64",
+     line(21) + "[protocol]\nmtu = 64",
      line(20) + "[protocol]\nmtu = 64"),
-    ("mesh", "n20: over good links too far for tables at an MTU of 64", line(21) + "[protocol]\nmtu = 64",
+    ("mesh", "n20: over good links too far for tables at an MTU of 64",
+     line(21) + "[protocol]\nmtu = 64",
      line(21) + "[protocol]\nmtu = 127"),
     *(
         ("mesh", f"{what} for {most + 1} nodes will not be everywhere in time: more than {most} ",
