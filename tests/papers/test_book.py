@@ -111,6 +111,33 @@ def test_only_some_figures(toy, tmp_path):
     assert "Figure a" not in (tmp_path / "papers-toy.html").read_text()
 
 
+def test_figures_that_the_page_has_besides_stay_on_it(toy, tmp_path):
+    page = main("toy", tmp_path)
+    whole = [(tmp_path / f"papers-toy.{kind}").read_text() for kind in ("csv", "html")]
+    toy.ran.clear()
+    (tmp_path / "a.svg").unlink()  # it is drawn again, of what is kept
+    assert main("toy", tmp_path, only=["b"]) == page
+    assert toy.ran == []
+    assert (tmp_path / "papers-toy.csv").read_text() == whole[0]
+    assert "Figure a" in page.read_text()
+    assert "innervate papers toy</pre>" in page.read_text()
+
+
+def test_a_page_that_cannot_keep_its_other_figures_is_left_as_it_is(toy, tmp_path, monkeypatch):
+    before = main("toy", tmp_path).read_text()
+    with pytest.raises(PapersError, match=r"^\S+papers-toy\.html has other figures, .* with --out"):
+        main("toy", tmp_path, quick=True, only=["b"])
+    monkeypatch.setattr(book, "stamp", lambda: "changed")
+    toy.ran.clear()
+    with pytest.raises(PapersError, match=r"leave --only out$"):
+        main("toy", tmp_path, only=["b"])
+    assert toy.ran == []
+    assert (tmp_path / "papers-toy.html").read_text() == before
+    main("toy", tmp_path, only=["a", "b"])  # nothing is taken away
+    main("toy", tmp_path, only=["b"], redraw=True)
+    assert "Figure a" in (tmp_path / "papers-toy.html").read_text()
+
+
 def test_quick_asks_for_less(toy, tmp_path):
     main("toy", tmp_path, quick=True)
     assert "shared" not in toy.ran

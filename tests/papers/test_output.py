@@ -43,7 +43,7 @@ def test_tables_end_where_they_come_from_with_a_full_stop_and_have_all_claims():
     assert (
         output.as_tables(HEADING, FIGURE, MADE, ORIGIN)
         == """\
-`papers toy`;
+`innervate papers toy --quick --only fig3`;
 seeds: 1;
 settings: quick;
 with: Python 3.

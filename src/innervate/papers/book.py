@@ -65,19 +65,21 @@ def main(
 
     Returns:
         The page with everything, papers-<system>.html; beside it stand a PNG and an SVG for each
-        figure and the table as CSV and Markdown. With `only` the page has those figures alone.
+        figure and the table as CSV and Markdown. With `only` they have those figures, and the
+        others that a page in the folder has already.
 
     Raises:
-        PapersError: no such paper or figure, or the folder cannot be used.
+        PapersError: no such paper or figure, the folder cannot be used, or of what its page has
+            besides not all results are kept.
         KeyboardInterrupt: it was interrupted; what was done is kept.
     """
     paper = book_of(system)
-    names = _chosen(paper, only)
-    experiments = [paper.experiment(name) for name in names]
-    folder = Path(out)
+    chosen, folder, mark = _chosen(paper, only), Path(out), stamp()
     _prepare(folder)
-    mark = stamp()
     store = Store(folder / RESULTS, mark, any_stamp=redraw)
+    there = _there(paper, output.page_of(folder, system), store, quick, chosen)
+    names = [name for name in paper.FIGURES if name in (*chosen, *there)]
+    experiments = [paper.experiment(name) for name in names]
     book = _Book(folder, store, quick, progress or (lambda step: None), paper.warm_up)
     started = time.perf_counter()
     with style.house():
@@ -154,6 +156,23 @@ def _chosen(paper: ModuleType, only: Iterable[str]) -> list[str]:
             message = f'there is no figure "{name}"; choose from: {", ".join(paper.FIGURES)}'
             raise PapersError(message)
     return [name for name in paper.FIGURES if name in wanted or not wanted]
+
+
+def _there(paper: Any, page: Path, store: Store, quick: bool, chosen: Sequence[str]) -> list[str]:
+    """Figures that a page has besides those that are made anew: they are to stay there.
+
+    Raises:
+        PapersError: they cannot, as they are of other settings or sources.
+    """
+    was_quick, shown = output.shown_on(page, paper.FIGURES)
+    others = [name for name in shown if name not in chosen]
+    keys = [point.key for name in others for point in paper.experiment(name).points(quick)]
+    if others and (was_quick != quick or store.missing(keys)):
+        raise PapersError(
+            f"{page} has other figures, too, of other settings or sources, which --only would "
+            "take away; name another folder with --out, or leave --only out"
+        )
+    return others
 
 
 def _prepare(folder: Path) -> None:

@@ -8,7 +8,7 @@ import io
 import platform
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, field, fields
 from importlib import metadata
 from pathlib import Path
@@ -101,9 +101,20 @@ def write(
     for one in experiments:
         if made.tables(one.name):
             _put(folder / f"{heading.system}-{one.name}.md", as_tables(heading, one, made, origin))
-    path = folder / f"{name}.html"
+    path = page_of(folder, heading.system)
     _put(path, as_page(folder, heading, experiments, made, origin))
     return path
+
+
+def page_of(folder: Path, system: str) -> Path:
+    """Where the page of a book lies."""
+    return folder / f"papers-{system}.html"
+
+
+def shown_on(path: Path, figures: Iterable[str]) -> tuple[bool, list[str]]:
+    """Whether a page is a quick one, and which of the figures it has; none if there is no page."""
+    text = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+    return QUICK in text, [name for name in figures if f'<section id="{clean(name)}">' in text]
 
 
 def as_tables(heading: Heading, one: Experiment, made: Made, origin: Mapping[str, str]) -> str:
@@ -117,7 +128,9 @@ def as_tables(heading: Heading, one: Experiment, made: Made, origin: Mapping[str
         *made.tables(one.name),
         Sheet("What is claimed", ("claim", "measured", "verdict", "why"), claims),
     ]
-    said = [f"`{heading.command}`;", *(f"{key}: {origin[key]};" for key in kept)]
+    quick = " --quick" if heading.quick else ""
+    again = f"innervate papers {heading.system}{quick} --only {one.name}"
+    said = [f"`{again}`;", *(f"{key}: {origin[key]};" for key in kept)]
     said[-1] = said[-1].removesuffix(";") + "."
     return "\n".join([*said, "", *map(_table_of, sheets)])
 
