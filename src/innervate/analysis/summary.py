@@ -11,6 +11,7 @@ from typing import Any, TypedDict
 import numpy as np
 
 from innervate.analysis.headline import BEFORE_ALL, DEGRADED, DOWN, NO_DATA, OK, Headline, every
+from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.folders import blamed
 from innervate.network import NetworkError, networks
@@ -171,11 +172,9 @@ def known_latencies_us(deliveries: Any) -> Any:
 
 def latency_ms(deliveries: Any) -> Percentiles:
     """Median, 99th percentile and maximum of deliveries' latencies, ms."""
-    known = known_latencies_us(deliveries)
-    if not len(known):
-        return {"p50": None, "p99": None, "max": None}
-    half, nearly, most = np.percentile(known, (50, 99, 100), method="nearest") / 1e3
-    return {"p50": float(half), "p99": float(nearly), "max": float(most)}
+    known = known_latencies_us(deliveries) / 1e3
+    p50, p99, most = percentiles(known, (50, 99, 100), nearest=True)
+    return {"p50": p50, "p99": p99, "max": most}
 
 
 def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:

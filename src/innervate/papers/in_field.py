@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.percentiles import percentiles
 from innervate.dialect.arith import MASK30
 from innervate.network import networks
 from innervate.papers.jobs import Given
@@ -131,8 +132,7 @@ def figures(world: World, came_us: list[int], airtime_us: int) -> dict[str, floa
     for name, whole in parts.items():
         found[name] = 100 * sum(whole) / len(whole)
         found[f"{name}_lost"] = 100 - 100 * sum(whole) / len(whole)
-    for name, share in (("p50_ms", 50), ("p99_ms", 99)):
-        found[name] = float(np.percentile(late, share, method="nearest")) if late else None
+    found["p50_ms"], found["p99_ms"] = percentiles(late, (50, 99), nearest=True)
     found["airtime"] = 100 * airtime_us / (world.duration_us - world.since_us)
     for name, span in world.again.items():
         of_part = [came for one, came, counts in zip(world.sent, came_us, counted, strict=True)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from innervate.analysis.percentiles import percentiles as percentiles_of
 from innervate.analysis.summary_common import Percentiles
 from innervate.networks.mesh.analysis.broadcasts import missed
 from innervate.networks.mesh.protocol.constants import (
@@ -270,11 +271,9 @@ def give_ups(result: Any) -> dict[str, int]:
 
 def percentiles(values: Any, scale: float = 1.0) -> Percentiles:
     """Median, 99th percentile and maximum; None where there is nothing."""
-    found = np.asarray(values, np.float64)
-    if len(found) == 0:
-        return {"p50": None, "p99": None, "max": None}
-    p50, p99 = (scale * np.percentile(found, (50, 99))).tolist()
-    return {"p50": p50, "p99": p99, "max": scale * float(found.max())}
+    found = percentiles_of(np.asarray(values, np.float64), (50, 99, 100))
+    p50, p99, most = (None if value is None else scale * value for value in found)
+    return {"p50": p50, "p99": p99, "max": most}
 
 
 def ratio(part: int, whole: int) -> float | None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import measured
 from innervate.networks.radio.analysis import headline as radio_headline
 from innervate.networks.radio.analysis import state as radio_state
@@ -132,11 +133,8 @@ def delays(result: Any) -> Any:
 
 def delay_slots(result: Any) -> Delays:
     """Median, 95th and 99th percentile and maximum of the delays, in slots."""
-    found = delays(result)
-    if len(found) == 0:
-        return {"p50": None, "p95": None, "p99": None, "max": None}
-    p50, p95, p99 = np.percentile(found, (50, 95, 99)).tolist()
-    return {"p50": p50, "p95": p95, "p99": p99, "max": float(found.max())}
+    p50, p95, p99, most = percentiles(delays(result), (50, 95, 99, 100))
+    return {"p50": p50, "p95": p95, "p99": p99, "max": most}
 
 
 def order(result: Any) -> list[int]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import measured
 from innervate.kernel.clock import wall_s
 from innervate.networks.radio.analysis.headline import RadioFacts, headline
@@ -15,8 +16,6 @@ from innervate.networks.radio.analysis.summary_keys import Delays, SlottedSummar
 from innervate.networks.radio.scenario.slotted import TURNAROUND, USED_BY
 from innervate.networks.radio.scenario.traffic import mean_interval_us
 from innervate.networks.radio.slotted.model import SlottedResult, slotted
-
-NONE = (None, None, None, None)
 
 
 @dataclass(slots=True)
@@ -86,10 +85,7 @@ def simulate(plan: Any, plain: bool) -> SlottedRun:
 def summarize(result: SlottedRun) -> SlottedSummary:
     """The summary of a slotted run, by the names of other radio runs."""
     plan, found = result.plan, result.found
-    delays = found.delay_slots
-    p50, p95, p99, most = (
-        np.quantile(delays, (0.5, 0.95, 0.99, 1)).tolist() if len(delays) else NONE
-    )
+    p50, p95, p99, most = percentiles(found.delay_slots, (50, 95, 99, 100))
     quantiles: Delays = {"p50": p50, "p95": p95, "p99": p99, "max": most}
     first = list(dict.fromkeys(found.order))
     done = result.counts["completed"]

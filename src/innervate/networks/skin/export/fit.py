@@ -8,6 +8,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from innervate.analysis.intervals import quantile
 from innervate.export import measure, pcapng
 from innervate.export.errors import ExportError
 from innervate.export.links import Place
@@ -155,20 +156,16 @@ def _latency(known: list[list[float]]) -> tuple[int, int, bool]:
     Scenarios draw evenly from a range: it has the captured least and median. A busy computer keeps
     some frames waiting for very long.
     """
-    per_frame = any(_quantile(delays, 0.99) - _quantile(delays, 0.01) > SPREAD_US
+    per_frame = any(quantile(delays, 0.99) - quantile(delays, 0.01) > SPREAD_US
                     for delays in known)  # fmt: skip
-    some = [_quantile(delays, 0.5) for delays in known]
+    some = [quantile(delays, 0.5) for delays in known]
     low, high = min(some), max(some)
     if per_frame:
         every = sorted(delay for delays in known for delay in delays)
-        low = _quantile(every, 0.01)
-        high = 2 * _quantile(every, 0.5) - low
+        low = quantile(every, 0.01)
+        high = 2 * quantile(every, 0.5) - low
     low_us, high_us = (min(max(1, round(value)), LATENCY_US_MAX) for value in (low, high))
     return low_us, high_us, per_frame
-
-
-def _quantile(values: list[float], share: float) -> float:
-    return values[min(len(values) - 1, int(share * len(values)))]
 
 
 def _order(end: str) -> tuple[bool, int, int]:

@@ -1,0 +1,20 @@
+"""Percentiles of what a run measured: linear between neighbours, as those of sweeps are.
+
+Two kinds are others, as docs/sweeps.md says: of networks without a summary of their own, and where
+networks are compared in a field, they are the nearest value that was measured; a skin's are counted
+in classes (sim/delays.py), and are the least value that so many do not exceed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def percentiles(values: Any, shares: tuple[int, ...], nearest: bool = False) -> list[float | None]:
+    """The values that so many of a hundred do not exceed; None where there are no values."""
+    if len(values) == 0:
+        return [None] * len(shares)
+    found = np.percentile(np.asarray(values), shares, method="nearest" if nearest else "linear")
+    return [float(value) for value in found]
