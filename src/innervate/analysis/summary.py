@@ -13,6 +13,7 @@ import numpy as np
 from innervate.analysis.headline import BEFORE_ALL, DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import Common, Percentiles, measured
+from innervate.analysis.words import number_of
 from innervate.folders import blamed
 from innervate.network import NetworkError, networks
 from innervate.scenario.declared.shared import script_of
@@ -119,7 +120,7 @@ def _headline(result: Any) -> Headline:
     script = script_of(result.plan)
     if script is None:
         return headline(result.counts, result.handled)
-    return Headline(OK, f"nothing broke in {len(script.steps):,} steps of its script.")
+    return Headline(OK, f"nothing broke in {number_of(len(script.steps), 'step')} of its script.")
 
 
 def _measures(result: Any) -> Reports:

@@ -62,7 +62,8 @@ def script_of(plan: Any) -> ScriptTable | None:
 def script_lines(plan: Any) -> Iterator[str]:
     """That a plan has a script, in a line of what `check` prints."""
     if (script := script_of(plan)) is not None:
-        yield f"  script     {len(script.steps)} steps in place of the clock"
+        steps = "1 step" if len(script.steps) == 1 else f"{len(script.steps):,} steps"
+        yield f"  script     {steps} in place of the clock"
 
 
 def refuse_script(plan: Any) -> None:
