@@ -65,7 +65,7 @@ CASES = [
     (counts(is_shared=True, lost=3, delivered=5), 1, DEGRADED, "3 of 10 receptions are lost."),
     (counts(is_shared=True, lost=3, offered=0, delivered=0), 1, DEGRADED,
      "3 of 10 receptions are lost."),
-    (counts(is_shared=True, lost=9, arrived=0), 1, DOWN, "None of 10 frames arrived."),
+    (counts(is_shared=True, lost=9, arrived=0), 1, DOWN, "None of 10 receptions succeeded."),
 ]  # fmt: skip
 
 

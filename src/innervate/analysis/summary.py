@@ -200,7 +200,8 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         who = every(nodes, "node").capitalize()
         return Headline(DOWN, f"{who} {'is' if nodes == 1 else 'are'} off.", off)
     if lost and not counts.arrived:
-        return Headline(DOWN, _none(counts.sent, "frame", "arrived", "did not arrive"), off)
+        how = ("succeeded", "failed") if counts.is_shared else ("arrived", "did not arrive")
+        return Headline(DOWN, _none(counts.sent, _frame(counts), *how), off)
     missing = 0 if goes_on else max(counts.offered - counts.delivered - dropped, 0)
     if (dropped or missing) and not counts.delivered:
         said = _none(counts.offered, "message", "was delivered", "was not delivered")
