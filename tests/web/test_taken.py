@@ -20,7 +20,8 @@ def changes(table, words, absent=(), thing=3):
     (field.TABLE, "quiet jam jam quiet quiet", [0, 1, 1, 1, 0]),
     (channel.TABLE, "leave leave kill kill revive revive", [1, 0, 1, 0, 1, 0]),
     (channel.TABLE, "leave revive leave", [1, 1, 1]),
-    (channel.TABLE, "kill leave garble", [1, 0, 0]),
+    (channel.TABLE, "kill leave garble", [1, 0, 1]),
+    (field.TABLE, "kill jam restart quiet", [1, 1, 1, 1]),
 ])  # fmt: skip
 def test_the_same_again_changes_nothing(table, words, expected):
     assert changes(table, words) == expected

@@ -32,7 +32,7 @@ class Taken(dict[tuple[str, Any], bool]):
             return is_off or left or action.revives
         if action.mends:
             return self.pop((action.mends, thing), False)
-        if is_off:
+        if is_off and not action.key:  # noise stays for who is switched on again
             return False
         if action.word == LEAVE or any(action.word == one.mends for one in table):
             was = self.get((action.word, thing), False)
