@@ -18,8 +18,9 @@ by name that others heard and that did not respond; nobody else responds (decisi
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
 recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in parts that are
-acknowledged, to the nearest of those first that were tried least; a whole table is in force at once (A10). Instead, all can have the whole graph, or
-none a table, and the gateway writes routes into packets.
+acknowledged, to the nearest of those first that were tried least; a whole table is in force at once
+(A10). Instead, all can have the whole graph, or none a table, and the gateway writes routes into
+packets.
 
 *Forwarding.* A hop takes a packet over by an ack; after three transmissions without one (A3) the
 neighbour is suspect, and the same packet goes another way (A4): recipient, table, alternate,
