@@ -200,8 +200,7 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         who = every(nodes, "node").capitalize()
         return Headline(DOWN, f"{who} {'is' if nodes == 1 else 'are'} off.", off)
     if lost and not counts.arrived:
-        how = ("succeeded", "failed") if counts.is_shared else ("arrived", "did not arrive")
-        return Headline(DOWN, _none(counts.sent, _frame(counts), *how), off)
+        return Headline(DOWN, _none_came(counts), off)
     missing = 0 if goes_on else max(counts.offered - counts.delivered - dropped, 0)
     if (dropped or missing) and not counts.delivered:
         said = _none(counts.offered, "message", "was delivered", "was not delivered")
@@ -219,6 +218,12 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     if said:
         return Headline(DEGRADED, f"{said}.", off)
     return Headline(OK, _well(counts))
+
+
+def _none_came(counts: Counts) -> str:
+    """That no frame came to anybody."""
+    how = ("succeeded", "failed") if counts.is_shared else ("arrived", "did not arrive")
+    return _none(counts.sent, _frame(counts), *how)
 
 
 def _frame(counts: Counts) -> str:

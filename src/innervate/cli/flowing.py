@@ -24,13 +24,13 @@ class Flowing:
         DefaultFormatter()(console, options, panel)
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
-        """How to call it."""
+        """The line that says how to call it."""
         from cyclopts.help.formatters import DefaultFormatter
 
         DefaultFormatter().render_usage(console, options, usage)
 
     def render_description(self, console: Console, options: ConsoleOptions, text: Any) -> None:
-        """What it does."""
+        """What the command does, in paragraphs."""
         from cyclopts.help.formatters import DefaultFormatter
 
         _flow(text)

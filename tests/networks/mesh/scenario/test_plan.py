@@ -365,9 +365,7 @@ def test_warnings() -> None:
         "the gateway n0 has 1 neighbour; 5 keep it reachable when some fail",
     ]
     long = warnings(made("nodes = 30\n[placement]\nlayout = 'line'"))
-    assert (
-        "n25, n26, n27, n28 and 1 more: more than 24 hops over good links, the longest" in long[2]
-    )
+    assert long[2].startswith("n25, n26, n27, n28 and 1 more: more than 24 hops over good links,")
     late = warnings(made("nodes = 30\nduration_s = 6\n[[flow]]\nfrom = 1\nto = 2"))
     assert late[-1].startswith("flow.0 sends nothing: it begins after the end; set start_s")
     slow = "[placement]\nlayout = 'grid'\n[radio]\nprofile = '38k4'"
