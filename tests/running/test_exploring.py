@@ -3,6 +3,7 @@
 import pytest
 
 import innervate
+from innervate.cli.app import main
 
 
 def test_options_are_those_of_the_command():
@@ -21,3 +22,21 @@ def test_what_is_no_option_is_said_with_those_that_there_are():
         innervate.explore("skin", rule="papre")
     with pytest.raises(innervate.NetworkError, match="there is no network 'skni'"):
         innervate.explore("skni")
+
+
+@pytest.mark.parametrize(("network", "asked", "said"), [
+    ("babel", {"rule": "x"}, "--rule is not for babel, of which --graph, --budget can be said"),
+    ("flooding", {"walks": 3}, "--walks is not for flooding"),
+    ("radio", {"graph": "pair"}, "--graph is not for radio, of which --rule, --cells can be said"),
+    ("radio", {"updates": "triggered"}, "--updates is not for radio"),
+    ("mesh", {"cells": 3}, "--cells is not for mesh, of which --rule, --graph, --budget, --walks"),
+])  # fmt: skip
+def test_what_a_network_has_no_use_for_is_refused_and_not_passed_over(network, asked, said):
+    with pytest.raises(innervate.VerifyError, match=said):
+        innervate.explore(network, **asked)
+    assert main(["verify", network, *(f"--{key}={value}" for key, value in asked.items())]) == 2
+
+
+def test_a_search_at_random_plants_no_mistakes(capsys):
+    assert main(["verify", "--random", "--mutants"]) == 2
+    assert "--random and --mutants exclude each other" in capsys.readouterr().err

@@ -13,7 +13,7 @@ from innervate.verify.cases import Case
 
 
 class Wanted(TypedDict, total=False):
-    """What to explore, and how much of it; a network has no use for some.
+    """What to explore, and how much of it; what a network has no use for is refused.
 
     Attributes:
         rule: which of the protocol's rules; "all" of them.

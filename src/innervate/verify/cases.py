@@ -16,9 +16,24 @@ from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
 
 BUDGET_MAX = 20
+# What options say of that which is explored, if they are left out.
+UNSAID = {"rule": "", "updates": "all", "graph": "all", "cells": 0, "budget": "", "prompt": False,
+          "starts": 0, "walks": 0}  # fmt: skip
 
 # Is told what is being done, how much of it is, and of how much (0 = unknown); true = stop.
 Tell = Callable[[str, int, int], bool]
+
+
+def only(name: str, options: Any, *takes: str) -> None:
+    """That nothing is asked for which an exploration of a network would pass over in silence.
+
+    Raises:
+        VerifyError: something is.
+    """
+    for option, unsaid in UNSAID.items():
+        if option not in takes and getattr(options, option, unsaid) != unsaid:
+            known = ", ".join(f"--{one}" for one in takes)
+            raise VerifyError(f"--{option} is not for {name}, of which {known} can be said")
 
 
 @dataclass

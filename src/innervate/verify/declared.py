@@ -19,7 +19,7 @@ from innervate.folders import MEDIA_ON_AIR, invariants_of
 from innervate.kernel.clock import wall_s
 from innervate.network import Network
 from innervate.topology import Graph
-from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of
+from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of, only
 from innervate.verify.frames import frames_of
 from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.net import Net
@@ -87,6 +87,7 @@ def notice(options: Any) -> str:
 
 def explorations(network: Network, options: Any) -> Iterator[Explore]:
     """All that the options of the command line ask for."""
+    only(network.name, options, "graph", "budget")
     budget = budget_of(options.budget, Budget())
     names = list(GRAPHS) if options.graph == "all" else [options.graph]
     graphs = [graph_of(name) for name in names]

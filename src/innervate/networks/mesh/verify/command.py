@@ -25,6 +25,7 @@ def notice(options: Any) -> str:
 
 def wanted_of(options: Any) -> cases.MeshWanted:
     """What the options of the command line ask for."""
+    common.only("mesh", options, "rule", "graph", "budget", "walks")
     known = mesh_model.FAILOVERS
     rule = options.rule
     if rule and rule not in (*known, "all"):

@@ -12,7 +12,7 @@ from innervate.networks.radio.verify import tree as trees
 from innervate.networks.radio.verify.grid import MODES, STATIONS, WORDS, Found, Grid, story
 from innervate.networks.radio.verify.mutants import MUTANTS, hunt
 from innervate.networks.radio.verify.tree import Grown, Tree
-from innervate.verify.cases import Case, Explore, Story, Tell
+from innervate.verify.cases import Case, Explore, Story, Tell, only
 from innervate.verify.errors import VerifyError
 
 __all__ = ["MUTANTS", "hunt"]
@@ -25,6 +25,7 @@ def notice(options: Any) -> str:
 
 def explorations(_network: Any, options: Any) -> Iterator[Explore]:
     """Grids of 2 stations up to as many as asked for, and a tree beside each."""
+    only("radio", options, "rule", "cells")
     wanted = _grids(options.cells or 3, options.rule or "practical")
     return (
         partial(explore, grid, options.states) for grid in wanted for explore in (_search, _grow)
