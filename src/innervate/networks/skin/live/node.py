@@ -168,7 +168,7 @@ class SinkNode(LiveNode):
         return sizes
 
     def status(self) -> dict[str, Any]:
-        """As of all nodes."""
+        """As of all nodes, and how many cells each interface port serves."""
         return {**super().status(), "cells": self._served()}
 
     def _asked_for_command(self, request: dict[str, Any]) -> dict[str, Any]:
