@@ -1,12 +1,16 @@
 """All paths of a function at once: merged, unrolled, followed, and what they must keep."""
 
 import ast
+import os
+import signal
+import threading
 from types import SimpleNamespace
 
 import pytest
 
 from innervate.dialect.plain import Outbox as PlainOutbox
 from innervate.dialect.plain import make
+from innervate.kernel.stop import Stop
 from innervate.prove.check import _is_refuted, check, reached, unreached
 from innervate.prove.errors import ProveError, UnsureError
 from innervate.prove.express import greatest, least
@@ -183,6 +187,19 @@ def test_who_may_not_think_long_enough_says_so():
     product = stage.terms.same(stage.terms.mul(a, b), stage.number(2_147_117_569))
     with pytest.raises(ProveError, match="the solver could not say: not within 50 of its steps"):
         Question(Formulas(), [], steps_max=50).values(product)
+
+
+def test_ctrl_c_is_for_who_waits_for_it_and_the_solver_takes_it_from_nobody():
+    stage, _ = stage_of()
+    a, b = (stage.terms.unknown(name, 2, 60_000) for name in "ab")
+    product = stage.terms.same(stage.terms.mul(a, b), stage.number(2_147_483_647))  # a prime
+    timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
+    with Stop() as stop:
+        timer.start()
+        assert Question(Formulas(), []).values(product) is None
+        timer.join()
+    assert stop.asked
+
 
 
 @pytest.mark.parametrize("holding", [True, False])
