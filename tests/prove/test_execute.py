@@ -201,7 +201,6 @@ def test_ctrl_c_is_for_who_waits_for_it_and_the_solver_takes_it_from_nobody():
     assert stop.asked
 
 
-
 @pytest.mark.parametrize("holding", [True, False])
 def test_what_is_too_much_at_once_is_asked_goal_by_goal(holding):
     """Four primes are no products: each takes 0.2 million steps, all together 0.6."""

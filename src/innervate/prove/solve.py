@@ -203,7 +203,7 @@ class Question:
         known = [self.formulas.of(term) for term in self.facts]
         solver = z3.SolverFor("QF_BV")
         solver.set("rlimit", self.steps_max)
-        solver.set("ctrl_c", False)  # or it takes the signal from who waits for it, and says unknown
+        solver.set("ctrl_c", False)  # the signal is for who waits for it
         solver.add(*known, *wanted, *self.formulas.ranges())
         return solver
 
