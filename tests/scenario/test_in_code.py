@@ -108,3 +108,7 @@ def test_a_sweep_takes_it_too():
     assert found.pandas()["protocol.k"].tolist() == [3, 4]
     assert found.numpy()["protocol.k"].tolist() == [3, 4]
     assert "protocol.k" in found._repr_html_()
+
+
+def test_one_text_is_one_change_and_not_its_letters():
+    assert innervate.load("line", overrides="protocol.k=9").model.protocol.k == 9

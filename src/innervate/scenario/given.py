@@ -24,11 +24,13 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
         scenario: a file, a bundled name ("setup-1"), tables as in a file, a model of them built in
             code (Skin, Radio, Mesh, CablesScenario, ...), or a Scenario.
         seed: in place of the scenario's, 0 .. 2^63-1.
-        overrides: "a.b=c" texts, or a mapping from dotted keys to values.
+        overrides: "a.b=c" texts, one or several, or a mapping from dotted keys to values.
 
     Raises:
         ScenarioError: it is not valid; one line that says what to change.
     """
+    if isinstance(overrides, str):
+        overrides = [overrides]  # and not its letters
     changes: list[str | tuple[str, Any]] = (
         list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
     )
