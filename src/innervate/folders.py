@@ -28,6 +28,7 @@ MEDIA_ON_AIR = ("channel", "field")
 # Words of the channel itself, among parameters and in a state.
 CHANNEL_OWN = ("slot_us", "ta_us", "oracle", "full_duplex", "period_us", "per_turn")
 CHANNEL_STATE = ("queued",)
+TABLES = ("STATE", "FRAME", "PARAMS")
 
 _in_plain: ContextVar[bool] = ContextVar("_in_plain", default=False)
 _stamps: dict[str, tuple[tuple[str, int, int], ...]] = {}  # of the files of what is loaded, by name
@@ -231,7 +232,10 @@ def findings(folder: Path, network: Any) -> list[checks.Finding]:
 def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.Finding]:
     try:
         fields = network.fields
-        tables = [(name, getattr(fields, name)) for name in ("STATE", "FRAME", "PARAMS")]
+        if lacks := [name for name in TABLES if not hasattr(fields, name)]:
+            what = f"has no {lacks[0]}; add {lacks[0]} = ()"
+            return [checks.Finding(_file_of(folder, network, "fields"), 1, what)]
+        tables = [(name, getattr(fields, name)) for name in TABLES]
     except NetworkError:
         raise
     except Exception as error:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import pkgutil
+from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -58,7 +59,9 @@ class Network:
             raise TypeError(f"network {name}: no medium {medium!r}; there are {known}")
         for part in parts:
             if part not in PARTS:
-                raise TypeError(f"network {name}: no part {part!r}; there are {', '.join(PARTS)}")
+                near = get_close_matches(part, PARTS, 1)
+                hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(PARTS)}"
+                raise TypeError(f"network {name}: no part {part!r}; {hint}")
         self.name = name
         self.package = package
         self.rank = rank

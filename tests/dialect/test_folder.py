@@ -236,6 +236,12 @@ def test_layouts_hold_what_is_declared(file, given, says):
     assert all(line == 2 and says in text for line, text in found)
 
 
+def test_a_kind_is_laid_out_once(file):
+    layouts = [*laid(), (1, "more", laid()[0][2])]
+    (found,) = said(folder.of_layouts(file("LAYOUTS = ()\n"), layouts, 2, FRAME))
+    assert found == (1, "news and more are both of kind 1; give one another number")
+
+
 def test_what_is_laid_out_is_declared(file):
     found = said(folder.of_layouts(file("LAYOUTS = ()\n"), laid(seq=("sq", 0, 8, False)), 2, FRAME))
     assert [text.partition(";")[0] for _, text in found] == [

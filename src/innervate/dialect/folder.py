@@ -255,7 +255,12 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset()):
     """
     declared = {field[0]: field for field in frame}
     line, found, laid = _lines_of(path).get(("LAYOUTS", ""), 1), [], set()
+    names = {}
     for kind, name, fields in layouts:
+        if kind in names:
+            what = f"{names[kind]} and {name} are both of kind {kind}; give one another number"
+            found.append(Finding(path, line, what))
+        names.setdefault(kind, name)
         if not 0 <= kind < 1 << kind_bits:
             what = f"kind {kind} of {name} does not fit into KIND_BITS = {kind_bits}"
             found.append(Finding(path, line, what))
