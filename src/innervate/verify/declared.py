@@ -23,6 +23,7 @@ from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent
 from innervate.verify.frames import frames_of
 from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.net import Net
+from innervate.verify.readings import Readings
 from innervate.verify.scripts import STUCK, scenario_of
 from innervate.verify.states import Budget, State, is_still, most_frames
 from innervate.verify.tally import Tally
@@ -112,6 +113,7 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
               **getattr(network.fields, "EXPLORED", {}),
               **getattr(network.protocol, "EXPLORED", {})}  # fmt: skip
     net = net_of(network, graph, params)
+    net.readings = readings = Readings(net)
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())
     tally, story = explore(net, budget, options.states or STATES, tell, cables)
     head = f"{cables:40} {tally.states:>10,} states {tally.generated:>10,} successors"
@@ -121,7 +123,9 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
 
     def how_far() -> str:
         more = f" but {tally.left_out:,} successors with too many frames in flight"
-        return extent(tally) + (more if tally.left_out else "") + net.draws.words()
+        return (
+            extent(tally) + (more if tally.left_out else "") + net.draws.words() + readings.words()
+        )
 
     names = ("states", "expanded", "generated", "left_out", "depth", "ended")
     return Case(
@@ -130,7 +134,8 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
                 "draws": net.draws.as_dict(),
                 "broken": story.title or None, "story": story.sentences or None},
         is_broken=told is not None,
-        is_complete=tally.ended == "complete" and not tally.left_out and not net.draws.some,
+        is_complete=tally.ended == "complete" and not (
+            tally.left_out or net.draws.some or readings.apart),
         story=told,
         stem=f"{network.name}-counterexample",
     )  # fmt: skip

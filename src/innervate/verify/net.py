@@ -19,6 +19,7 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
 from innervate.topology import PORTS, Graph
 from innervate.verify.draws import Draws
 from innervate.verify.frames import TIMED, Frames
+from innervate.verify.readings import Readings
 from innervate.verify.states import After, Budget, Move, Node, State, Step, happen, sent
 from innervate.verify.telling import ERRORS, first_broken, where
 from innervate.verify.values import ahead, put, values, with_one
@@ -70,6 +71,7 @@ class Net:
         self.given = getattr(fields, "GIVEN", ())
         self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
                        if unit == "us" and high == MASK30 and name != TIMED}  # fmt: skip
+        self.readings: Readings | None = None  # where calls are looked at by it
 
     def begins(self, budget: Budget) -> Iterator[Step]:
         """All ways in which the network can begin, by what its nodes draw."""
@@ -262,6 +264,8 @@ class Net:
     def call(self, state: State, number: int, now: int, handler: Any, *what: Any) -> After:
         """The state after a handler of a node at its time `now`, and what it broke."""
         node, out = state.nodes[number], self.out
+        if self.readings is not None:
+            self.readings.look(node.values, self.graph.label(number), handler, now, *what)
         put(self.node, self.fields.STATE, node.values)
         if wrong := self.handle(self.graph.label(number), handler, now, *what):
             return state, f"a handler cannot go on: {wrong}"
