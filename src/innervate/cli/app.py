@@ -198,7 +198,7 @@ def verify(
     Parameters
     ----------
     system
-        Which protocol: skin (if left out), radio or mesh.
+        Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
     json
         Print the results as JSON and nothing else.
     out
@@ -222,7 +222,7 @@ def prove(
     Parameters
     ----------
     system
-        Which protocol: skin (if left out), radio or mesh.
+        Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
     faults
         Plant small mistakes in the protocol, one after the other: each must be refuted.
     json

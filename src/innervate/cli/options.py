@@ -341,7 +341,7 @@ class VerifyOptions:
         How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,
         faults=2"; these are the defaults, and faults counts all five kinds together; "ticks=any"
         lets cells tick as often as it takes. Mesh:
-        "deaths=1,revivals=0,frames=0,acks=1,ticks=0".
+        "deaths=1,revivals=0,frames=0,acks=1,ticks=0". One of your own: "loss=1,restart=1,input=1".
     prompt
         Every frame arrives or is lost before anything else happens.
     liveness
