@@ -255,9 +255,9 @@ CLAIMS = (
     Fewer(MANY, "airtime", FLOOD, "less airtime than flooding, 100 nodes"),
     Fewer(MOST, f"{FIRST}_lost", FLOOD,
           "fewer first messages are lost than by flooding, 254 nodes",
-          "measured: messages begin, and eight die, 20 s after the start, while tables go out; after "
-          "74 s 137 to 249 nodes have theirs (with nobody dead all, after 43 to 63 s), and others' "
-          "messages search, or go up to the gateway"),
+          "measured: messages begin, and eight die, 20 s after the start, while tables go out; "
+          "after 74 s 137 to 249 nodes have theirs (with nobody dead all, after 43 to 63 s), and "
+          "others' messages search, or go up to the gateway"),
 )  # fmt: skip
 
 
