@@ -3,7 +3,8 @@
 import pytest
 
 from innervate.networks.mesh.protocol.constants import RESPONSE, TABLE, TABLE_FREE, TREE
-from innervate.networks.mesh.protocol.paths import is_known
+from innervate.networks.mesh.protocol.gateway import forget_gone
+from innervate.networks.mesh.protocol.paths import begin_round, is_heard, is_known, note_heard
 from tests.networks.mesh.bench import Bench
 
 S = 1_000_000
@@ -64,6 +65,18 @@ def test_who_comes_back_is_in_the_next_graph():
     bench.run(2 * PERIOD + SETTLED)
     assert known(bench, 1, 3)
     assert known(bench, 2, 3)
+
+
+def test_a_gateway_that_only_faint_links_hear_is_not_gone():
+    bench = Bench(4, SQUARE)
+    bench.run(SETTLED)
+    node, gate = bench.nodes[0], bench.gates[0]
+    begin_round(gate, bench.params)
+    for responds in (1, 2):
+        note_heard(gate, bench.params, responds, responds)
+    forget_gone(node, gate, bench.params)
+    assert is_heard(gate, bench.params, 0, 1)
+    assert not is_heard(gate, bench.params, 3, 1)
 
 
 def test_a_tree_knows_only_what_its_responses_crossed():

@@ -135,7 +135,7 @@ def is_missing(gate, params, s):
     return 0
 
 
-def forget_gone(gate, params):
+def forget_gone(node, gate, params):
     """Whom nobody heard in this round, of two at least that did before and responded, is gone.
 
     Kept for three rounds, it would be in everybody's tables for minutes.
@@ -147,7 +147,7 @@ def forget_gone(gate, params):
                 missed = -params.nodes
             elif is_heard(gate, params, s, a):
                 missed = missed + is_fresh(gate, params, a, a)
-        if missed > 1:
+        if missed > 1 and s != node.number:
             for a in range(params.nodes):
                 forget_heard(gate, params, s, a)
 
@@ -201,7 +201,7 @@ def collect(node, gate, params, now, out):
             return
     gate.step = IDLE
     if trusts_lists(params) and not gate.taken:
-        forget_gone(gate, params)
+        forget_gone(node, gate, params)
     mark = build_graph(gate, params)
     changed = mark != gate.sum_a
     report(out, REPORT_GRAPH, gate.links, changed)
