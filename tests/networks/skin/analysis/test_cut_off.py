@@ -200,6 +200,10 @@ def test_the_observer_agrees_with_a_search_along_the_cables():
          "1 of 9 cells was cut off from the PC for a time; every cell has a way to the PC."),
         (SkinFacts(9, cut_off_before=9), DEGRADED,
          "All 9 cells were cut off from the PC for a time; every cell has a way to the PC."),
+        (SkinFacts(9, cut_off=(4,), off=(2,), cut_off_before=9), DEGRADED,  # 4 still is
+         "1 of 9 cells (4) is cut off: no cable joins it with the PC any more; 1 of 9 cells (2) "
+         "is switched off; at the worst moment all 9 cells were cut off; every other cell has a "
+         "way to the PC."),
         (SkinFacts(3, silent=(0, 1)), DEGRADED,
          "2 of 3 cells (0, 1) do not answer; the other cell has a way to the PC."),
         (SkinFacts(3, silent=(0, 1, 2)), NO_DATA, "No cell answers: nothing is known of the skin."),

@@ -27,8 +27,8 @@ class SkinFacts(NamedTuple):
         since_s: when the first of `cut_off` was cut off; None = unknown.
         at_once: all of them were cut off then.
         pc_off: the PC is switched off, or does not answer.
-        cut_off_before: most cells that were cut off at the same time and are not any more; a live
-            page, which shows the moment, leaves it at 0.
+        cut_off_before: most cells that were cut off at the same time, if that is more than are
+            now; a live page, which shows the moment, leaves it at 0.
         sent: tactile samples that cells took once they had had a way; 0 without data.
         lost: those of them that were lost.
         missed: cells, over all commands of the PC, that had a way and did not get one for them.
@@ -120,6 +120,8 @@ def _before(facts: SkinFacts) -> list[str]:
     few = f"{facts.cut_off_before:,} of {facts.cells:,} cells"
     who = every(facts.cells, "cell") if facts.cut_off_before == facts.cells else few
     verb = "was" if facts.cut_off_before == 1 else "were"
+    if facts.cut_off:  # of those some still are
+        return [f"at the worst moment {who} {verb} cut off"]
     return [f"{who} {verb} cut off from the PC for a time"]
 
 
