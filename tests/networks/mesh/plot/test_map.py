@@ -200,6 +200,22 @@ def test_a_legend_has_what_the_map_shows():
     assert words(bare, [], []) == ["gateway", "good link between nodes that stay"]
 
 
+def test_a_legend_is_of_the_moment_that_the_map_shows():
+    late = [*FIELD["event"], {"at_s": 20.0, "action": "revive", "node": 2}]
+    later = [*late, {"at_s": 12.0, "action": "revive", "node": 4}]
+    said = {
+        (len(event), at_s): {"switched off", "yet to come", "switched off, or yet to come"}
+        & set(words(result_of(event=event), [], [], None if at_s is None else at_s * 1_000_000))
+        for event in (late, later)
+        for at_s in (5, 10, 15, 25, None)
+    }
+    off, yet, both = {"switched off"}, {"yet to come"}, {"switched off, or yet to come"}
+    assert said == {
+        (2, 5): set(), (2, 10): off, (2, 15): off, (2, 25): set(), (2, None): set(),
+        (3, 5): yet, (3, 10): both, (3, 15): off, (3, 25): set(), (3, None): set(),
+    }  # fmt: skip
+
+
 def test_room_for_names_is_where_no_node_and_no_ring_is(monkeypatch):
     """Those with a part are named first, and whoever has one or a ring at some distance."""
     monkeypatch.setattr(mesh_map, "roles", lambda plan: {0: "", 1: "gateway", 2: ""})

@@ -196,6 +196,20 @@ def test_who_is_off_is_shown(runs, parse, texts):
     assert "station 3: next 2 CR-Rs not heard by anybody" in body
 
 
+@pytest.mark.parametrize(
+    ("from_us", "to_us", "said"),
+    [
+        (0, 40_000, []),
+        (0, 250_000, ["switched off"]),
+        (310_000, 450_000, ["not in the team"]),
+        (0, 500_000, ["switched off, or not in the team"]),
+    ],
+)
+def test_the_legend_says_why_robots_are_off(runs, texts, from_us, to_us, said):
+    found = texts(radio_timeline.timeline(runs["faults"], from_us, to_us))
+    assert [text for text in found if "switched off" in text or "in the team" in text] == said
+
+
 @pytest.mark.parametrize("figure", FIGURES)
 @pytest.mark.parametrize("name", ["four", "hundred", "faults", "nothing"])
 @pytest.mark.few(6)

@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import MONITOR
 from innervate.plot import svg
 from innervate.plot.charts import ticks
 from innervate.plot.svg import Drawing, Point
+from innervate.scenario.actions.field import RESTART, REVIVE
 
 NAMED_MAX = 120  # of more nodes only those with a part to play are named
 CROSSINGS_MAX = 24  # marks of more crossings would hide the field
@@ -257,10 +258,22 @@ def arrow(drawing: Drawing, start: Point, end: Point, gap: float, kind: str) -> 
     drawing.path(svg.arrow(start, end, gap), kind)
 
 
+def _off_words(ground: Ground, at_us: int) -> str:
+    """Why those are off that are off at a moment; "" if nobody is."""
+    plan = ground.plan
+    begun = {node for node in range(plan.nodes)
+             if not plan.absent[node] and plan.starts_us[node] <= at_us}  # fmt: skip
+    begun |= {fault.node for fault in plan.faults
+              if fault.action in (REVIVE, RESTART) and fault.at_us <= at_us}  # fmt: skip
+    off = {node for node, on in enumerate(ground.on_at(at_us)) if not on}
+    said = ("switched off" if off & begun else "", "yet to come" if off - begun else "")
+    return ", or ".join(filter(None, said))
+
+
 def legend(
-    result: Any, crossings: Sequence[Crossing], way: Sequence[Hop]
+    result: Any, crossings: Sequence[Crossing], way: Sequence[Hop], at_us: int | None = None
 ) -> list[tuple[Drawing, str]]:
-    """What the shapes of a map stand for, of those that it shows."""
+    """What the shapes of a map stand for, of those that it shows; of a moment, or the end."""
     plan, role = result.plan, set(" ".join(roles(result.plan).values()).split())
     entries: list[tuple[Drawing, str]] = []
 
@@ -276,8 +289,9 @@ def legend(
         if name in role:
             entry(name, shape(name))
     entry("good link between nodes that stay", lambda icon: icon.line((1, 9), (25, 9), "mesh"))
-    if not all(Ground(plan).on_at(result.ended_us)):
-        entry("switched off", shape("", False))
+    off = _off_words(Ground(plan), result.ended_us if at_us is None else at_us)
+    if off:
+        entry(off, shape("", False))
     if plan.params["points"]:
         entry("fence", lambda icon: icon.line((1, 9), (25, 9), "fence"))
     if plan.walks:

@@ -104,7 +104,7 @@ def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
     led = [gateway["node"] for gateway in gateways(result)]
     if led and result.plan.ranks[led[-1]] != 0:
         text += f" Roles are those at the start: at the end {result.plan.names[led[-1]]} leads."
-    inside = keys(mesh_map.legend(result, crossings, hops))
+    inside = keys(mesh_map.legend(result, crossings, hops, at_us))
     return section("The field", f'<div class="wide">{figure(drawing, "", text)}</div>' + inside)
 
 

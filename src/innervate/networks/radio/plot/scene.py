@@ -8,7 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.dialect.access import REPORT_DELIVERED
-from innervate.networks.radio.analysis.air import Air, Groups, Heard, air, groups, signals
+from innervate.networks.radio.analysis.air import (
+    Air,
+    Groups,
+    Heard,
+    air,
+    groups,
+    off_times,
+    signals,
+)
 from innervate.networks.radio.analysis.packets import first_offer_us, successes
 from innervate.networks.radio.plot.words import FrameWords, frame_words, report_words, turn_words
 from innervate.networks.radio.protocol.constants import (
@@ -17,6 +25,7 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_FAILED,
     REPORT_TURN,
 )
+from innervate.scenario.actions.channel import KILL
 
 LANES_MAX = 128
 BOXES_MAX = 4000
@@ -72,6 +81,7 @@ class Scene:
         boxes, notes: in order of time.
         heard: by station; intervals cut to the window.
         cut: there was more between the moments that were asked for than can be shown.
+        off: why stations are off: "switched off", "not in the team", both; "" if none is.
     """
 
     window: Window
@@ -81,6 +91,7 @@ class Scene:
     notes: tuple[Note, ...]
     heard: dict[int, Heard]
     cut: bool
+    off: str = ""
 
     @property
     def frames(self) -> list[FrameWords]:
@@ -160,7 +171,19 @@ def scene(
         notes=tuple(note for note in _notes(result, window) if note.station in shown),
         heard={station: heard[station] for station in stations},
         cut=cut or len(stations) < result.plan.stations,
+        off=_off_words(result, window, stations),
     )
+
+
+def _off_words(result: Any, window: Window, stations: tuple[int, ...]) -> str:
+    """Why those are off that are between two moments: who left, or is yet to join, did not fail."""
+    spans = off_times(result)
+    begun = {(int(low), node) for node in stations for low, high in spans[node]
+             if low < window.to_us and high > window.from_us}  # fmt: skip
+    failed = begun & {(fault.at_us, fault.node) for fault in result.plan.faults
+                      if fault.action == KILL}  # fmt: skip
+    said = ("switched off" if failed else "", "not in the team" if begun - failed else "")
+    return ", or ".join(filter(None, said))
 
 
 def _window(result: Any, from_us: int | None, to_us: int | None, origin_us: int | None) -> Window:

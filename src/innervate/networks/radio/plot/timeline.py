@@ -213,7 +213,7 @@ class _Timeline:
         if any(len(heard.deaf) for heard in shown.heard.values()):
             found.append(("deaf", "its radio cannot listen"))
         if any(len(heard.off) for heard in shown.heard.values()):
-            found.append(("off", "switched off"))
+            found.append(("off", shown.off))
         if self.detailed:
             found.append(("ones", "CD: hears somebody; VOC: hears exactly one"))
         kinds = {note.kind for note in shown.notes if self._is_shown(note)}
