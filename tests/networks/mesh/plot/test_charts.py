@@ -17,6 +17,15 @@ def test_each_message_counts_in_the_part_of_the_run_in_which_it_was_offered(monk
     assert (drawn.x.low, drawn.x.high) == (10e-6, 18e-6)
 
 
+def test_few_messages_are_not_divided_into_parts(monkeypatch):
+    for count, said in ((1, "100 % of 1 message."), (7, "100 % of 7 messages.")):
+        states = np.full(count, charts.sent.DELIVERED)
+        found = SimpleNamespace(offered_us=np.arange(count), state=states)
+        monkeypatch.setattr(charts.sent, "messages", lambda _, found=found: found)
+        monkeypatch.setattr(charts.sent, "counted", lambda same: same)
+        assert charts.over_time(SimpleNamespace(plan=SimpleNamespace(faults=[]))).text == said
+
+
 def test_moments_of_a_run_are_marked_in_seconds_the_first_few_of_them(monkeypatch):
     """Of several events at one moment it is said how many there are."""
     monkeypatch.setattr(charts, "fault_words", lambda plan, fault: fault.words)

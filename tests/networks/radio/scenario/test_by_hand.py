@@ -7,6 +7,7 @@ import pytest
 from innervate.networks.radio.scenario.baselines import DRAWS, NUMBERS, baseline
 from innervate.networks.radio.scenario.plan import parameters
 from innervate.networks.radio.scenario.rules import outside
+from innervate.networks.radio.scenario.words import traffic_words
 from innervate.scenario import ScenarioError, from_dict, plan
 
 TEAM = {"kind": "radio", "stations": 4, "duration_s": 2.0, "packet_slots": 5}
@@ -107,6 +108,12 @@ def test_events_are_in_order_of_time_then_of_the_file():
 def test_what_is_wanted_of_other_traffic():
     assert plan(loaded(traffic={"kind": "saturated", "packets": 7})).wanted == 28
     assert plan(loaded(traffic={"kind": "poisson", "load": 0.5})).wanted == 0
+
+
+def test_one_packet_each_is_told_as_one():
+    for packets, said in ((1, "1 packet per station"), (1200, "1,200 packets per station")):
+        saturated = loaded(traffic={"kind": "saturated", "packets": packets}).model
+        assert traffic_words(saturated) == f"saturated, {said}"
 
 
 def test_all_are_set_to_the_longest_packet():

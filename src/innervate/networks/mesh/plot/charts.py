@@ -48,10 +48,14 @@ def over_time(result: Any, bins: int = BINS) -> Steps | None:
     some = np.flatnonzero(asked)
     share = 100.0 * came[some] / asked[some]
     x = Axis(low / 1e6, (low + bins * width) / 1e6, "seconds")
-    text = (
-        f"Of those offered in each {words.ms_words(width / 1e3)}; "
-        f"lowest {words.share_words(share.min() / 100)}, {len(found.state):,} messages in all."
+    lowest, whole = (
+        words.share_words(share.min() / 100),
+        words.number_of(len(found.state), "message"),
     )
+    text = f"{lowest} of {whole}."
+    if bins > 1:
+        each = words.ms_words(width / 1e3)
+        text = f"Of those offered in each {each}; lowest {lowest}, {whole} in all."
     head = "Messages delivered over time, in %"
     at = (low + width * some) / 1e6
     return Steps(at, share, x, Axis(0.0, 108.0), head, text, _marks(result.plan, x))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from innervate.analysis.words import number_of
 from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
@@ -91,7 +92,7 @@ def traffic_words(model: RadioScenario) -> str:
     """What stations send, and when."""
     traffic = model.traffic
     if traffic.kind == "saturated":
-        return f"saturated, {traffic.packets:,} packets per station"
+        return f"saturated, {number_of(traffic.packets, 'packet')} per station"
     if traffic.kind == "poisson":
         return f"Poisson, {traffic.load:g} packets per packet time of all stations"
     spread = f" within {traffic.spread_us / 1000:g} ms" if traffic.spread_us else ""
