@@ -342,6 +342,11 @@ def layouts_of(network: Any) -> Any:
     return getattr(network.frames, "LAYOUTS", ())
 
 
+def kinds_of(network: Any) -> frozenset[int]:
+    """The kinds of frames that have a layout; none where layouts are not what goes over a wire."""
+    return frozenset(kind for kind, *_ in layouts_of(network))
+
+
 def dropped_of(declared: Any, layouts: Any) -> dict[Any, set[str]]:
     """By kind, the fields of a frame that its layout has no bits for."""
     names = {name for name, *_ in declared} - NOTED

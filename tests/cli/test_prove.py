@@ -82,7 +82,7 @@ def test_planted_mistakes_are_refuted(sh):
 
 def test_a_folder_is_named_by_its_path(sh, alone):
     assert sh("prove", str(Path(__file__).parents[2] / "examples" / "aloha")) == 0
-    assert sh.out.splitlines()[-1].startswith("All as it should be: 13 lemmas in ")
+    assert sh.out.splitlines()[-1].startswith("All as it should be: 16 lemmas in ")
 
 
 def test_an_unknown_network_is_named(sh):

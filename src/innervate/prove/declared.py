@@ -2,7 +2,8 @@
 
 From any state, parameters and frame whose fields are in their declared ranges: they stay there, no
 index leaves its array, every number fits 32 bits, the outbox has room, draws are out of 1 or more,
-loops end, what is used has a value; and every branch is taken by some state.
+loops end, what is used has a value; and every branch is taken by some state. That kinds of frames
+have layouts, and draws a generator that is theirs alone, rests on no range: see laid.py.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.network import Network
+from innervate.network import Network, kinds_of
 from innervate.prove.errors import ProveError
+from innervate.prove.laid import beside_ranges
 from innervate.prove.steps import Stage, Step, own_goals
 from innervate.prove.theory import Fault, Theory, source
 
@@ -71,4 +73,5 @@ def _step(network: Network, known: dict[str, Any], what: tuple[str, str, list[An
     alone = stage.terms.at_most(given["voc"], given["cd"])  # one that sends is somebody
     step = stage.play(name, handler, [state, params, stage.clock(), *args, stage.out], [alone])
     step.goals = own_goals(step, RECORDS, protocol.TIMERS, PORTS)
+    step.goals += beside_ranges(step, known, kinds_of(network))
     return step
