@@ -1,9 +1,11 @@
 """A handler that does something else at another reading of its clock is named."""
 
+import json
 from types import SimpleNamespace
 
 import pytest
 
+from innervate.cli import main
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.outbox import report, send, set_timer
 from innervate.dialect.rng import draw
@@ -11,6 +13,9 @@ from innervate.verify import declared
 from innervate.verify.graphs import graph_of
 from innervate.verify.readings import Readings
 from innervate.verify.states import happen
+from tests.own import alone, own
+
+__all__ = ["alone", "own"]
 
 CLOCK = (0, 0, MASK30)
 STATE = (
@@ -77,3 +82,13 @@ def test_a_handler_that_looks_at_its_clocks_reading_is_named(does, apart):
     assert net.readings.apart == ({"on_timer"} if apart else set())
     assert bool(net.readings.words()) == apart
     assert step.state == happen(move).state
+
+
+def test_programs_are_told_which_handlers_these_are(own, capsys):
+    wanted = ["verify", str(own.folder), "--graph", "pair", "--states", "40", "--json"]
+    assert main(wanted) == 0
+    assert [one["readings"] for one in json.loads(capsys.readouterr().out)] == [[]]
+    own.change("protocol.py", "    node.value = item.value\n", "    node.value = now // 1000 & 7\n")
+    own.change("protocol.py", "    frame.value = node.value\n", "    frame.value = node.value & 7\n")
+    assert main(wanted) == 0
+    assert [one["readings"] for one in json.loads(capsys.readouterr().out)] == [["on_input"]]

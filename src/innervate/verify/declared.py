@@ -131,7 +131,7 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
     return Case(
         lines=lines_of(f"{head} {tally.wall_s:7.1f} s", told, how_far),
         record={"graph": cables, **{name: getattr(tally, name) for name in names},
-                "draws": net.draws.as_dict(),
+                "draws": net.draws.as_dict(), "readings": sorted(readings.apart),
                 "broken": story.title or None, "story": story.sentences or None},
         is_broken=told is not None,
         is_complete=tally.ended == "complete" and not (

@@ -61,7 +61,8 @@ class Readings:
         if not self.apart:
             return ""
         handlers = " and ".join(sorted(self.apart))
-        return f"; what {handlers} does depends on what the clock reads, which was not tried"
+        does = "does" if len(self.apart) == 1 else "do"
+        return f"; what {handlers} {does} depends on what the clock reads, which was not tried"
 
     def _move(self, on: int) -> None:
         for name in self.net.clocks:
