@@ -2,8 +2,12 @@
 
 import pytest
 
+from innervate import scenario
+from innervate.live.build import build
 from innervate.live.machine import Machine, on
+from innervate.live.nodefile import load
 from innervate.networks.skin.live import words
+from innervate.networks.skin.live.deployment import SkinDeployment
 from innervate.networks.skin.live.items import RANGES, Frame, put
 from innervate.networks.skin.live.node import CellNode, SinkNode, refuse_command
 from innervate.networks.skin.live.parameters import skin_parameters
@@ -97,6 +101,27 @@ def test_a_command_goes_to_a_cell_or_to_all_by_the_ports_that_have_some(cell, to
     assert [item.proximity for _, item in one.engine.told] == [65_535, 0, 0]
     with pytest.raises(ValueError, match="only the PC of a skin sends commands"):
         refuse_command({})
+
+
+@pytest.mark.parametrize(("more", "most"), [
+    ("number = 13\nnodes = 14\n", 12), ("number = 0\nnodes = 14\n", 13), ("number = 13\n", 65_534),
+])  # fmt: skip
+def test_a_pc_whose_file_says_how_many_there_are_refuses_cells_beyond(tmp_path, more, most):
+    path = tmp_path / "pc.toml"
+    link = '[[link]]\nkind = "udp"\nbind = "127.0.0.1:4701"\npeers = ["127.0.0.1:4702"]\n'
+    path.write_text(f'kind = "skin"\nrole = "sink"\n{more}{link}')
+    one = build(load(path))
+    one.engine = Engine()
+    one.send_command(1, 0, most)
+    with pytest.raises(ValueError, match=f"cell must be 0 to {most}, not {most + 1}; leave it out"):
+        one.send_command(1, 0, most + 1)
+    assert one.outcomes == {"commands sent": 1}
+
+
+def test_the_pc_of_a_plan_is_told_how_many_cells_there_are():
+    plan = scenario.plan(scenario.load("loop-three", []))
+    head, _ = SkinDeployment(plan).file(plan.graph.cells, [])
+    assert head == {"role": "sink", "nodes": plan.graph.cells + 1}
 
 
 def test_what_comes_in_is_told_with_the_time_of_who_receives_it():

@@ -26,7 +26,10 @@ def build(loaded: Loaded) -> LiveNode:
     paths = sum(len(link.paths) for link in links)
     sealer = sealer_of(loaded, state)
     if table.role == "sink":
-        return SinkNode(loaded.name, SinkStack(params, paths), links, sealer, state)
+        pc = SinkNode(loaded.name, SinkStack(params, paths), links, sealer, state)
+        if table.nodes is not None:  # the last number may be its own
+            pc.cell_max = table.nodes - 1 - (table.number == table.nodes - 1)
+        return pc
     ports = table.ports or list(range(paths))
     if len(ports) != paths or len(set(ports)) != paths or paths > PORTS:
         raise LiveError(

@@ -44,7 +44,7 @@ class SkinDeployment(Deployment):
         """The head of a node's file, and its tables."""
         plan, tables = self.plan, {"protocol": dict(self.plan.params)}
         if number == plan.graph.cells:
-            return {"role": "sink"}, tables
+            return {"role": "sink", "nodes": number + 1}, tables
         rate_hz = 1e6 / plan.data_period_us if plan.data_period_us else 0.0
         ports = [self.port_of(number, k) for k in cables]
         return {"role": "cell", "ports": ports, "rate_hz": rate_hz}, tables

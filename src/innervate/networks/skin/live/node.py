@@ -120,9 +120,13 @@ class SinkNode(LiveNode):
     """The PC end of a skin: gives tactile frames, sends commands down.
 
     Its links are the interface ports, in order.
+
+    Attributes:
+        cell_max: the greatest number of a cell, as far as its file says it.
     """
 
     stack: SinkStack
+    cell_max = EVERYBODY - 1
 
     def own_requests(self) -> dict[str, Answerer]:
         """It may be asked to send a command."""
@@ -142,12 +146,12 @@ class SinkNode(LiveNode):
         """Send a command down to a cell, or (None) to all; what it means is the user's.
 
         Raises:
-            ValueError: a value leaves its range; see Command. Cells are 0 to 65534. Or the PC
-                does not run.
+            ValueError: a value leaves its range; see Command. Cells are 0 to `cell_max`. Or the
+                PC does not run.
         """
         engine = self.running()
-        if cell == EVERYBODY:
-            raise ValueError(f"cell must be 0 to {EVERYBODY - 1}; leave it out for all")
+        if cell is not None and not 0 <= cell <= self.cell_max:
+            raise ValueError(f"cell must be 0 to {self.cell_max}, not {cell}; leave it out for all")
         item = Frame()
         whom = EVERYBODY if cell is None else cell
         for name, called, given in (
