@@ -24,21 +24,8 @@ TEST_S = 600
 
 def make(target: Path | None, on: str, over: str = "") -> int:
     """Write a network's folder, whole or not at all; never over what is there."""
-    if target is None:
-        raise UserError("name it: innervate new network NAME --on cables")
+    target = _checked(target, on, over)
     name = target.name
-    if on not in MEDIA:
-        raise UserError(f"--on can be {', '.join(MEDIA)}, not {on[:40]!r}")
-    if over and (on != "field" or over not in accesses()):
-        raise UserError(f"--over can be {', '.join(accesses())}, with --on field")
-    if not (name.isidentifier() and name.isascii() and name == name.lower()):
-        raise UserError(f"{name[:60]!r} is no name; use small letters, digits and _, "
-                        "like a Python module")  # fmt: skip
-    words = {*networks(), *sys.stdlib_module_names, *kwlist, WORD.lower()}
-    if name in words or _is_module(name):
-        raise UserError(f"the name {name!r} is taken; choose another")
-    if target.exists():
-        raise UserError(f"{target} is there already; choose another name or move it away")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         work = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
@@ -64,6 +51,26 @@ def make(target: Path | None, on: str, over: str = "") -> int:
                     f"innervate run {target / name}.toml"):  # fmt: skip
         print(f"  {command}")
     return 0
+
+
+def _checked(target: Path | None, on: str, over: str) -> Path:
+    """Where it is to be, if all that was said can be."""
+    if target is None:
+        raise UserError("name it: innervate new network NAME --on cables")
+    name = target.name
+    if on not in MEDIA:
+        raise UserError(f"--on can be {', '.join(MEDIA)}, not {on[:40]!r}")
+    if over and (on != "field" or over not in accesses()):
+        raise UserError(f"--over can be {', '.join(accesses())}, with --on field")
+    if not (name.isidentifier() and name.isascii() and name == name.lower()):
+        raise UserError(f"{name[:60]!r} is no name; use small letters, digits and _, "
+                        "like a Python module")  # fmt: skip
+    words = {*networks(), *sys.stdlib_module_names, *kwlist, WORD.lower()}
+    if name in words or _is_module(name):
+        raise UserError(f"the name {name!r} is taken; choose another")
+    if target.exists():
+        raise UserError(f"{target} is there already; choose another name or move it away")
+    return target
 
 
 def _free_numbers(folder: Path) -> list[tuple[str, str]]:

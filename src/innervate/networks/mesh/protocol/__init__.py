@@ -165,8 +165,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 | TO_SEND    | fewer than `jobs` under way     | `pump`, `start_job`,             | UNDER_WAY      |
 |            |                                 | `queue_parts`                    |                |
 | UNDER_WAY  | `TABLE_ACK`, all parts          | `on_ack`                         | CURRENT        |
-| UNDER_WAY  | `JOBS`                          | `retry_jobs`: once more, or no   | ..., GIVEN_UP  |
-|            |                                 | more                             |                |
+| UNDER_WAY  | `JOBS`                          | `retry_jobs`: again, or no more  | ..., GIVEN_UP  |
 | ...        | ... a table, `IN_A_ROW` times   | ... once more behind all others  | TO_SEND        |
 | GIVEN_UP   | the next round                  | `give_jobs`                      | TO_SEND        |
 | FREE       | something to send               | `compose`, `take_over`:          | WAITS          |
@@ -322,16 +321,14 @@ Constants and settings
 |                                                | each that is before it                          |
 | `IN_VAIN = 4`, `PATIENCE = 12`,                | questions in vain; quarters of one more, and of |
 | `PATIENCE_MAX = 24`                            | a longer wait: at first, after a late answer    |
-| `SPARE_HOPS = 3`                               | decision 0053: of a question, beyond what a     |
-|                                                | node as deep takes                              |
+| `SPARE_HOPS = 3`                               | decision 0053: of a question, beyond the depth  |
 | `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
 |                                                | gateway: no patience                            |
 | `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | neighbours in a response: counted; table-free   |
 | `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |
 |                                                | MTU of 64                                       |
 | `IN_A_ROW = 3`                                 | tries of a table, before it is the others' turn |
-| `PLACES_RESERVED = 3`                          | of the gateway's queue, for what others send    |
-|                                                | through it                                      |
+| `PLACES_RESERVED = 3`                          | of the gateway's queue, for what passes through |
 | `FAILURES_MAX = 6`, `HOPS_MAX = 40`            | failed hops at a node, then a packet is         |
 |                                                | dropped: up; routed                             |
 | `LIVELY_TICKS = 2`                             | heard so lately, a missing ack is the channel's |
