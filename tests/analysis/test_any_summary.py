@@ -37,6 +37,8 @@ CASES = [
      "Both messages are delivered, none of 10 frames is lost."),
     (counts(arrived=0), 1, OK, "All 4 messages are delivered, none of 10 frames is lost."),
     (counts(delivered=5), 1, OK, "4 messages are delivered 5 times, none of 10 frames is lost."),
+    (counts(unheard=1), 1, DEGRADED, "1 of 4 messages is not delivered."),
+    (counts(delivered=9, unheard=2), 1, DEGRADED, "2 of 4 messages are not delivered."),
     (counts(delivered=3), 1, DEGRADED, "1 of 4 messages is not delivered."),
     (counts(delivered=1), 1, DEGRADED, "3 of 4 messages are not delivered."),
     (counts(delivered=2, dropped=1), 1, DEGRADED,

@@ -201,7 +201,8 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         return Headline(DOWN, f"{who} {'is' if nodes == 1 else 'are'} off.", off)
     if lost and not counts.arrived:
         return Headline(DOWN, _none_came(counts), off)
-    missing = 0 if goes_on else max(counts.offered - counts.delivered - dropped, 0)
+    unheard = max(counts.offered - counts.delivered, counts.unheard)
+    missing = 0 if goes_on else max(unheard - dropped, 0)
     if (dropped or missing) and not counts.delivered:
         said = _none(counts.offered, "message", "was delivered", "was not delivered")
         return Headline(DOWN, said, off)
@@ -241,9 +242,9 @@ def _well(counts: Counts) -> str:
     kept = f"no {what} is lost." if counts.sent < 2 else f"none of {counts.sent:,} {what}s is lost."
     if lost:
         kept = f"{_part(lost, counts.sent, what, 'lost')}."
-    if counts.delivered > counts.offered > 0:
+    if counts.delivered > counts.offered > 0 and not counts.unheard:
         return f"{counts.offered:,} messages are delivered {counts.delivered:,} times, {kept}"
-    under_way = counts.offered - counts.delivered
+    under_way = max(counts.offered - counts.delivered, counts.unheard)
     if under_way > 0:
         return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
     if counts.offered:

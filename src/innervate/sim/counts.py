@@ -17,6 +17,8 @@ class Counts(NamedTuple):
         lost_by: frames lost, by reason.
         offered: messages given to nodes by their users.
         delivered: messages given to users by nodes.
+        unheard: of offered messages, of how many at least nothing was delivered, where that is
+            known; where messages are for many, `delivered` does not tell.
         dropped_by: messages given up by nodes, by reason.
         is_shared: all hear the same air: a frame counts for each that could hear it, as a
             reception, and one that is lost need be nobody's loss.
@@ -29,6 +31,7 @@ class Counts(NamedTuple):
     lost_by: Mapping[str, int] = {}
     offered: int = 0
     delivered: int = 0
+    unheard: int = 0
     dropped_by: Mapping[str, int] = {}
     is_shared: bool = False
 

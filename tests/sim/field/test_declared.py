@@ -59,6 +59,17 @@ def test_news_go_from_hop_to_hop(flood):
     assert one_hop["node"].tolist() == [1]
 
 
+def test_news_that_many_got_do_not_stand_for_those_that_nobody_got(flood):
+    given = [{"at_s": 0.1, "node": 0, "item": {"value": 7}},
+             {"at_s": 0.3, "node": 2, "item": {"value": 8}}]  # fmt: skip
+    event = [{"at_s": 0.2, "action": "cut", "node": 1, "other": 2}]
+    run = in_line(flood, input=given, event=event)
+    assert (run.result.counts.offered, run.result.counts.delivered) == (2, 2)
+    assert run.summary["headline"]["text"].startswith("1 of 2 messages is not delivered, ")
+    both = in_line(flood, input=given).summary["headline"]["text"]
+    assert both == "2 messages are delivered 4 times, none of 8 receptions is lost."
+
+
 @pytest.mark.parametrize(
     ("event", "got"),
     [

@@ -119,7 +119,7 @@ def test_nodes_are_switched_on_first_of_all_that_is_done_at_their_moment():
     ]  # fmt: skip
     run = run_of(world)
     assert (run["commands"], run["offers"]) == (5, 1)
-    assert world.offers.tolist() == [(80, 2, 6)]
+    assert world.offers.tolist() == [(80, 2, 6, 0)]
     assert int(get(world.items, 0, "seq")) == 7
     keys = sorted(world.heap.keys[: int(world.heap.size[0])].tolist())
     assert keys == [queue.key_of(50, queue.COMMAND, 0, 0), queue.key_of(80, queue.OFFER, 0, 0)]
@@ -235,7 +235,7 @@ def noted(*names):
 
 def kept_world(**run):
     given = {"taps": 0, "tap_limit": 9, "deliveries": 0, "delivery_limit": 9, "nodes": 2, "room": 2,
-             "blocked": 0}  # fmt: skip
+             "blocked": 0, "offers": 0}  # fmt: skip
     return Of(
         run=[Of(**given | run)], counters=[0] * listening.COUNTERS, prob=[0, 9, 9, 0],
         radios=[Of(held=NONE, waiting=0, first=1) for _ in range(2)], deliveries=[Of()],

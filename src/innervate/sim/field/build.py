@@ -130,7 +130,7 @@ def _events(plan: Any) -> list[tuple[int, ...]]:
 
 def _given(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
     """What happens to nodes, and what they are handed, as tables in order of time."""
-    offers = [(one.at_us, one.node, one.kind) for one in plan.inputs]
+    offers = [(one.at_us, one.node, one.kind, 0) for one in plan.inputs]
     items = tables.states(frame, len(offers) + 1)
     for place, one in enumerate(plan.inputs):
         put(items, place, **one.item)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 import importlib
 from bisect import bisect_right
+from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -218,6 +219,8 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
         since = frame.made_at
         latency = (time - since) & arith.MASK30 if since > 0 else -1
         listening.keep(world, node, kind_of(frame), time, latency)
+        if since > 0:
+            listening.note_came(world, time - latency)
 
     def take_item(world, index):  # type: ignore[no-untyped-def]
         copy(world.item[0], world.items[index])
@@ -314,8 +317,18 @@ class DeclaredField(Field):
             lost_by={name: many for name, many in lost.items() if many},
             offered=bisect_right(self.message_times, self.clock_us()),
             delivered=int(numbers[listening.DELIVERED]),
+            unheard=self._unheard(int(numbers[listening.DELIVERED])),
             is_shared=True,
         )  # fmt: skip
+
+    def _unheard(self, delivered: int) -> int:
+        """Of messages given so far, of how many at least nothing was delivered."""
+        given = Counter(self.message_times[: bisect_right(self.message_times, self.clock_us())])
+        came: Counter[int] = Counter()
+        for place, one in enumerate(self.plan.inputs):
+            came[one.at_us] += int(get(self.world.offers, place, "came"))
+        missing = sum(max(many - came[at_us], 0) for at_us, many in given.items())
+        return max(missing - (delivered - came.total()), 0)  # of some nobody knows when
 
     def _is_off(self, radios: Any, node: int) -> bool:
         """Switched off, or not there yet; not who is only about to start with the others."""

@@ -20,7 +20,7 @@ RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "
          "first", "waiting")  # fmt: skip
 AIR = ("node", "state", "start", "end", "digest", "receivers")
 COMMAND = ("time", "action", "node", "other", "value")
-OFFER = ("time", "node", "kind")
+OFFER = ("time", "node", "kind", "came")  # how often what was given then was delivered
 ROW = ("time", "node", "code", "a", "b")
 DELIVERY = ("time", "node", "port", "kind", "latency")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
