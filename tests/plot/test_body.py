@@ -51,6 +51,21 @@ def test_who_is_off_at_the_end_is_crossed_and_named_so_in_the_table():
     assert "struck" not in body.graph(ring(4))
 
 
+def test_one_of_a_figure_is_told_as_one():
+    run = innervate.run({"kind": "babel", "nodes": 4, "duration_s": 0.05}, plain=True)
+
+    def told(frames, lost, messages, events):
+        changed = {
+            "frames": run.summary["frames"] | {"sent": frames, "lost": lost}, "events": events,
+            "messages": run.summary["messages"] | {"delivered": messages},
+        }  # fmt: skip
+        shown = body.top(run.result, run.summary | changed)
+        return re.findall(r"frames? sent|frames? lost|messages? delivered|events?\b", shown)
+
+    assert told(1, 1, 1, 1) == ["frame sent", "frame lost", "message delivered", "event"]
+    assert told(2, 0, 0, 2) == ["frames sent", "frames lost", "messages delivered", "events"]
+
+
 def test_nodes_lie_where_their_coordinates_say():
     """From 40 on, 340 wide or high at most; without any the whole graph is spread."""
     nodes = [("a", {"x_m": 3.0, "y_m": 1.0, "z_m": 9.0}), ("b", {"x_m": 7.0, "y_m": 3.0})]

@@ -49,14 +49,19 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     )
     frames, messages = summary["frames"], summary["messages"]
     numbers = [
-        (count_words(frames["sent"]), "frames sent"),
-        (count_words(frames["lost"]), "frames lost"),
-        (count_words(messages["delivered"]), "messages delivered"),
-        (count_words(summary["events"]), "events"),
+        _counted(frames["sent"], "frame", " sent"),
+        _counted(frames["lost"], "frame", " lost"),
+        _counted(messages["delivered"], "message", " delivered"),
+        _counted(summary["events"], "event"),
     ]
     lines = "".join(element("p", f"{line}.") for line in traffic_lines(summary))
     head = element("p", over, "over") + headline(summary["headline"]) + tiles(numbers) + lines
     return f"<header>\n{head}</header>"
+
+
+def _counted(count: int, thing: str, did: str = "") -> tuple[str, str]:
+    """A figure to know, and its words."""
+    return count_words(count), f"{thing}{'' if count == 1 else 's'}{did}"
 
 
 def graph(plan: Any, off: Collection[int] = ()) -> str:
