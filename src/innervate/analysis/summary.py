@@ -200,12 +200,12 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         who = every(nodes, "node").capitalize()
         return Headline(DOWN, f"{who} {'is' if nodes == 1 else 'are'} off.", off)
     if lost and not counts.arrived:
-        return Headline(DOWN, _none_came(counts), off)
+        return _down(_none_came(counts), counts)
     unheard = max(counts.offered - counts.delivered, counts.unheard)
     missing = 0 if goes_on else max(unheard - dropped, 0)
     if (dropped or missing) and not counts.delivered:
         said = _none(counts.offered, "message", "was delivered", "was not delivered")
-        return Headline(DOWN, said, off)
+        return _down(said, counts)
     if not (counts.sent or counts.offered or off):
         return Headline(NO_DATA, "No frame was sent.")
     failed = 0 if _is_spared(counts, missing + dropped) else lost
@@ -219,6 +219,12 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     if said:
         return Headline(DEGRADED, f"{said}.", off)
     return Headline(OK, _well(counts))
+
+
+def _down(said: str, counts: Counts) -> Headline:
+    """That nothing came, and who is off."""
+    off = _part(len(counts.off), counts.nodes, "node", "off")
+    return Headline(DOWN, f"{', '.join(filter(None, (said, off)))}.", counts.off)
 
 
 def _none_came(counts: Counts) -> str:
@@ -243,7 +249,8 @@ def _well(counts: Counts) -> str:
     if lost:
         kept = f"{_part(lost, counts.sent, what, 'lost')}."
     if counts.delivered > counts.offered > 0 and not counts.unheard:
-        return f"{counts.offered:,} messages are delivered {counts.delivered:,} times, {kept}"
+        many = "1 message is" if counts.offered == 1 else f"{counts.offered:,} messages are"
+        return f"{many} delivered {counts.delivered:,} times, {kept}"
     under_way = max(counts.offered - counts.delivered, counts.unheard)
     if under_way > 0:
         return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
@@ -255,7 +262,7 @@ def _well(counts: Counts) -> str:
 
 def _none(count: int, what: str, did: str, did_not: str) -> str:
     """That not one of them did something, or that the only one did not."""
-    return f"None of {count:,} {what}s {did}." if count > 1 else f"The only {what} {did_not}."
+    return f"None of {count:,} {what}s {did}" if count > 1 else f"The only {what} {did_not}"
 
 
 def _part(count: int, total: int, what: str, how: str) -> str:
