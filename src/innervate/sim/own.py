@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from innervate.folders import invariants_of
@@ -41,6 +43,25 @@ def message_times(plan: Any) -> list[int]:
     kinds = getattr(networks()[plan.kind].fields, "MESSAGES", None)
     given = [one for one in plan.inputs if not isinstance(one, Happening)]
     return sorted(one.at_us for one in given if kinds is None or one.kind in kinds)
+
+
+def unheard(
+    given_us: Sequence[int], now_us: int, came: Iterable[tuple[int, int]], delivered: int
+) -> int:
+    """Of messages given so far, of how many at least nothing was delivered.
+
+    Args:
+        given_us: when each was given, in order of time.
+        now_us: the time until which they count.
+        came: moments at which something was given, and how much of it was delivered.
+        delivered: how much was delivered, of whatever moment.
+    """
+    given = Counter(given_us[: bisect_right(given_us, now_us)])
+    known: Counter[int] = Counter()
+    for at_us, many in came:
+        known[at_us] += many
+    missing = sum(max(many - known[at_us], 0) for at_us, many in given.items())
+    return max(missing - (delivered - known.total()), 0)  # of some nobody knows when
 
 
 def words_of(kind: str) -> dict[int, str]:

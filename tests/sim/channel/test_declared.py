@@ -43,6 +43,15 @@ def test_inputs_come_to_whom_and_when_they_are_given(talk):
     assert (rows["latency"] == rows["time"] - 100_000).all()
 
 
+def test_news_that_many_got_do_not_stand_for_those_that_nobody_got(talk):
+    given = [
+        {"at_s": at_s, "node": node, "item": {"value": 7}} for at_s, node in ((0.1, 0), (0.3, 3))
+    ]
+    run = ran(talk, nodes=4, input=given, event=[], hidden=[[0, 3], [1, 3], [2, 3]])
+    assert (run.result.counts.offered, run.result.counts.delivered) == (2, 2)
+    assert run.summary["headline"]["text"] == "1 of 2 messages is not delivered."
+
+
 def test_what_breaks_is_told_by_file_and_line(talk):
     talk.change("protocol.py", "    node.busy = cd\n", "    node.busy = cd + 1\n")
     at = talk.line("protocol.py", "cd + 1")

@@ -36,7 +36,8 @@ def world_of(**more):
            "tap_limit": 9, "ta_us": 30}  # fmt: skip
     radio = Of(alive=1, deaf=0, offset=100, next_offer=5, backlog=2)
     return Of(
-        run=[Of(**run | more)], above=Of(counters=[0] * listening.COUNTERS, items=None, kinds=None),
+        run=[Of(**run | more)],
+        above=Of(counters=[0] * listening.COUNTERS, items=None, kinds=None, moments=[], came=[]),
         radios=[radio, Of(**vars(radio))], packets=[Of() for _ in range(4)],
         words=[[5, 5], [5, 9]], low=[0, 0], high=[8, 8], degree=[3, 2],
         taps=[Of() for _ in range(4)], tapped=[Of() for _ in range(4)],
@@ -194,7 +195,7 @@ def bare(**run):
     radios = np.zeros(4, [("alive", np.int64), ("leaving", np.int64)])
     radios["alive"], radios["leaving"] = (1, 0, 1, 0), (1, 0, 0, 1)
     counters = np.arange(3, 3 + 7 * listening.COUNTERS, 7)
-    world = Of(run=numbers, radios=radios, above=Of(counters=counters))
+    world = Of(run=numbers, radios=radios, above=Of(counters=counters, moments=[], came=[]))
     return Bare(Of(stations=3, seed=8, kind="talk"), world, None)
 
 
@@ -232,7 +233,8 @@ def test_what_users_give_stands_in_its_order_and_the_mediums_own_fields_behind(m
     fields = Of(STATE=own[:1], FRAME=own, PARAMS=())
     monkeypatch.setattr(declared, "networks", lambda: {"radio": Of(fields=fields, protocol=Of())})
     plan = radio_plan(3)
-    inputs = [Of(kind=6, item={"seq": 8, "slots": 2}), Of(kind=5, item={"seq": 9})]
+    inputs = [Of(kind=6, at_us=70, item={"seq": 8, "slots": 2}),
+              Of(kind=5, at_us=70, item={"seq": 9})]  # fmt: skip
 
     class Plan:
         def __getattr__(self, name):
@@ -242,6 +244,7 @@ def test_what_users_give_stands_in_its_order_and_the_mediums_own_fields_behind(m
     assert [int(get(world.above.items, i, "seq")) for i in range(3)] == [8, 9, 0]
     assert [int(kind) for kind in world.above.kinds] == [6, 5, 0]
     assert int(get(world.above.items, 0, "slots")) == 2
+    assert ([int(at_us) for at_us in world.above.moments], len(world.above.came)) == ([70], 1)
     assert (int(get(world.frames, 0, "count")), int(get(world.item, 0, "ago"))) == (0, 0)
     assert int(get(world.stations, 2, "queued")) == 0
     twice = declared.extended((("count", 0, 1, 5, "", "own"),), declared.OF_FRAME)

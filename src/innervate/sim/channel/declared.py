@@ -28,7 +28,7 @@ from innervate.sim.channel.build import OUTBOX, Records, build
 from innervate.sim.channel.calls import handlers
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
-from innervate.sim.own import check_of, message_times, words_of
+from innervate.sim.own import check_of, message_times, unheard, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, get, put, row_dtype
@@ -44,11 +44,13 @@ OF_NODE = (("queued", 0, 0, 0, "packets", "not used"),)
 
 
 class Above(NamedTuple):
-    """What nodes are handed, and what is counted (see listening.py)."""
+    """What nodes are handed, when, how much of it came, and what is counted (see listening.py)."""
 
     items: Any
     kinds: Any
     counters: Any
+    moments: Any
+    came: Any
 
 
 def extended(declared: Any, more: Any) -> Any:
@@ -156,6 +158,8 @@ def _noted(copy: Any, kind_of: Any, is_timed: bool) -> dict[str, Callable[..., A
         since = frame.made_at
         latency = (time - since) & arith.MASK30 if since > 0 else -1
         listening.keep(world, node, kind_of(frame), time, latency)
+        if since > 0:
+            listening.note_came(world, time - latency)
 
     return {"record_sent": record_sent, "record_received": record_received,
             "note_received": note_timed if is_timed else note_received, "kind_of": kind_of,
@@ -230,8 +234,14 @@ class DeclaredChannel(Channel):
             lost_by=lost,
             offered=bisect_right(self.message_times, self.clock_us()),
             delivered=int(numbers[listening.DELIVERED]),
+            unheard=self._unheard(int(numbers[listening.DELIVERED])),
             is_shared=True,
         )
+
+    def _unheard(self, delivered: int) -> int:
+        above = self.world.above
+        came = zip(above.moments, above.came, strict=True)
+        return unheard(self.message_times, self.clock_us(), came, delivered)
 
 
 def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:
@@ -248,7 +258,10 @@ def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:
     kinds = made.given([one.kind for one in plan.inputs] + [0])
     world = build(plan, of, plain, kept)
     counters = made.numbers(listening.COUNTERS, 0, np.int64)
-    return world._replace(above=Above(items, kinds, counters))
+    moments = sorted({one.at_us for one in plan.inputs})
+    times = made.given(moments, np.int64)
+    came = made.numbers(len(times), 0, np.int64)
+    return world._replace(above=Above(items, kinds, counters, times, came))
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> DeclaredChannel:

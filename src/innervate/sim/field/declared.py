@@ -11,7 +11,6 @@ from __future__ import annotations
 import functools
 import importlib
 from bisect import bisect_right
-from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -32,7 +31,7 @@ from innervate.sim.field import access, build, calls, listening, loop, medium, p
 from innervate.sim.field import world as w
 from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import DEAD, OFF
-from innervate.sim.own import check_of, message_times, words_of
+from innervate.sim.own import check_of, message_times, unheard, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.status import POOL_FULL
@@ -322,13 +321,11 @@ class DeclaredField(Field):
         )  # fmt: skip
 
     def _unheard(self, delivered: int) -> int:
-        """Of messages given so far, of how many at least nothing was delivered."""
-        given = Counter(self.message_times[: bisect_right(self.message_times, self.clock_us())])
-        came: Counter[int] = Counter()
-        for place, one in enumerate(self.plan.inputs):
-            came[one.at_us] += int(get(self.world.offers, place, "came"))
-        missing = sum(max(many - came[at_us], 0) for at_us, many in given.items())
-        return max(missing - (delivered - came.total()), 0)  # of some nobody knows when
+        came = (
+            (one.at_us, int(get(self.world.offers, place, "came")))
+            for place, one in enumerate(self.plan.inputs)
+        )
+        return unheard(self.message_times, self.clock_us(), came, delivered)
 
     def _is_off(self, radios: Any, node: int) -> bool:
         """Switched off, or not there yet; not who is only about to start with the others."""
