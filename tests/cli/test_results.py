@@ -90,10 +90,10 @@ def outcome(*steps, by="", unreached=(), named=(), ended="complete"):
         ),
         (
             outcome(checked("a", reached=[WAY]), named=[OTHER]),
-            "Holds: 1 lemmas; 1 ways of branches reached, 1 cannot be, as said.",
+            "Holds: 1 lemma; 1 way of branches reached, 1 cannot be, as said.",
             True,
         ),
-        (outcome(checked("a"), unreached=[OTHER]), "Holds: 1 lemmas; some are not.", False),
+        (outcome(checked("a"), unreached=[OTHER]), "Holds: 1 lemma; some are not.", False),
         (outcome(checked("a", refuted=["g"])), "Does NOT hold.", False),
         (outcome(checked("a"), ended="stopped"), "Stopped.", False),
         (outcome(checked("a", refuted=["g"]), by="a"), "Refuted, as it must be.", True),

@@ -85,7 +85,8 @@ def test_so_many_networks_are_tried_from_a_seed_on(attempts, capsys, seed, count
         assert verifying_random.search(seed, count, as_json, None) == 0
     assert attempts == [*range(first, last + 1)] * 2
     words, told = capsys.readouterr().out.splitlines()
-    assert words == f"Nothing broken in {count} networks, {first} to {last}."
+    many = "1 network, 5" if count == 1 else f"{count} networks, {first} to {last}"
+    assert words == f"Nothing broken in {many}."
     assert json.loads(told) == {"first": first, "networks": count, "broken": None}
 
 
@@ -106,4 +107,4 @@ def test_who_is_stopped_has_tried_what_was_under_way(attempts, capsys):
     assert verifying_random.search(3, 5, False, None) == errors.INTERRUPTED
     assert verifying_random.search(3, 1, False, None) == 0  # that was all
     assert attempts == [3, 3]
-    assert capsys.readouterr().out == "Nothing broken in 1 networks, 3 to 3.\n" * 2
+    assert capsys.readouterr().out == "Nothing broken in 1 network, 3.\n" * 2

@@ -145,7 +145,7 @@ def test_mistakes_are_one_line(sh, words, line):
 
 def test_random_networks_end_after_as_many_as_asked_for(sh):
     assert sh("verify", "--random", "--seed", "3", "--count", "1") == 0
-    assert sh.out == "Nothing broken in 1 networks, 3 to 3.\n"
+    assert sh.out == "Nothing broken in 1 network, 3.\n"
 
 
 def test_who_interrupts_between_two_explorations_is_told_that_others_were_to_come(capsys):

@@ -11,8 +11,11 @@ import pytest
 from innervate.network import networks
 from innervate.running.exploring import USUAL
 from innervate.topology.free import free_graph
+from innervate.verify import cases
+from innervate.verify.cases import Story, extent, lines_of
 from innervate.verify.declared import Net, explore
 from innervate.verify.states import Budget
+from innervate.verify.tally import Tally
 
 RING = 64  # states of a node that is left alone
 ALONE = "loss=0,restart=0,input=0"
@@ -122,3 +125,14 @@ def test_what_holds_of_all_nodes_is_looked_at_behind_each_event():
     assert (story.title, tally.ended) == ("no node ticks", "broken")
     assert len(story.sentences) == 1
     assert (tally.states, tally.expanded) == (1, 1)
+
+
+@pytest.mark.parametrize(("states", "successors", "words"), [
+    (1, 1, "1 state 1 successor"), (2, 3_000, "2 states 3,000 successors"),
+])  # fmt: skip
+def test_one_of_a_thing_is_told_as_one(states, successors, words):
+    tally = Tally(states=states, expanded=states, generated=successors, depth=1, ended="limit")
+    assert " ".join(cases.many(tally).split()) == words
+    assert extent(tally).startswith(f"first {words.split(' state')[0]} state")
+    assert extent(tally).endswith(", to 1 event, as asked")
+    assert lines_of("head", Story("closed loop", ["one"]), str)[0] == "head  BROKEN after 1 event"

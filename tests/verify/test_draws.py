@@ -147,7 +147,7 @@ def test_of_an_event_with_too_many_ways_the_first_are_tried_and_that_is_said():
     case = explored(starts(8, times=2))  # 8^4 ways to begin
     assert case.record["draws"] == {"every": [], "some": [8], "left_out": 1}
     assert not case.is_complete
-    assert case.lines[0].endswith(f"of 1 events only {draws.OUTCOMES} ways to draw were tried")
+    assert case.lines[0].endswith(f"of 1 event only {draws.OUTCOMES} ways to draw were tried")
 
 
 def test_who_draws_until_it_differs_comes_to_an_end():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from innervate.kernel.words import number_of as number_of
+
 LEAST = 1e-5  # of a whole: less is not told apart
 
 
@@ -23,8 +25,3 @@ def share_words(ratio: float) -> str:
         shown = f"{100 * ratio:.{decimals}f}"
         decimals += 1
     return f"{shown} %"
-
-
-def number_of(count: int, thing: str) -> str:
-    """A count with its noun: "1 cell", "12 cells"."""
-    return f"{count:,} {thing}{'' if count == 1 else 's'}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from innervate.analysis.words import number_of
 from innervate.cli import errors
 from innervate.cli.progress import Display
 from innervate.cli.verifying import named
@@ -55,7 +56,7 @@ def lines(outcome: Outcome) -> list[str]:
     told = [f"{theory.name}: {theory.claim}"]
     told += [f"  assumed: {one}" for one in theory.assumed]
     for one in outcome.checked:
-        count = f"{len(one.goals)} lemma{'' if len(one.goals) == 1 else 's'}"
+        count = number_of(len(one.goals), "lemma")
         held = f"{len(one.refuted)} REFUTED" if one.refuted else "hold"
         told.append(f"  {one.name:52} {count:>10} {held:10} {one.wall_s:6.2f} s")
         for bad in one.refuted:
@@ -78,9 +79,9 @@ def _summary(outcome: Outcome) -> str:
     if outcome.is_refuted:
         return "Does NOT hold."
     branches = {way for one in outcome.checked for way in one.reached}
-    words = f"Holds: {outcome.lemmas} lemmas"
+    words = f"Holds: {number_of(outcome.lemmas, 'lemma')}"
     if branches:
-        words += f"; {len(branches)} ways of branches reached"
+        words += f"; {number_of(len(branches), 'way')} of branches reached"
     if outcome.named:
         words += f", {len(outcome.named)} cannot be, as said"
     return f"{words}." if not outcome.unreached else f"{words}; some are not."
@@ -92,8 +93,9 @@ def _verdict(done: list[Outcome], asked: int) -> str:
     tried = [one for one in done if one.is_as_expected or one.ended == "complete"]
     lemmas = sum(outcome.lemmas for outcome in done)
     wall_s = sum(one.wall_s for outcome in done for one in outcome.checked)
-    much = f"{lemmas} lemmas in {wall_s:.1f} s"
-    cut = "" if len(tried) == asked else f"; interrupted after {len(tried)} of {asked} theories"
+    much = f"{number_of(lemmas, 'lemma')} in {wall_s:.1f} s"
+    all_ = "theory" if asked == 1 else "theories"
+    cut = "" if len(tried) == asked else f"; interrupted after {len(tried)} of {asked} {all_}"
     if bad:
         names = ", ".join(outcome.theory.name for outcome in bad)
         return f"NOT as it should be: {names} ({much}){cut}."

@@ -6,6 +6,7 @@ import json
 from itertools import count as numbers
 from pathlib import Path
 
+from innervate.analysis.words import number_of
 from innervate.cli import errors
 from innervate.cli.progress import Display
 
@@ -28,13 +29,15 @@ def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int
         if as_json:
             print(json.dumps(result))
         else:
-            print(f"Nothing broken in {done} networks, {first} to {first + done - 1}.")
+            last = f" to {first + done - 1}" if done > 1 else ""
+            print(f"Nothing broken in {number_of(done, 'network')}, {first}{last}.")
         return errors.INTERRUPTED if stop.asked and done != count else 0
     path = broken.save(out or Path("runs"))
     if as_json:
         print(json.dumps(result | {"broken": broken.why, "seed": broken.seed, "file": str(path)}))
     else:
         print(f"Network {broken.seed} breaks: {broken.why}")
-        print(f"Made smaller in {broken.tries} tries. Play it: innervate run {path}")
+        tries = "1 try" if broken.tries == 1 else f"{broken.tries} tries"
+        print(f"Made smaller in {tries}. Play it: innervate run {path}")
         print(f"As drawn: innervate verify --random --seed {broken.seed} --count 1")
     return 1

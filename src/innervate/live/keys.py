@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from innervate.kernel.words import number_of
 from innervate.live.contact import REVOKED, TWIN, Contact
 from innervate.live.engine import clock_us
 from innervate.live.group import GroupContact
@@ -262,7 +263,10 @@ class Sealer:
         self.ring.revoked = new
         self.state.revoked = new.data
         self.state.write()
-        self.said("revoked", f"{len(new.serials)} certificates are put out, list {new.version}")
+        count = len(new.serials)
+        are = "is" if count == 1 else "are"
+        what = f"{number_of(count, 'certificate')} {are} put out, list {new.version}"
+        self.said("revoked", what)
         for contact in self._contacts.values():
             contact.put_out(lambda who: who.serial in new.serials)
             for session in contact.all_sessions():

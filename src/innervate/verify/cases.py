@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
 
@@ -122,12 +123,20 @@ def lines_of(head: str, story: Any, else_words: Callable[[], str]) -> list[str]:
         return [f"{head}  {else_words()}"]
     told = [f"    {line}" for line in story.lines()]
     events = len(story.sentences)
-    return [f"{head}  BROKEN{f' after {events} events' if events else ''}", *told]
+    after = f" after {number_of(events, 'event')}" if events else ""
+    return [f"{head}  BROKEN{after}", *told]
+
+
+def many(tally: Tally, more: int = 0) -> str:
+    """How many states (or walks) and successors there were, in columns, the last so much wider."""
+    what = number_of(tally.states, "walk" if tally.ended == "walked" else "state")
+    what = f"{what} " if tally.ended == "walked" else what
+    return f"{what:>17} {number_of(tally.generated, 'successor'):>{21 + more}}"
 
 
 def extent(tally: Tally) -> str:
     """How far a search came, in words."""
-    first = f"first {tally.expanded:,} states, to {tally.depth} events"
+    first = f"first {number_of(tally.expanded, 'state')}, to {number_of(tally.depth, 'event')}"
     return {
         "complete": "all states",
         "broken": "broken",

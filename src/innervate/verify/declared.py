@@ -17,8 +17,10 @@ from typing import Any
 
 from innervate.folders import MEDIA_ON_AIR, invariants_of
 from innervate.kernel.clock import wall_s
+from innervate.kernel.words import number_of
 from innervate.network import Network
 from innervate.topology import Graph
+from innervate.verify import cases
 from innervate.verify.cases import Case, Explore, Story, Tell, budget_of, extent, lines_of, only
 from innervate.verify.frames import frames_of
 from innervate.verify.graphs import GRAPHS, graph_of
@@ -116,13 +118,13 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
     net.readings = readings = Readings(net)
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())
     tally, story = explore(net, budget, options.states or STATES, tell, cables)
-    head = f"{cables:40} {tally.states:>10,} states {tally.generated:>10,} successors"
+    head = f"{cables:40} {cases.many(tally)}"
     told = story if story.title else None
     if told is not None:
         told.scenario = scenario_of(network, net, told)
 
     def how_far() -> str:
-        more = f" but {tally.left_out:,} successors with too many frames in flight"
+        more = f" but {number_of(tally.left_out, 'successor')} with too many frames in flight"
         return (
             extent(tally) + (more if tally.left_out else "") + net.draws.words() + readings.words()
         )

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from innervate.dialect.rng import GENERATE
+from innervate.kernel.words import number_of
 from innervate.trace.streams import Stream, stream
 from innervate.verify.states import Step
 
@@ -139,7 +140,8 @@ class Draws:
             parts.append(f"; of draws out of {', '.join(named)} "
                          "only the first, second, middle and last were tried")  # fmt: skip
         if self.left_out:
-            parts.append(f"; of {self.left_out:,} events only {OUTCOMES} ways to draw were tried")
+            events = number_of(self.left_out, "event")
+            parts.append(f"; of {events} only {OUTCOMES} ways to draw were tried")
         elif self.some - set(large):
             parts.append(f"; of events with more than {PLACES} draws only the first {PLACES} "
                          "were tried")  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+from innervate.analysis.words import number_of
 from innervate.networks.mesh.verify import cases, replay
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.mutants import MUTANTS, hunt
@@ -74,9 +75,8 @@ def _explore(name: str, model: Any, wanted: cases.MeshWanted, tell: Tell) -> Cas
 def _lines(case: cases.MeshCase) -> list[str]:
     """What came of one exploration."""
     found, tally = case.found, case.found.tally
-    unit = "walks " if tally.ended == "walked" else "states"
     head = f"{cases.text_of(found.model.links):24} {found.model.failover:9} {case.name:12}"
-    head += f"{tally.states:>10,} {unit} {tally.generated:>10,} successors {tally.wall_s:7.1f} s"
+    head += f"{common.many(tally)} {tally.wall_s:7.1f} s"
     return common.lines_of(head, case.story, partial(_extent, case))
 
 
@@ -97,4 +97,4 @@ def _extent(case: cases.MeshCase) -> str:
     part = "" if found.fair >= found.tally.states else f" from {found.fair:,} of them"
     if found.model.beats:
         return f"{words}; one gateway{part} after {found.longest / 1e6:.1f} s at most"
-    return f"{words}; settled{part} in {found.longest} events at most"
+    return f"{words}; settled{part} in {number_of(found.longest, 'event')} at most"

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from innervate.analysis.words import number_of
 from innervate.networks.radio.verify import grid as grids
 from innervate.networks.radio.verify import tree as trees
 from innervate.networks.radio.verify.grid import MODES, STATIONS, WORDS, Found, Grid, story
@@ -87,7 +88,7 @@ def _lines(found: Found) -> list[str]:
         return [f"{head}; all delivered, in order, nothing lost silently"]
     lines = [head]
     for code, count in found.broken.items():
-        lines.append(f"    BROKEN at {count:,} points: {WORDS[code]}. The first:")
+        lines.append(f"    BROKEN at {number_of(count, 'point')}: {WORDS[code]}. The first:")
         told = enumerate(story(grid, found.first[code]), 1)
         lines += [f"        {number}. {sentence}" for number, sentence in told]
     return lines
@@ -103,10 +104,10 @@ def _tree_line(grown: Grown) -> str:
     """What came of a tree."""
     grid = grown.tree.grid
     head = f"{grid.stations} stations, {grid.mode}, turnaround {grid.turnaround_us} us: "
-    head += f"every answer to the first {grown.tree.depth} draws, {grown.runs:,} runs"
+    head += f"every answer to the first {grown.tree.depth} draws, {number_of(grown.runs, 'run')}"
     part = "" if grown.ended == "complete" else f" ({grown.ended})"
     head += f"{part} in {grown.wall_s:.1f} s"
     if not grown.broken:
         return f"{head}; all delivered, in order, nothing lost silently"
-    told = ", ".join(f"{WORDS[code]} ({count:,} runs)" for code, count in grown.broken.items())
-    return f"{head}; BROKEN: {told}"
+    told = [f"{WORDS[code]} ({number_of(runs, 'run')})" for code, runs in grown.broken.items()]
+    return f"{head}; BROKEN: {', '.join(told)}"

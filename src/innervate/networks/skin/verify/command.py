@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+from innervate.analysis.words import number_of
 from innervate.kernel import compilation
 from innervate.networks.skin.verify import assumptions, cases
 from innervate.networks.skin.verify.mutants import MUTANTS, hunt
@@ -69,8 +70,7 @@ def _lines(case: cases.SkinCase) -> list[str]:
     """What came of one exploration."""
     tally = case.tally
     name = f"{case.cables:32} {case.model.rule:9} {case.model.updates:10}"
-    unit = "walks " if tally.ended == "walked" else "states"
-    much = f"{tally.states:>11,} {unit} {tally.generated:>12,} successors {tally.wall_s:7.1f} s"
+    much = f" {common.many(tally, 2)} {tally.wall_s:7.1f} s"
     lines = common.lines_of(f"{name}{much}", case.story, partial(_extent, case))
     if case.story is None and case.broken:
         lines.append(f"    BROKEN: {case.broken}")
@@ -80,10 +80,11 @@ def _lines(case: cases.SkinCase) -> list[str]:
 def _extent(case: cases.SkinCase) -> str:
     words = common.extent(case.tally)
     if case.left_out:
-        words += f" but {case.left_out:,} successors with too many frames in flight"
+        words += f" but {number_of(case.left_out, 'successor')} with too many frames in flight"
     if case.fair is None:
         return words
     part = "" if case.fair.starts == case.fair.of else f" from {case.fair.starts:,} of them"
     if case.fair.ended != "complete":
-        return f"{words}; fair schedule{part}: {case.fair.ended} after {case.fair.rounds} rounds"
-    return f"{words}; settled{part} in {case.fair.rounds} of {case.fair.bound} rounds"
+        rounds = number_of(case.fair.rounds, "round")
+        return f"{words}; fair schedule{part}: {case.fair.ended} after {rounds}"
+    return f"{words}; settled{part} in {case.fair.rounds} of {number_of(case.fair.bound, 'round')}"

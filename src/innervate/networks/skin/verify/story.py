@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from innervate.analysis.words import number_of
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import system as skin_system
@@ -76,8 +77,8 @@ def tell(result: Result, system: Any = None) -> Story:
 
 def in_short(result: Result) -> Story:
     """What is broken, where there was no room for the search that the story needs."""
-    events = len(result.path)
-    title = f"{TITLES[result.broken]}, after {events} events or a few more"
+    events = number_of(len(result.path), "event")
+    title = f"{TITLES[result.broken]}, after {events} or a few more"
     return Story(title, graph=result.model.graph)
 
 
