@@ -25,7 +25,7 @@ from boards.firmware.native import Native
 from boards.firmware.play import Player
 from boards.firmware.replayed import Heard, Shadow
 from boards.firmware.script import Script
-from boards.parity.record import scenario_of
+from boards.parity.record import plan_of, scenario_of
 from boards.roles import roles
 from innervate import scenario
 from innervate.firmware.emit import Library
@@ -79,11 +79,19 @@ def draw(library: Library, heard: Heard, seed: int, script: Script, calls: int) 
         BoardFailed: nodes were told nothing that calls could be made of.
     """
     if not heard.frames and not heard.items:
-        raise BoardFailed("no node was told anything in the simulations: make more calls")
+        raise BoardFailed(f"no node was told anything in the simulations: {_remedy(library.role)}")
     Drawn(library, heard, seed).keep(script)
     script.begin()
     lives(script, 1 + seed * MORE, calls)
     script.say()
+
+
+def _remedy(role: Role) -> str:
+    """What has nodes be told something: of a scenario without inputs more calls do not."""
+    if getattr(plan_of(role), "inputs", True):
+        return "make more calls"
+    name = role.watched.scenario or role.name
+    return f"their scenario has no [[input]]; write one with it as boards/parity/{name}.toml"
 
 
 def emulate(role: Role, calls: int, seed: int, counted: bool = False) -> dict[str, qemu.Result]:

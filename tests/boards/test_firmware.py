@@ -1,5 +1,6 @@
 """The protocols' C against their Python: every call both ways, replayed and drawn."""
 
+import io
 import shutil
 from importlib import import_module
 
@@ -8,13 +9,21 @@ import pytest
 from boards.errors import BoardFailed
 from boards.firmware import __main__ as parity
 from boards.firmware.native import SANITIZED, Native, Twin, compiler, fresh, run
+from boards.firmware.replayed import Heard
+from boards.firmware.script import Script
+from boards.parity import record
 from boards.roles import roles
 from innervate.dialect import plain
 from innervate.firmware.emit import Library
+from innervate.live.board import roles_of
+from innervate.network import use
 from innervate.networks.mesh.board import small_parameters
 from innervate.networks.mesh.protocol.constants import BODY, DATA, MESSAGES, TX
 from innervate.networks.mesh.protocol.fields import GATHERED
 from innervate.networks.mesh.protocol.queue import WAITS
+from tests.own import alone, own
+
+__all__ = ["alone", "own"]
 
 CALLS = {"skin": 2000, "csma": 1000, "radio": 1000, "mesh": 600}  # the rest: test_million.py
 
@@ -91,6 +100,21 @@ def full_mesh_node(library):
         node.q_link_dst[i], node.q_path_len[i], node.q_length[i] = i, 1, BODY - 1
     node.neighbour[:] = [255] * len(node.neighbour)
     return node
+
+
+@pytest.mark.parametrize(("given", "words"), [
+    ("", r"has no \[\[input\]\]; write one with it as boards/parity/gossip.toml"),
+    ("\n[[input]]\nat_s = 0.1\nkind = 1\n", "make more calls"),
+])  # fmt: skip
+def test_of_a_scenario_without_an_input_more_calls_are_not_asked_for(
+    own, given, words, tmp_path, monkeypatch
+):
+    role = roles_of(use(own.folder))[0]
+    if given:
+        monkeypatch.setattr(record, "HERE", tmp_path)
+        (tmp_path / "gossip.toml").write_text(f'kind = "gossip"\n{given}')
+    with pytest.raises(BoardFailed, match=words):
+        parity.draw(Library(role, {}), Heard(), 1, Script(io.BytesIO()), 9)
 
 
 @pytest.mark.parametrize("lacks", [0, 500])
