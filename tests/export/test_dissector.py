@@ -20,7 +20,7 @@ from innervate.wire import crc, seal
 from innervate.wire.bits import put
 from innervate.wire.frames import Codec
 from innervate.wire.layout import REST, SPARE
-from tests.export.tshark_runs import fields_of, tshark
+from tests.export.tshark_runs import fields_of, runner, tshark
 
 __all__ = ["tshark"]
 EACH = 6  # frames of every type
@@ -223,6 +223,25 @@ def test_who_receives_a_frame_sees_from_and_for_whom_it_is(kind, said, all_, tmp
     assert (to_one[:2], to_all[:2]) == (("node 2", "node 5"), ("node 2", "all"))
 
 
+def test_what_a_frame_does_not_say_of_its_ends_its_interface_does(tmp_path, monkeypatch):
+    """As of a kind whose layout has no sender or no recipient, where others have both."""
+    network, frames = networks()["flooding"], []
+    known = (*network.frames.LAYOUTS, (3, "to", (("dest", 0, 8, 0),)), (4, "no", ()))
+    monkeypatch.setattr(network.frames, "LAYOUTS", known)
+    for kind in (3, 4):
+        frame = plain.make("Frame", network.fields.FRAME)()
+        frame.kind, frame.dest = kind, 5
+        frames.append(Codec(known, network.frames.KIND_BITS).encode(frame))
+    blocks = [pcapng.section(), pcapng.interface(network.link_type, "node 2")]
+    blocks += [pcapng.packet(0, 0, data, way) for data in frames
+               for way in (pcapng.OUTBOUND, pcapng.INBOUND)]  # fmt: skip
+    path = tmp_path / "air.pcapng"
+    path.write_bytes(b"".join(blocks))
+    assert [said[:2] for said in columns(runner(tmp_path / "home"), path)] == [
+        ("node 2", "node 5"), ("", "node 5"), ("node 2", ""), ("", "node 2"),
+    ]  # fmt: skip
+
+
 def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     beacon = plain.make("Frame", skin_fields.FRAME)()
     beacon.kind, beacon.dist, beacon.sq = skin.BEACON, 3, 12
@@ -250,14 +269,6 @@ def test_the_list_of_packets_says_who_sends_what_to_whom(tmp_path, tshark):
     assert sent[:2] == ("station 2", "all")
     assert "window 4" in sent[2]
     assert came[:2] == ("station 7", "all")
-    layouts = networks()["flooding"].frames
-    frame = plain.make("Frame", networks()["flooding"].fields.FRAME)()
-    frame.kind = layouts.LAYOUTS[0][0]
-    data = Codec(layouts.LAYOUTS, layouts.KIND_BITS).encode(frame)
-    blocks = [pcapng.section(), pcapng.interface(networks()["flooding"].link_type, "node 2")]
-    blocks += [pcapng.packet(0, at, data, way) for at, way in enumerate((out, into))]
-    path.write_bytes(b"".join(blocks))
-    assert [ends[:2] for ends in columns(tshark, path)] == [("node 2", ""), ("", "node 2")]
     alarm, _ = mesh_record(mesh_const.ALARM, 0, [5], bytes([12] + [0] * 17))
     alarm.link_src, alarm.link_dst, alarm.origin, alarm.dest, alarm.seq = 3, 255, 5, 254, 77
     capture = capture_of(tmp_path / "mesh.pcapng", "mesh", [mesh.encode(alarm)])

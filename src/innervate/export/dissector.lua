@@ -131,8 +131,11 @@ local function ends(self, found)
   if not there and way == INBOUND then there = name and tostring(name) end
   local said = self.ends
   if not said or not found then return here, there end
-  local function node(number) return number == said.all and "all" or string.format("node %d", number) end
-  return node(found[said.from]), node(found[said.to])
+  local function node(number, else_)
+    if number == nil then return else_ end -- not every layout has both
+    return number == said.all and "all" or string.format("node %d", number)
+  end
+  return node(found[said.from], here), node(found[said.to], there)
 end
 
 -- A type of `bits` bits, its fields, a CRC and nothing else.
