@@ -168,3 +168,11 @@ def test_a_new_network_has_numbers_that_none_beside_it_has(alone):
     ):
         texts = [(alone / name / "network.py").read_text() for name in ("one", "two", "three")]
         assert [text.partition(f"{word}=")[2].partition(",")[0] for text in texts] == numbers
+
+
+def test_what_cannot_be_read_beside_a_new_network_is_none_of_its_business(alone):
+    (alone / "other" / "network.py").mkdir(parents=True)
+    (alone / "away").mkdir()
+    (alone / "away" / "network.py").symlink_to(alone / "nowhere")
+    made(alone / "one")
+    assert sorted(path.name for path in alone.iterdir()) == ["away", "one", "other"]

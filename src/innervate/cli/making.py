@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from keyword import kwlist
 from pathlib import Path
 from typing import Any
@@ -31,9 +32,9 @@ def make(target: Path | None, on: str, over: str = "") -> int:
         work = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=target.parent))
     except OSError as error:
         raise UserError(f"{target.parent} cannot be written: {error.strerror}") from None
-    numbers = _free_numbers(target.parent)
     fresh = work / name  # which may be read by whom the user lets: `work` is the user's alone
     try:
+        numbers = _free_numbers(target.parent)
         fresh.mkdir()
         for home in [on, f"{on}_over"] if over else [on]:
             for pattern in sorted((PATTERNS / home).iterdir()):
@@ -79,9 +80,10 @@ def _free_numbers(folder: Path) -> list[tuple[str, str]]:
     By one Wireshark knows whose frames it has, by the other nodes that share keys: taken are those
     of the networks that are known, and of the folders beside.
     """
-    beside = "".join(one.read_text(encoding="utf-8", errors="replace")
-                     for one in folder.glob(f"*/{folders.NETWORK_FILE}"))  # fmt: skip
-    found = []
+    beside, found = "", []
+    for one in folder.glob(f"*/{folders.NETWORK_FILE}"):
+        with suppress(OSError):  # it is somebody's, and may be a folder
+            beside += one.read_text(encoding="utf-8", errors="replace")
     for word, most, least in (("link_type", 162, 147), ("key_kind", 255, 1)):
         taken = {str(getattr(one, word)) for one in networks().values()}
         taken |= set(re.findall(rf"\b{word} *= *(\d+)", beside))
