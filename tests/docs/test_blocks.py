@@ -159,8 +159,10 @@ def live_nodes(monkeypatch):
     )
     with (
         innervate.live_up(ring, folder=folder) as nodes,
-        innervate.live_up(skin, folder=folder) as cells,
+        innervate.live_up(skin, folder=Path("cells")) as cells,
     ):
+        for path in Path("cells").absolute().glob("*.sock"):  # a folder is for one network
+            (folder / path.name).symlink_to(path)
         until(lambda: all(told["table"] for told in nodes.status().values()))
         until(lambda: all(told.get("parent", 0) is not None for told in cells.status().values()))
         yield
