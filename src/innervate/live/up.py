@@ -75,20 +75,19 @@ class Processes:
         """Make the folder, or take it over: sockets of nodes that were killed go.
 
         Raises:
-            LiveError: it cannot be made, or a node with the name of one of ours runs there.
+            LiveError: it cannot be made, or a node runs there, whatever its name is.
         """
         try:
             self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
         except OSError as error:
             why = "is a file" if self.folder.is_file() else f"cannot be made: {error.strerror}"
             raise LiveError(f"{self.folder} {why}; name another --folder") from None
-        for name in self.names:
-            if status.answers(self.socket(name)):
+        for path in sorted(self.folder.glob("*.sock")):
+            if status.answers(path):
                 raise LiveError(
-                    f"{self.folder}: {name} of another network runs here; end it, or name "
+                    f"{self.folder}: {path.stem} of another network runs here; end it, or name "
                     "another --folder"
                 )
-        for path in self.folder.glob("*.sock"):
             if path.is_socket() and status.is_left(path):
                 path.unlink(missing_ok=True)
 
