@@ -66,6 +66,14 @@ def test_one_of_a_figure_is_told_as_one():
     assert told(2, 0, 0, 2) == ["frames sent", "frames lost", "messages delivered", "events"]
 
 
+def test_on_the_air_receptions_are_not_called_frames_as_there_are_more_of_them():
+    run = innervate.run({"kind": "rpl", "nodes": 4, "duration_s": 0.5}, plain=True)
+    shown = body.top(run.result, run.summary)
+    assert run.result.counts.is_shared
+    assert re.findall(r">(\w+ due|\w+ sent|\w+ lost)<", shown) == [
+        "receptions due", "receptions lost"]  # fmt: skip
+
+
 def test_nodes_lie_where_their_coordinates_say():
     """From 40 on, 340 wide or high at most; without any the whole graph is spread."""
     nodes = [("a", {"x_m": 3.0, "y_m": 1.0, "z_m": 9.0}), ("b", {"x_m": 7.0, "y_m": 3.0})]

@@ -48,9 +48,11 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{figure_words(result.ended_us / 1e6, 4)} s, seed {summary['seed']}"
     )
     frames, messages = summary["frames"], summary["messages"]
+    # On the air a frame counts once for each that could hear it.
+    frame, sent = ("reception", " due") if result.counts.is_shared else ("frame", " sent")
     numbers = [
-        _counted(frames["sent"], "frame", " sent"),
-        _counted(frames["lost"], "frame", " lost"),
+        _counted(frames["sent"], frame, sent),
+        _counted(frames["lost"], frame, " lost"),
         _counted(messages["delivered"], "message", " delivered"),
         _counted(summary["events"], "event"),
     ]
