@@ -47,7 +47,7 @@ def _sent(step: Step, kinds: frozenset[int]) -> Iterator[Goal]:
 
 def _is_laid(terms: Terms, kinds: list[int], known: dict[Term, Term], kind: Term) -> Term:
     if kind not in known:
-        if kind.op == "var":  # it was before the step: what that can be is not known
+        if kind.op != "pick" and _is_kept(kind):  # what was before the step is not known
             known[kind] = terms.true
         elif kind.op == "pick" and not kind.is_leafy:
             if_, a, b = (one for one in kind.args if isinstance(one, Term))
@@ -56,6 +56,12 @@ def _is_laid(terms: Terms, kinds: list[int], known: dict[Term, Term], kind: Term
         else:
             known[kind] = terms.any(*(terms.same(kind, terms.number(one)) for one in kinds))
     return known[kind]
+
+
+def _is_kept(kind: Term) -> bool:
+    """True if a number is made from what was before the step, and not only chosen by it."""
+    made = [one for one in kind.args if isinstance(one, Term) and not one.is_truth]
+    return kind.op == "var" or any(map(_is_kept, made))
 
 
 def _handled(step: Step, kinds: frozenset[int]) -> Iterator[Goal]:
