@@ -176,3 +176,10 @@ def test_what_cannot_be_read_beside_a_new_network_is_none_of_its_business(alone)
     (alone / "away" / "network.py").symlink_to(alone / "nowhere")
     made(alone / "one")
     assert sorted(path.name for path in alone.iterdir()) == ["away", "one", "other"]
+
+
+def test_over_goes_with_a_field_and_a_medium_access_that_there_is(alone, capsys):
+    for words in (["--on", "field", "--over", "tdma"], ["--over", "csma"]):
+        assert main(["new", "network", "flood", *words]) == 2
+        assert "--over can be csma, with --on field" in capsys.readouterr().err
+    assert not (alone / "flood").exists()

@@ -216,9 +216,7 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         _part(failed, counts.sent, _frame(counts), "lost"),
     ]
     said = ", ".join(filter(None, wrong))
-    if said:
-        return Headline(DEGRADED, f"{said}.", off)
-    return Headline(OK, _well(counts))
+    return Headline(DEGRADED, f"{said}.", off) if said else Headline(OK, _well(counts))
 
 
 def _down(said: str, counts: Counts) -> Headline:

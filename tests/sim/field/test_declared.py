@@ -292,13 +292,6 @@ def test_mistakes_of_a_protocol_are_one_line(bare, capsys, file, old, new, says)
     assert re.search(says, line), line
 
 
-def test_over_goes_with_a_field_and_a_medium_access_that_there_is(alone, capsys):
-    for words in (["--on", "field", "--over", "tdma"], ["--over", "csma"]):
-        assert main(["new", "network", "flood", *words]) == 2
-        assert "--over can be csma, with --on field" in capsys.readouterr().err
-    assert not (alone / "flood").exists()
-
-
 @pytest.fixture
 def telling(alone, capsys):
     """A network above CSMA that reports what became of its frames."""

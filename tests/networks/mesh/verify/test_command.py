@@ -60,7 +60,7 @@ def test_what_cannot_be_asked_is_refused_at_once(keys):
 @pytest.mark.parametrize(("ended", "told", "unit", "rest"), [
     ("complete", None, "states", ["all states"]), ("walked", None, "walks ", None),
     ("broken", SimpleNamespace(sentences=["It goes."], lines=lambda: ["1. It goes."]), "states",
-     ["BROKEN after 1 events", "1. It goes."]),
+     ["BROKEN after 1 event", "1. It goes."]),
 ])  # fmt: skip
 def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, rest, monkeypatch):
     tally = Tally(states=1234, generated=5678, depth=9, wall_s=2.34, ended=ended)
