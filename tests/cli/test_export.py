@@ -1,6 +1,7 @@
 """`innervate export`: what it writes, and what it says of what it cannot."""
 
 import json
+import re
 
 import networkx
 import pytest
@@ -63,6 +64,8 @@ def test_the_dissector_knows_the_network_beside_the_scenario(own, monkeypatch):
 def test_two_networks_with_one_link_type_have_no_dissector(alone, capsys):
     for name in ("gossip", "talk"):
         made(alone / name)
+        given = re.search(r"link_type=\d+", (alone / name / "network.py").read_text())[0]
+        Own(alone / name).change("network.py", given, "link_type=162")
     both = ["--network", "gossip", "--network", "talk"]
     assert main(["export", "--dissector", "here", *both]) == 2
     assert (

@@ -68,14 +68,14 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
             await heals(network, 2, 2)
             await network.change(network.links.index((0, 4)), "cut")
             await until(lambda: asked(network, "c0")["dist"] == 3, FIRST_S)
-            await heals(network, 2, 4)
+            await heals(network, 0, 4)
             board = children(network.processes["c1"].pid)
             assert len(board) == 1
             await network.end_node("c1", gently=False)
             await until(lambda: not Path(f"/proc/{board[0]}").exists(), FIRST_S)
-            await until(lambda: asked(network, "pc")["cells"] == [2, 3], FIRST_S)
+            await until(lambda: asked(network, "pc")["cells"] == [0, 3], FIRST_S)
             await network.begin_node("c1")
-            await heals(network, 2, 4)
+            await heals(network, 0, 4)
             got = samples(network)
             await until(lambda: samples(network) > got + 20, FIRST_S)
             os.kill(int(children(network.processes["c1"].pid)[0]), signal.SIGKILL)
@@ -85,7 +85,7 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
             assert re.fullmatch(
                 r"c1: its board is gone: \S+qemu-system-arm ended \(SIGKILL\)", said
             )
-            await until(lambda: asked(network, "pc")["cells"] == [2, 3], FIRST_S)
+            await until(lambda: asked(network, "pc")["cells"] == [0, 3], FIRST_S)
         finally:
             await network.down()
 

@@ -39,11 +39,13 @@ export class Timeline {
     const theme = colours.ground;
     const last = network.timeline.at(-1);
     const { t_s: to, speed, at_end: atEnd } = network.now;
-    const state = [to, speed, atEnd, network.timeline.length, last?.to_s, width, height, theme].join();
+    const kept = [network.timeline.length, last?.to_s];
+    const state = [to, speed, atEnd, ...kept, width, height, theme].join();
     if (state === this.drawn) return;
     this.drawn = state;
     this.context = prepared(this.canvas, width, height);
-    const all = to - (network.timeline[0]?.from_s ?? 0); // at the end all of it, not a corner
+    const all = to - (network.timeline[0]?.from_s ?? 0);
+    // At the end all that was sent, and not a corner of an empty window.
     const wanted = atEnd ? all : WALL_S * (speed || SPAN_S[1]);
     const span = Math.max(SPAN_S[0], Math.min(SPAN_S[1], wanted));
     const from = Math.max(0, to - span);

@@ -92,7 +92,7 @@ def test_every_count_of_packets_has_a_case():
     assert {name for *_, expected in PROVED for name in expected} == set(COUNTS)
 
 
-@pytest.mark.parametrize(("lost", "said"), [(0, ""), (1, "1 packets lost silently")])
+@pytest.mark.parametrize(("lost", "said"), [(0, ""), (1, "1 packet lost silently")])
 def test_packets_lost_silently_are_trouble(lost, said):
     assert trouble({"lost_silently": lost}) == said
 

@@ -106,7 +106,7 @@ def answer_of(needed, carries, weak=(), rows=1):
         {"isolated_max": None},
     )]  # fmt: skip
     asked = Of(pitch_mm=28.0, reach_mm=60.0, loss_max=0.02, recovery_ms_max=50.0, ports=(1, 2, 3))
-    return Of(question=asked, frames=None, cells=3, needed=needed, carries=carries,
+    return Of(question=asked, frames=None, cells=3, needed=needed, carries=carries, is_single=False,
               table=pl.DataFrame(made[:rows]), where={1: ["n1 W"], 2: ["n1 W", "n3 E"]},
               graphs={1: GRAPH, 2: GRAPH}, weak={1: list(weak), 2: []})  # fmt: skip
 

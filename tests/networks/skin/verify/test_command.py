@@ -61,7 +61,7 @@ def test_how_far_it_came(made, said):
 
 def test_what_broke_is_told_event_by_event_or_by_its_rounds():
     lines = command._lines(case(tally("broken"), told=BROKEN))
-    assert lines[0].endswith("BROKEN after 1 events")
+    assert lines[0].endswith("BROKEN after 1 event")
     assert lines[1:] == ["    1. The PC ticks.", "    So: closed loop"]
     lines = command._lines(case(fairly=fair("broken")))
     assert lines[1:] == ["    BROKEN: routes are not shortest after 5 fair rounds"]
