@@ -15,7 +15,7 @@ from typing import NamedTuple
 PROTOCOL = "innervate.networks.mesh.protocol."
 LIVE = "innervate.live."
 MESH = "innervate.networks.mesh.live."
-SEEDS = 12
+SEEDS = 30
 SMALL = {"nodes": 6, "storms": 1, "storm_s": 20, "calm_s": 0, "rate": 20}
 OF_KIND = {
     "mesh": SMALL,
@@ -39,6 +39,8 @@ class Fault(NamedTuple):
     kind: str = "mesh"
 
 
+# The router's window is looked at by tests/networks/mesh/protocol/test_parts.py: live nodes know
+# copies by themselves (decision 0060), so that its faults do not show here.
 FAULTS = (
     Fault("a message in order is acknowledged when it comes", PROTOCOL + "messages",
           "        if not is_ordered(frame):\n", "        if 1:\n",
@@ -65,13 +67,6 @@ FAULTS = (
     Fault("a delivered message's receipt is kept", MESH + "outgoing",
           "receipt = self.receipts.pop(handle, None)", "receipt = self.receipts.get(handle)",
           LOSSES),
-    Fault("what is behind the newest is new", PROTOCOL + "duplicates",
-          "    if node.window[word] & bit:\n        return 0\n", "", LOSSES),
-    Fault("the newest is new again", PROTOCOL + "duplicates",
-          "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n",
-          LOSSES),
-    Fault("the window begins anew with every packet", PROTOCOL + "duplicates",
-          "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n", LOSSES),
     Fault("nothing waits for its turn", MESH + "order",
           "        elif not self._had(before):\n", "        elif False:\n",
           {**LOSSES, "in_order": True}),

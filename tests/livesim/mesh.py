@@ -4,7 +4,7 @@ from collections import Counter
 from itertools import combinations
 
 from innervate.live import files
-from innervate.live.receipts import FINAL
+from innervate.live.receipts import DELIVERED, FINAL
 from tests.livesim.checks import Messages
 from tests.livesim.host import TERM
 from tests.livesim.stage import GRACE_S, Stage
@@ -232,8 +232,8 @@ class Mesh(Stage):
         host.signal(TERM)
         self.world.run(3.0)
         for one in sent:
-            if one.receipt.state not in FINAL:
-                self.world.fail(f"{host.name} ended before message {one.ident} had its end")
+            if one.receipt.state != DELIVERED:
+                self.world.fail(f"{host.name} ended before message {one.ident} was delivered")
         self.world.check()
 
     def end(self):
