@@ -44,10 +44,10 @@ def parameters(n, capacity, **more):
         name: [min(max(0, low), high)] * length if length else min(max(0, low), high)
         for name, length, low, high, *_ in mesh_fields.PARAMS
     }
-    words = mesh_fields.words(capacity)
+    row_bytes = mesh_fields.row_bytes(capacity)
     needed = {
         "nodes": n,
-        "row": words,
+        "row": row_bytes,
         "told": 1,
         "tick_us": TICK_US,
         "width": capacity,

@@ -124,7 +124,7 @@ def test_what_does_not_fit_onto_a_board_is_refused(changes, why):
 def test_a_boards_parameters_are_a_nodes_with_room_for_its_class():
     made = board.node_parameters(32, {"nodes": 5, "monitor": 4, "queue": fields.QUEUE})
     assert (made["width"], made["row"], made["places"]) == (
-        32, fields.words(32), fields.places(32))  # fmt: skip
+        32, fields.row_bytes(32), fields.places(32))  # fmt: skip
     assert (made["queue"], made["kept"], made["monitor"]) == (fields.QUEUE, fields.WAITING, 4)
     assert board.node_parameters(32, {"nodes": 5, "monitor": const.MONITOR})["monitor"] == (
         const.MONITOR)  # fmt: skip
@@ -160,7 +160,7 @@ def test_a_live_node_has_the_rooms_that_its_parameters_say():
     assert [one[:2] for one in role.state] == [one[:2] for one in declared]
     rooms = {"q_room": fields.room(100), "wait_room": fields.wait_room(100)}
     assert always(role.state) == {"places": 5, "kept": 3, **rooms}
-    sizes = {"width": 64, "row": fields.words(64), "places": 7}
+    sizes = {"width": 64, "row": fields.row_bytes(64), "places": 7}
     assert always(role.params) == {**sizes, "queue": 5, "kept": 3}
     assert (role.gate, role.frame, role.item) == (
         fields.gate(64, 7), fields.frame(100), fields.item(100))  # fmt: skip

@@ -76,7 +76,7 @@ def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
             )
     if wanted.get("mtu", MTU) > MTU:
         raise LiveError(f"{where}: mtu={wanted['mtu']} is more than a board's {MTU} bytes")
-    own = {"width": nodes, "row": fields.words(nodes), "places": fields.places(nodes)}
+    own = {"width": nodes, "row": fields.row_bytes(nodes), "places": fields.places(nodes)}
     return {**mesh_parameters(count, wanted, where), **own}
 
 
@@ -111,7 +111,7 @@ def _state(size: int, queue: int, kept: int, mtu: int, most: int) -> Declaration
 
 def _params(size: int, queue: int, kept: int, most: int) -> Declaration:
     """What all nodes of this class have in common: how much each has room for."""
-    sizes = {"width": size, "row": fields.words(size), "places": most or fields.places(size)}
+    sizes = {"width": size, "row": fields.row_bytes(size), "places": most or fields.places(size)}
     return _only(fields.PARAMS, {**sizes, "queue": queue, "kept": kept})
 
 

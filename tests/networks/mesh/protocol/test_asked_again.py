@@ -89,7 +89,7 @@ def test_no_other_round_counts(late):
     frame.origin, frame.length = 3, 6
     frame.body[:6] = [node.epoch, 0, node.round - late, 3 << 4 | 1, 1, -60 & 255]
     gate.heard = [0] * len(gate.heard)
-    on_response(node, gate, bench.params, frame, bench.out)
+    on_response(node, gate, bench.params, bench.now, frame, bench.out)
     assert not is_heard(gate, bench.params, 1, 3)
 
 

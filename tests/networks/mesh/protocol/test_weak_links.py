@@ -77,7 +77,7 @@ def told(flags, rssi, listed, discovery=LIST, loud=LEAST):
     body = head + [byte for who in listed for byte in (who, loud & 255)]
     frame.length, frame.body[: len(body)] = len(body), body
     gate.heard = [0] * len(gate.heard)
-    on_response(node, gate, bench.params, frame, bench.out)
+    on_response(node, gate, bench.params, bench.now, frame, bench.out)
     for who in listed:
         assert is_heard(gate, bench.params, who, 2) or discovery != LIST
     pairs = [is_heard(gate, bench.params, *pair) for pair in ((2, 1), (1, 0), (0, 1))]

@@ -59,7 +59,7 @@ def test_a_network_is_a_scenario_with_its_settings():
 
 def test_parameters_are_the_scenarios_in_a_class_of_its_size():
     found = mesh_model.parameters(MeshModel(LINE, reliable=False))
-    assert (found["width"], found["places"], found["row"]) == (3, 3, mesh_fields.words(3))
+    assert (found["width"], found["places"], found["row"]) == (3, 3, mesh_fields.row_bytes(3))
     assert (found["reliable"], found["points"]) == (0, 0)
     watched = mesh_model.parameters(MeshModel(LINE, robot=0))
     assert (watched["reliable"], watched["points"], watched["watch"]) == (1, 4, 0)

@@ -8,7 +8,7 @@ from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
-from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, words
+from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, row_bytes
 from innervate.networks.mesh.rings import mistake, opened
 
 IP: dict[str, int] = {
@@ -67,7 +67,7 @@ def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     check_parameters(changes, (field for field in PARAMS if field[0] not in OURS), where)
     width = next(size for size in CLASSES if nodes <= size)
     corners = {name: [0] * POINTS for name in ("px", "py", "after")}
-    own = {"nodes": nodes, "width": width, "row": words(width), "places": width}
+    own = {"nodes": nodes, "width": width, "row": row_bytes(width), "places": width}
     made = {**IP, **corners, **own, **changes}
     if "faint" not in changes:
         made["faint"] = min(made["min_rssi"] + 1, 127) if made["discovery"] == LIST else -128

@@ -14,13 +14,13 @@ wait, notes whom it heard, and responds once (A1), up the neighbours that advert
 (A2). A link counts if both directions were reported within three rounds, or a response has crossed
 it that no faint link brought (`WEAK`; decision 0052); but whom nobody heard in this round, of two
 that did before and responded, is gone (decision 0064). With `asks` the gateway asks those once more
-by name that others heard and that did not respond; nobody else responds (decision 0059).
+by name that others heard and that did not respond; nobody else responds (decision 0059). Who knows
+no round asks for it: neighbours say their requests again, it joins late (decision 0065).
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
-recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in parts that are
-acknowledged, to the nearest of those first that were tried least; a whole table is in force at once
-(A10). Instead, all can have the whole graph, or none a table, and the gateway writes routes into
-packets.
+recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in acknowledged
+parts, to the nearest of those first that were tried least; a whole table is in force at once (A10).
+Instead, all can have the whole graph, or none a table, and the gateway writes routes into packets.
 
 *Forwarding.* A hop takes a packet over by an ack; after three transmissions without one (A3) the
 neighbour is suspect, and the same packet goes another way (A4): recipient, table, alternate,
@@ -49,20 +49,17 @@ brings a part of the graph, until it has all. Questions in vain, more where answ
 it leads. Its first request makes all tables its own: nobody responds but who has none, and is sent
 one of the graph that came with the answers; all have new ones after the next round (decision 0053).
 Nobody looks for the gateway that is `gone`, or goes by it, until it is heard, or a table leads to
-it, or the round after the next begins.
-Questions and answers go before all else: a gateway that has much to send is not dead.
+it, or the round after the next begins. Questions and answers go before all else.
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
-raised again until the monitor has acknowledged them. Who hears a robot outside is its witness
-(A13).
+raised again until the monitor acknowledged them. Who hears a robot outside is its witness (A13).
 
 `node.py` has the five functions and hands on: `round.py`, `gateway.py`, `paths.py`, `jobs.py`,
 `graph_jobs.py`, `pack.py`, `table.py` discovery and tables; `relay.py`, `send.py`, `route.py`,
 `search.py`, `upward.py`, `overheard.py` forwarding; `queue.py` what waits to be sent;
 `messages.py`, `retransmission.py`, `timeout.py` end to end; `neighbours.py`, `duplicates.py`,
 `backoff.py`, `hop.py`, `link_quality.py` what is remembered; `standby.py` who leads next;
-`alarm.py`, `fence.py`, `watch.py` the fence; `frames.py` bytes.
-Below it lies an access protocol: `csma.py`, or one of the radio's.
+`alarm.py`, `fence.py`, `watch.py` the fence; `frames.py` bytes. Below: `csma.py`, or a radio's.
 
 States
 ======
@@ -131,6 +128,9 @@ A hop for which there is no room gets no ack, so that another is tried.
 | off        | on, `rank` 0, first time        | `on_start`, `lead`: an epoch     | leads          |
 |            |                                 | nobody has had                   |                |
 | off        | on, else                        | `on_start`                       | unknown        |
+| unknown    | `TICK`, the 1st, 2nd, 4th, ...  | `ask_round`: an empty `REQUEST`  |                |
+| any other  | an empty `REQUEST`              | `tell_round`: ours once more     |                |
+| a `rank`   | `TICK`, it led, neighbours say  | `on_tick`, `tick`, `lead`        | leads          |
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
 | a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns patience   |                |
@@ -154,6 +154,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            | before                          |                                  |                |
 | new round  | `REQUEST` that names others     | `is_spared`, `join`: no response | NOTHING        |
 | IDLE       | `TICK`, the period is over      | `start_round`                    | COLLECTING     |
+| IDLE       | `RESPONSE`, without a table     | `admit`: its table, or a round   |                |
 | COLLECTING | `RESPONSE`                      | `on_response`: `note_list`,      |                |
 |            |                                 | unless `WEAK` `note_path`        |                |
 | COLLECTING | `ROUND`, with `asks`, some did  | `collect`, `ask_again`: by name  | ASKED          |
@@ -233,7 +234,7 @@ Frames
 |-----------------|------------------------------|-------------------------------------------------|
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
 |                 |                              | who is asked by name; flag `PRIORITY`: tables   |
-|                 |                              | stay; more copies                               |
+|                 |                              | stay; more copies. Empty: which round is it?    |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud; flag `WEAK`: came over a faint link       |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |
@@ -301,8 +302,7 @@ Constants and settings
 | `GATHERED = 16`, `ACK_MORE_BYTES = 3`,         | acks that go together: of hops, end to end      |
 | `END_ACKS_BYTES = 24`                          |                                                 |
 | `FORWARDED = 64`, `SKIPS = 16`                 | duplicate cache; failed and bad neighbours      |
-| `WINDOW_WORDS = 5`, `BITS = 15`,               | words of 15 bits: 75 numbers, 254 nodes         |
-| `ADJACENCY_WORDS = 17`                         |                                                 |
+| `WINDOW_WORDS = 5`, `BITS = 15`, `BITS = 8`    | words of 15 bits: 75 numbers; nodes in a byte   |
 | `AHEAD_MAX = 64`                               | numbers: no packet goes out so far ahead of one |
 |                                                | still tried                                     |
 | `ANEW = 320`                                   | numbers behind the window: a FIRST there is a   |

@@ -23,7 +23,6 @@ GATHERED = 16
 FORWARDED = 64
 SKIPS = 16
 WINDOW_WORDS = 5
-ADJACENCY_WORDS = 17  # of 15 bits: 254 nodes
 POINTS = 48  # corners of a fence, holes included
 
 
@@ -198,15 +197,15 @@ def tables(n):
         ("parts", 0, 0, 65535, "bits", "its fragments that are here"),
         ("part_count", 0, 0, 15, "fragments", "how many it has"),
         ("ready", 0, 0, 1, "flag", "it is whole and waits to be activated"),
-        ("edges", n * words(n), 0, 32767, "bits", "graph: adjacency, 15 nodes a word"),
+        ("edges", n * row_bytes(n), 0, 255, "bits", "graph: adjacency, 8 nodes a byte"),
         ("far", n, 0, 255, "hops", "scratch: distances"),
         ("line", n, 0, 253, "node", "scratch: nodes in order of distance"),
     )
 
 
-def words(n):
-    """Words of 15 bits in a row of the adjacency matrix."""
-    return (n + 14) // 15
+def row_bytes(n):
+    """Bytes in a row of the adjacency matrix."""
+    return (n + 7) // 8
 
 
 def packets(n, kept=WAITING, mtu=MTU):
@@ -217,7 +216,7 @@ def packets(n, kept=WAITING, mtu=MTU):
         ("window", n * WINDOW_WORDS, 0, 32767, "bits", "per origin: which behind it were"),
         ("heard_seq", n, 0, 65535, "number", "per origin: the seq that its window began with"),
         ("idle", n, 0, 255, "ticks", "per origin: till the window is cleared; 0 = it is"),
-        ("met", words(n), 0, 32767, "bits", "recipients that acknowledged something"),
+        ("met", row_bytes(n), 0, 255, "bits", "recipients that acknowledged something"),
         ("done_origin", FORWARDED, 0, 255, "node", "forwarded: origin; 255 = free place"),
         ("done_seq", FORWARDED, 0, 65535, "number", "forwarded: seq"),
         ("done_kind", FORWARDED, 0, 255, "type", "forwarded: type, 64 x parity, flood instance"),
@@ -305,7 +304,7 @@ def gate(n, most=0):
     """What a gateway, and only a gateway or standby, has besides; of so many neighbours a node."""
     return (
         ("heard", (n * n + 3) // 4, 0, 255, "rounds", "who was heard by whom, 4 pairs a byte"),
-        ("known", n * words(n), 0, 32767, "bits", "adjacency after the newest round"),
+        ("known", n * row_bytes(n), 0, 255, "bits", "adjacency after the newest round"),
         ("dist", n * n, 0, 255, "hops", "from everyone to everyone; 255 none"),
         ("near", most or places(n), 0, 253, "node", "scratch: a node's neighbours, by number"),
         ("near_count", 0, 0, most or places(n), "nodes", "... how many"),
@@ -338,7 +337,7 @@ def gate(n, most=0):
 
 PARAMS = (
     ("nodes", 0, 1, 254, "nodes", "ids are 0 to nodes - 1"),
-    ("row", 0, 1, 17, "words", "of an adjacency row in this capacity class"),
+    ("row", 0, 1, 32, "bytes", "of an adjacency row in this capacity class"),
     ("places", 0, 1, 254, "neighbours", "in the neighbour table of this class"),
     ("width", 0, 1, 254, "nodes", "the capacity class"),
     ("mtu", 0, 64, MTU_MAX, "bytes", "a whole frame"),

@@ -9,18 +9,19 @@ from innervate.networks.mesh.protocol.constants import (
     PRIORITY,
     REPORT_GRAPH,
     REPORT_ROUND,
-    REQUEST,
     ROUND,
     TABLE_FREE,
     WEAK,
 )
-from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, signed8
+from innervate.networks.mesh.protocol.frames import add8, get16, signed8
 from innervate.networks.mesh.protocol.jobs import give_jobs, install_own, note_lost_table, pump
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.protocol.paths import (
+    FAR,
     begin_round,
     build_graph,
     forget_heard,
+    hops,
     is_fresh,
     is_heard,
     measure_all,
@@ -30,8 +31,13 @@ from innervate.networks.mesh.protocol.paths import (
     pair_bytes,
     trusts_lists,
 )
-from innervate.networks.mesh.protocol.queue import compose, kick
-from innervate.networks.mesh.protocol.round import REQUEST_BYTES, begin, begin_anew
+from innervate.networks.mesh.protocol.queue import kick
+from innervate.networks.mesh.protocol.round import (
+    REQUEST_BYTES,
+    begin,
+    begin_anew,
+    compose_request,
+)
 from innervate.networks.mesh.protocol.search import is_edge
 from innervate.networks.mesh.protocol.table import keep_table
 from innervate.networks.mesh.protocol.upward import FAINT_DB
@@ -39,7 +45,6 @@ from innervate.networks.mesh.protocol.upward import FAINT_DB
 IDLE = 0
 COLLECTING = 1
 ASKED = 2
-JITTER_UNIT_US = 10_000
 ASKED_MAX = 20  # by name: as many fit into a request at an MTU of 64
 COPIES_MORE = 4  # of the request of who takes over: the channel is full of what looks for the dead
 
@@ -112,14 +117,8 @@ def request(node, gate, params, now, step, out):
     node.depth = 1
     begin_anew(node, params)
     gate.step = step
-    i = compose(node, now, ALARMS, REQUEST, ALL, flags, out)  # a place, whatever waits
+    i = compose_request(node, params, now, ALARMS, flags, out)  # a place, whatever waits
     if i >= 0:
-        add_hop(node, i)
-        add8(node, i, node.number)
-        add8(node, i, node.epoch)
-        add16(node, i, node.round)
-        add16(node, i, node.active)
-        add8(node, i, params.jitter_us // JITTER_UNIT_US)
         node.q_copies[i] = copies
     set_timer(out, ROUND, (now + params.collect_us) & MASK30)
     return i
@@ -169,7 +168,7 @@ def is_faint(params, frame):
     return frame.flags & WEAK != 0 or frame.rssi < params.min_rssi - FAINT_DB
 
 
-def on_response(node, gate, params, frame, out):
+def on_response(node, gate, params, now, frame, out):
     """A discovery response has reached us."""
     if frame.length < 4 or frame.body[0] != node.epoch:
         return
@@ -185,6 +184,20 @@ def on_response(node, gate, params, frame, out):
     # A faint way counts for who hears nobody well, and tells of one that it hears as faintly.
     if loudest < params.min_rssi or not is_faint(params, frame):
         note_path(gate, params, frame, node.number)
+    if gate.step == IDLE and frame.table_ver == 0:
+        admit(node, gate, params, now, frame, out)
+
+
+def admit(node, gate, params, now, frame, out):
+    """Somebody came between two rounds: if the graph has it, it is sent its table now.
+
+    Else the next round is as soon as after a change.
+    """
+    if hops(gate, params, node.number, frame.origin) == FAR:
+        stretch(gate, params, 1)
+    elif params.mode != TABLE_FREE:
+        give_jobs(node, gate, params, 0, out)
+        pump(node, gate, params, now, out)
 
 
 def collect(node, gate, params, now, out):
@@ -245,5 +258,6 @@ def tick(node, gate, params, now, out):
         if gate.wait == 0:
             start_round(node, gate, params, now, out)
         return
-    if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:
+    silence = params.dead + max(0, node.rank - 1) * params.dead_step
+    if node.quiet >= silence or node.gateway == node.number:  # we led, neighbours say
         lead(node, gate, params, now, out)

@@ -93,7 +93,7 @@ from innervate.networks.mesh.protocol.retransmission import (
     due_retransmission,
     retransmit,
 )
-from innervate.networks.mesh.protocol.round import on_request, step
+from innervate.networks.mesh.protocol.round import ask_round, on_request, step, tell_round
 from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
 from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_of_gateway, on_guard
@@ -222,6 +222,8 @@ def on_broadcast(node, params, now, frame, k, out):
     if kind == REQUEST:
         if frame.length >= 7 and frame.body[0] < params.nodes:
             on_request(node, params, now, frame, k, out)
+        elif frame.length == 0:
+            tell_round(node, params, now, out)
     elif kind == ALARM:
         if frame.flags & FLOOD:
             on_flood(node, params, now, frame, k, out)
@@ -283,7 +285,7 @@ def on_upward(node, gate, params, now, frame, out):
                 node.q_flags[i] = node.q_flags[i] | WEAK
             send_up(node, params, now, i, out)
     elif frame.kind == RESPONSE:
-        on_response(node, gate, params, frame, out)
+        on_response(node, gate, params, now, frame, out)
     else:
         on_ack(node, gate, params, now, frame, out)
 
@@ -332,7 +334,7 @@ def on_tick(node, gate, params, now, out):
     sweep(node, params)
     end_backoff(node, now)
     age(node, params)
-    if node.ticks % (UNREACHABLE_TICKS << node.search_backoff) == 0:
+    if node.ticks & ((UNREACHABLE_TICKS << node.search_backoff) - 1) == 0:
         retry_unreachable(node)
     watch(node, params, now, out)
     if node.robot and node.placed:
@@ -340,6 +342,8 @@ def on_tick(node, gate, params, now, out):
         beacon(node, params, now, out)
     if not node.leading:
         node.quiet = min(node.quiet + 1, 65_535)
+        if not node.known and node.quiet & (node.quiet - 1) == 0:
+            ask_round(node, now, out)
     if node.rank >= 0:
         tick(node, gate, params, now, out)
     kick(node, params, now, out)

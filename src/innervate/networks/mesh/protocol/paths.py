@@ -6,10 +6,10 @@ Dijkstra's algorithm over hop counts is a breadth-first search; among equals the
 from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import LOW15
 from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
+from innervate.networks.mesh.protocol.search import BITS
 
 FAR = 255
 NONE = 255
-BITS = 15
 ROUNDS_VALID = 3
 LOW_BITS = 85  # of each of four pairs of bits
 
@@ -100,9 +100,9 @@ def list_near(gate, params, a):
     if gate.near_of != a:
         gate.near_of = a
         gate.near_count = 0
-        for word in range(params.row):
-            bits = gate.known[a * params.row + word]
-            b = word * BITS
+        for byte in range(params.row):
+            bits = gate.known[a * params.row + byte]
+            b = byte * BITS
             while bits:
                 if bits & 1:
                     gate.near[gate.near_count] = b

@@ -61,15 +61,11 @@ def buffer_sent(node, params, now, w, i, handle, out):
     node.wait_seq[w] = node.q_seq[i]
     node.wait_dest[w] = node.q_dest[i]
     node.wait_flags[w] = node.q_flags[i]
-    node.wait_tries[w] = 1
-    node.wait_hop[w] = 0
-    node.wait_at[w] = now
-    node.wait_sent[w] = now
-    node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
-    node.wait_handle[w] = handle
     node.wait_length[w] = node.q_length[i]
     for k in range(node.q_length[i]):
         node.wait_body[w * node.wait_room + k] = node.q_body[i * node.q_room + k]
+    begin_tries(node, now, w, 1, handle)
+    node.wait_due[w] = (now + timeout(node, params, w)) & MASK30
     arm_retry(node, now, out)
 
 
@@ -80,17 +76,22 @@ def buffer_unsent(node, params, now, w, item, dest, flags, out):
     node.wait_seq[w] = node.seq
     node.wait_dest[w] = dest
     node.wait_flags[w] = flags
-    node.wait_tries[w] = 0
-    node.wait_hop[w] = 0
-    node.wait_at[w] = now
-    node.wait_sent[w] = now
-    node.wait_due[w] = (now + (params.e2e_us >> 2)) & MASK30
-    node.wait_handle[w] = item.handle
     node.wait_length[w] = item.length
     for k in range(item.length):
         node.wait_body[w * node.wait_room + k] = item.body[k]
+    begin_tries(node, now, w, 0, item.handle)
+    node.wait_due[w] = (now + (params.e2e_us >> 2)) & MASK30
     report(out, REPORT_ACCEPTED, item.handle, node.seq)
     arm_retry(node, now, out)
+
+
+def begin_tries(node, now, w, tries, handle):
+    """The message in place w is new, and was sent `tries` times."""
+    node.wait_tries[w] = tries
+    node.wait_hop[w] = 0
+    node.wait_at[w] = now
+    node.wait_sent[w] = now
+    node.wait_handle[w] = handle
 
 
 def is_ahead(node, dest):
@@ -262,11 +263,11 @@ def note_arrived(node, params, now, who, seq, out):
 
     An ack that answers nothing of ours may be for who we were before: it says no such thing.
     """
-    word = who // BITS
+    byte = who // BITS
     for w in range(node.kept):
         if node.wait_kind[w] != FREE and node.wait_seq[w] == seq:
             if node.wait_dest[w] == who or node.wait_kind[w] == ALARM:
-                node.met[word] = node.met[word] | 1 << (who % BITS)
+                node.met[byte] = node.met[byte] | 1 << (who % BITS)
                 learn_round_trip(node, params, w, now)
                 if is_own_crossing(node, w):
                     node.heard_out = 1

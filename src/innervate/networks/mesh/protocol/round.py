@@ -35,6 +35,7 @@ RESPOND = 2
 COUNTED_MAX = 15  # listed neighbours, in four bits; more go to the packet's end
 REQUEST_BYTES = 7  # and behind them who is asked by name
 SLACK = 2  # ticks: nodes count them from different moments
+JITTER_UNIT_US = 10_000
 UPLINKS_TOLD = 3  # table-free: a node tells the gateway no more than that
 
 
@@ -126,6 +127,35 @@ def on_request(node, params, now, frame, k, out):
             join(node, params, now, frame.path_len + 1, kept, out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
+
+
+def ask_round(node, now, out):
+    """We know of no round: a request of nobody, without a body, asks all in reach for theirs."""
+    i = compose(node, now, CONTROL, REQUEST, ALL, 0, out)
+    if i >= 0:
+        add_hop(node, i)
+
+
+def tell_round(node, params, now, out):
+    """A neighbour asks for the round that we know: our request once more, unless one waits."""
+    if node.depth != UNHEARD and queued_request(node) < 0:
+        i = compose_request(node, params, now, CONTROL, 0, out)
+        if i >= 0:
+            node.q_due[i] = (now + draw(node, params.jitter_us + 1)) & MASK30
+
+
+def compose_request(node, params, now, rank, flags, out):
+    """A request of the present round, its path as long as the way to the gateway; or -1."""
+    i = compose(node, now, rank, REQUEST, ALL, flags, out)
+    if i >= 0:
+        for _ in range(node.depth):
+            add_hop(node, i)
+        add8(node, i, node.gateway)
+        add8(node, i, node.epoch)
+        add16(node, i, node.round)
+        add16(node, i, node.active)
+        add8(node, i, params.jitter_us // JITTER_UNIT_US)
+    return i
 
 
 def is_spared(node, frame):

@@ -8,7 +8,7 @@ from innervate.networks.mesh.protocol.frames import add8, was_at
 from innervate.networks.mesh.protocol.neighbours import is_suspect
 
 FAR = 255
-BITS = 15
+BITS = 8  # of a byte of a row
 
 
 def is_edge(node, params, a, b):
@@ -77,11 +77,11 @@ def measure_distances(node, params, i, dest, here, anew):
         at = at + 1
         if a == here:
             continue
-        for word in range(params.row):
-            bits = node.edges[a * params.row + word]
+        for byte in range(params.row):
+            bits = node.edges[a * params.row + byte]
             if bits:
                 for b in range(BITS):
-                    c = word * BITS + b
+                    c = byte * BITS + b
                     if bits >> b & 1 and c < params.nodes and node.far[c] == FAR:
                         if not has_failed(node, i, c) and not (anew and was_at(node, i, c)):
                             node.far[c] = node.far[a] + 1

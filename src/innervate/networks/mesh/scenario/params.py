@@ -12,7 +12,7 @@ from innervate.networks.mesh.protocol.fields import (
     QUEUE,
     WAITING,
     places,
-    words,
+    row_bytes,
 )
 from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
@@ -85,7 +85,7 @@ def parameters(
     min_rssi = chosen.value("min_rssi_dbm", min_rssi_dbm)
     params: dict[str, Any] = {
         "nodes": nodes,
-        "row": words(width),
+        "row": row_bytes(width),
         "places": places(width),
         "width": width,
         "told": int(profile.collisions),
