@@ -2,6 +2,7 @@
 
 from innervate.kernel.bits import mix
 from innervate.networks.mesh.protocol.frames import copy_frame
+from innervate.networks.mesh.protocol.search import BITS
 from innervate.sim import taps
 from innervate.sim.field.medium import breaks
 from innervate.sim.field.states import ON_AIR
@@ -9,7 +10,6 @@ from innervate.sim.field.states import ON_AIR
 BROKEN_TWICE = 4  # a packet was delivered twice
 BROKEN_BELOW = 7  # the channel below says what
 
-WORD_BITS = 15
 DUPLICATES_HASH = 0x5EE
 
 
@@ -122,7 +122,7 @@ def record_round(world, node, time):
     links = both = 0
     for a in range(run.nodes):
         for b in range(a + 1, run.nodes):
-            bit = gate.known[a * run.row + b // WORD_BITS] >> (b % WORD_BITS) & 1
+            bit = gate.known[a * run.row + b // BITS] >> (b % BITS) & 1
             links += bit
             both += bit & world.good[a * run.nodes + b]
     row = world.rounds[run.rounds]
