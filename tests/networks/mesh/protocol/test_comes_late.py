@@ -117,7 +117,7 @@ def test_neighbours_that_are_asked_by_many_say_it_once():
     for k in range(2, 8):
         bench.start(k, cause=1)
     bench.run(CALM + S)
-    before = len(questions(bench))
+    before = len(questions(bench, CALM))
     told = [at for at, i, f in bench.sent if f.kind == REQUEST and i == 1 and at > CALM]
     assert before == 6 and len(told) <= 2 * bench.params.copies
     bench.run(CALM + 3 * S)

@@ -242,7 +242,7 @@ def test_every_draw_out_of_few_is_tried_with_every_other():
 
 @pytest.mark.parametrize(("path", "broken"), [
     ([], 0), ([1], 0), ([1, 2, 1], 0), ([1, 2, 1, 2], local.BROKEN_ROUND),
-    ([0, 1, 2, 0, 1], local.BROKEN_ROUND), ([0, 1, 2, 0, 2], 0),
+    ([0, 1, 2, 0, 1], local.BROKEN_ROUND), ([0, 1, 2, 0, 2], 0), ([2, 2, 2, 2], 0),
 ])  # fmt: skip
 def test_a_packet_that_takes_a_hop_twice_goes_round(path, broken):
     assert local.goes_round(Of(path=bytes(path))) == broken

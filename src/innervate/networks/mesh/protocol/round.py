@@ -49,10 +49,13 @@ def is_newer(node, params, gateway, epoch, round):
     """1 if a round comes after the one we know: higher epoch, then lower id, then round.
 
     Who has heard nothing for about as long as a gateway waits that switches on again takes any: it
-    has forgotten which epochs and rounds there were. Nothing old is in the air by then.
+    has forgotten which epochs and rounds there were. Nothing old is in the air by then, but for
+    the round that we know, where somebody asked for it.
     """
     if not node.known:
         return 1
+    if epoch == node.epoch and round == node.round and gateway == node.gateway:
+        return 0
     if node.quiet > 0 and node.quiet + SLACK >= params.dead:
         return 1
     if epoch != node.epoch and (epoch - node.epoch) & 255 != 128:
@@ -137,11 +140,16 @@ def ask_round(node, now, out):
 
 
 def tell_round(node, params, now, out):
-    """A neighbour asks for the round that we know: our request once more, unless one waits."""
+    """A neighbour asks for the round that we know: our request once more, unless one waits.
+
+    Who is nearer to the gateway answers sooner: the first request that is heard decides how far
+    its hearer is.
+    """
     if node.depth != UNHEARD and queued_request(node) < 0:
         i = compose_request(node, params, now, CONTROL, 0, out)
         if i >= 0:
-            node.q_due[i] = (now + draw(node, params.jitter_us + 1)) & MASK30
+            step = params.jitter_us >> 2
+            node.q_due[i] = (now + step * node.depth + draw(node, step + 1)) & MASK30
 
 
 def compose_request(node, params, now, rank, flags, out):

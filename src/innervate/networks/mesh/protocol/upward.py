@@ -2,6 +2,7 @@
 
 from innervate.networks.mesh.protocol.constants import NOBODY
 from innervate.networks.mesh.protocol.duplicates import is_skipped
+from innervate.networks.mesh.protocol.frames import was_at
 from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT, UNHEARD
 
 FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
@@ -36,12 +37,17 @@ def is_uplink(node, k):
 
 
 def uplink(node, params, i):
-    """The best uplink for the packet in place i that has not failed, or NOBODY."""
+    """The best uplink for the packet in place i that neither had it nor failed, or NOBODY.
+
+    Depths go down on the way, but for those of nodes that were switched on anew in this round.
+    """
     best = -1
     for k in range(params.places):
         if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
             who = node.neighbour[k]
-            if not is_skipped(node, node.q_origin[i], node.q_seq[i], who):
+            if not was_at(node, i, who) and not is_skipped(
+                node, node.q_origin[i], node.q_seq[i], who
+            ):
                 if params.faint <= params.min_rssi and who == node.parent:
                     return who
                 if best < 0 or is_better(node, params, k, best):

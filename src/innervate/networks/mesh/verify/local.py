@@ -308,6 +308,9 @@ class Locals:
 
 
 def goes_round(packet: Packet) -> int:
-    """Broken if a packet's path has two hops that are the same."""
-    hops = list(zip(packet.path, packet.path[1:], strict=False))
+    """Broken if a packet's path has two hops that are the same.
+
+    Whoever says a request again puts its own number into the path once for each hop of its depth.
+    """
+    hops = [hop for hop in zip(packet.path, packet.path[1:], strict=False) if hop[0] != hop[1]]
     return BROKEN_ROUND if len(set(hops)) < len(hops) else 0
