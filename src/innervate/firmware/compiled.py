@@ -19,6 +19,7 @@ from innervate.dialect.source import reached
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.program import GIVEN
 from innervate.firmware.records import records_of
+from innervate.firmware.texts import shipped
 from innervate.firmware.tools import find, run
 from innervate.kernel.cache import alone, cache_root
 from innervate.kernel.sources import ROOT, hash_of
@@ -112,7 +113,6 @@ def texts_of(role: Role, coded: Coded | None, key: str) -> dict[str, str]:
         FirmwareError: see Library.
     """
     from innervate.firmware.emit import Library  # half a second that a library at hand spares
-    from innervate.firmware.library import shipped
     from innervate.firmware.wire import Wire
 
     library = Library(role, {})
