@@ -14,25 +14,12 @@ from msgspec import Meta
 from innervate.network import networks
 from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
+from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
-from innervate.scenario.declared.shared import (
-    InputTable,
-    ScriptTable,
-    check_happening,
-    check_inputs,
-    check_node,
-    check_script,
-    check_values,
-    inputs_of,
-    own_events,
-    parameter_lines,
-    parameters,
-    script_lines,
-)
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, with_article
+from innervate.scenario.source import Source
 from innervate.topology import placement
 from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
@@ -144,9 +131,9 @@ class FieldScenario(Table, frozen=True, kw_only=True):
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     air: AirTable = AirTable()
     protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
-    script: ScriptTable | None = None
+    script: shared.ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +197,7 @@ def check(source: Source, model: FieldScenario) -> None:
         ScenarioError: the first thing that cannot be.
     """
     network = networks()[model.kind]
-    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     if model.positions_m and len(model.positions_m) != model.nodes:
         what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
         raise source.error(("positions_m",), what)
@@ -219,12 +206,12 @@ def check(source: Source, model: FieldScenario) -> None:
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
     for place, node in enumerate(model.absent):
-        check_node(source, ("absent", place), node, model.nodes)
-    check_script(source, model)
-    check_inputs(source, model, network, model.nodes)
+        shared.check_node(source, ("absent", place), node, model.nodes)
+    shared.check_script(source, model)
+    shared.check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
-        check_node(source, ("event", place, "node"), event.node, model.nodes)
-        check_happening(source, model, place, network, ACTIONS)
+        shared.check_node(source, ("event", place, "node"), event.node, model.nodes)
+        shared.check_happening(source, model, place, network, ACTIONS)
         _check_other(source, ("event", place), event, model.nodes)
 
 
@@ -239,7 +226,7 @@ def _check_other(source: Source, key: Key, event: EventTable, nodes: int) -> Non
 
 def _check_pair(source: Source, key: Key, pair: tuple[int, int], nodes: int) -> None:
     for node in pair:
-        check_node(source, key, node, nodes)
+        shared.check_node(source, key, node, nodes)
     if pair[0] == pair[1]:
         raise source.error(key, f"node {pair[0]} is named twice; name two nodes")
 
@@ -264,14 +251,14 @@ def plan(scenario: Any) -> FieldPlan:
         seed=model.seed,
         duration_us=round(1e6 * model.duration_s),
         nodes=count,
-        params=parameters(network.fields, model.protocol),
+        params=shared.parameters(network.fields, model.protocol),
         air=model.air,
         positions_cm=points,
         heard=heard,
         good=placement.good_links(heard.rssi_cdb, count, RSSI50_CDB),
         starts_us=starts,
         absent=[int(node in model.absent) for node in range(count)],
-        inputs=inputs_of(model, network, count, ACTIONS),
+        inputs=shared.inputs_of(model, network, count, ACTIONS),
         faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
     )
 
@@ -343,8 +330,8 @@ def describe(plan: Any) -> str:
         f"  protocol   {params}",
     ]
     found = warnings(plan, plan.good, plan.scenario.model.start_us)
-    own = own_events(plan, ACTIONS)
-    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found, own)])
+    own = shared.own_events(plan, ACTIONS)
+    return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:
@@ -366,11 +353,6 @@ def event(plan: Any, fault: Any) -> dict[str, Any]:
 
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
-    if network.model is not FieldScenario:
-        return ""
-    title = f"# {with_article(network.name).capitalize()} over a field."
-    head = [title, f'kind = "{network.name}"', "nodes = 9",
-            'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
-            "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30", "",
-            "[protocol]"]  # fmt: skip
-    return "\n".join([*head, *parameter_lines(network), ""])
+    settings = ("nodes = 9", 'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
+                "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30")  # fmt: skip
+    return shared.template(network, FieldScenario, "over a field", settings)
