@@ -73,6 +73,11 @@ class Graph:
         """Nodes cabled to a node, in port order; one appears once per cable."""
         return [self.node_of(e) for e in (self.peer[x] for x in self.ends_of(node)) if e >= 0]
 
+    def cells_around(self) -> list[list[int]]:
+        """Per cell the cells that it is cabled to, in port order."""
+        return [[other for other in self.neighbours(cell) if other < self.cells]
+                for cell in range(self.cells)]  # fmt: skip
+
     def connect(self, end_a: int, end_b: int) -> None:
         """Plug a cable into two free ends.
 

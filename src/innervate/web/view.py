@@ -43,6 +43,7 @@ class View(ABC):
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     actions: ClassVar[tuple[Action, ...]] = ()  # of the medium, by the numbers that faults have
+    fault_type: ClassVar[Any]  # of the faults of a plan
     memory: Any
     saves: bool = True  # what was done to it can be written as a scenario's events
     is_still: bool = True  # the network is held, so that there is time to count all anew
@@ -77,9 +78,9 @@ class View(ABC):
     def words(self, fault: Any) -> str:
         """What a fault does, in words for the log."""
 
-    @abstractmethod
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""
+        return not self.actions[fault.action].mends
 
     @abstractmethod
     def cut(self, link: int, heal: bool) -> dict[str, int]:
@@ -89,9 +90,9 @@ class View(ABC):
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """Fields of the fault that switches a node off, or on; Refused if it is so already."""
 
-    @abstractmethod
     def make(self, at_us: int, index: int, fields: dict[str, int]) -> Any:
-        """A fault of the kind's own type."""
+        """A fault of the plan's own type, of what `cut` or `kill` says."""
+        return self.fault_type(at_us=at_us, index=index, **fields)
 
     @abstractmethod
     def event(self, fault: Any) -> dict[str, Any]:

@@ -27,9 +27,9 @@ class MeshFault:
     at_us: int
     action: int
     node: int
-    other: int
-    value: int
-    index: int
+    other: int = 0
+    value: int = 0
+    index: int = 0
 
 
 @dataclass(frozen=True, slots=True)

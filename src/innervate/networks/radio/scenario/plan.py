@@ -23,8 +23,8 @@ class RadioFault:
     at_us: int
     action: int
     node: int
-    value: int
-    index: int
+    value: int = 0
+    index: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,6 +57,7 @@ class RadioView(View):
     slow: ClassVar[float] = 0.0
     can: tuple[str, ...] = ("kill", "revive")
     actions = TABLE
+    fault_type = RadioFault
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -237,10 +238,6 @@ class RadioView(View):
         self.memory.recovery = None
         return changed
 
-    def takes(self, fault: Any) -> bool:
-        """True if a fault takes something away, false if it gives it back."""
-        return bool(fault.action != JOIN)
-
     def words(self, fault: Any) -> str:
         """What a fault does, as "station 3 dies"."""
         return fault_words(fault)
@@ -255,10 +252,6 @@ class RadioView(View):
         if bool(self._present()[0][node]) == revive:
             raise Refused("this station is on" if revive else "this station is off already")
         return {"action": JOIN if revive else KILL, "node": node}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> RadioFault:
-        """A fault of the kind's own type."""
-        return RadioFault(at_us=at_us, value=0, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""

@@ -70,6 +70,7 @@ class SkinView(View):
     slow: ClassVar[float] = 0.05
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     actions = TABLE
+    fault_type = Fault
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -315,8 +316,7 @@ class SkinView(View):
 
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""
-        mends = fault.action in (RESTORE, REVIVE)
-        return not mends and not (fault.action == LOOSE and fault.loss_q15 == 0)
+        return super().takes(fault) and not (fault.action == LOOSE and fault.loss_q15 == 0)
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""
@@ -342,10 +342,6 @@ class SkinView(View):
         if self._is_dead(node) != revive:
             raise Refused("this cell is on" if revive else "this cell is off already")
         return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
-        """A fault of the kind's own type."""
-        return Fault(at_us=at_us, loss_q15=0, frames=0, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""
