@@ -75,13 +75,7 @@ def _all(first: Packet, rest: Iterator[Packet]) -> Iterable[Packet]:
 
 
 class Reader:
-    """Matches frames that left with frames that came in.
-
-    Args:
-        found: to be filled.
-        path: of the capture.
-        capture: as it is read.
-    """
+    """Matches frames of a capture that left with frames that came in; fills `found`."""
 
     def __init__(self, found: Measured, path: Path, capture: Capture) -> None:
         self.found = found

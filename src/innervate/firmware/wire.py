@@ -41,13 +41,7 @@ def coded_of(role: Role, network: Network) -> Coded | None:
 
 
 class Wire:
-    """The coder of a network.
-
-    Args:
-        library: the role.
-        coded: its frames.
-        payload_max: bytes that a frame's payload has at most, where it is none of the record's.
-    """
+    """The coder of a role; `payload_max`: bytes of payloads that are none of the record's."""
 
     def __init__(self, library: Library, coded: Coded, payload_max: int = 0) -> None:
         self.library, self.prefix, self.coded = library, library.prefix, coded

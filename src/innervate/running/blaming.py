@@ -29,12 +29,7 @@ Notes = dict[tuple[int, str], tuple[str, int]]
 
 
 class Watched:
-    """Watches a plain simulation's nodes, and its outbox.
-
-    Args:
-        running: not yet begun.
-        network: whose it is; from a folder.
-    """
+    """Watches nodes and outbox of a plain simulation, not yet begun, of a network from a folder."""
 
     def __init__(self, running: Simulation, network: Network) -> None:
         assert network.folder is not None

@@ -19,12 +19,9 @@ Here = Callable[[], tuple[str, int]]
 
 
 class Sent:
-    """Watches the frames of an outbox.
+    """Watches the frames of the outbox of a plain run, not yet begun.
 
-    Args:
-        world: of a plain run, not yet begun.
-        network: whose it is.
-        here: the innermost line of the network's files that is being run.
+    `here` says the innermost line of the network's files that is being run.
 
     Attributes:
         words: what is wrong with the frame that broke the run, and where it was set; "" nothing.

@@ -48,12 +48,7 @@ def nearest(
     """Per node the place in `starts` of the one it has the cheapest way to; -1: none.
 
     Of several the first. Who is nearest to the same one is joined by nodes that are, too.
-
-    Args:
-        near: per node whom its links lead to.
-        costs: of each link, in both directions, above 0.
-        starts: nodes, all different.
-        ahead: what each of them costs in itself; nothing if left out.
+    `costs` are above 0, for each link in both directions; `ahead` is what each start itself costs.
     """
     owner = [-1] * len(near)
     line = [(ahead[which] if ahead else 0, which, node) for which, node in enumerate(starts)]

@@ -47,12 +47,7 @@ def normal_cdb(draw: Draw, sigma_cdb: int) -> int:
 
 
 def path_loss_cdb(distance_cm: int, exponent_c: int) -> int:
-    """What a signal loses between 1 m and a distance, 0.01 dB.
-
-    Args:
-        distance_cm: how far, cm.
-        exponent_c: path loss exponent x 100.
-    """
+    """What a signal loses between 1 m and a distance, 0.01 dB; `exponent_c` is x 100."""
     return round(10 * exponent_c * math.log10(max(distance_cm, NEAREST_CM) / 100))
 
 

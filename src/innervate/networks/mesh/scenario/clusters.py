@@ -43,11 +43,7 @@ class Cluster:
 
 
 def cut(model: MeshScenario, network: Network) -> tuple[MeshScenario, Network, Cluster]:
-    """A run's cluster: the scenario and the network as they are for those in it.
-
-    Args:
-        model: a scenario with [clusters].
-        network: with all nodes.
+    """A run's cluster: a scenario with [clusters] and its network as they are for those in it.
 
     Raises:
         ScenarioError: a gateway that is not there or is named twice, or too few of them.

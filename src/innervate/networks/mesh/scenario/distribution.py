@@ -41,14 +41,7 @@ class Round(NamedTuple):
 def first_round(
     radio: MeshRadio, params: dict[str, Any], near: list[list[int]], gateway: int
 ) -> Round:
-    """What tables take, and what the graph does.
-
-    Args:
-        radio: airtimes.
-        params: `mtu` and `copies` of a flood, as a plan has them.
-        near: per node whom its good links lead to.
-        gateway: its number.
-    """
+    """What tables take, and what the graph does; `near`: per node whom its good links lead to."""
 
     def frame_us(size: int) -> float:
         return radio.turnaround_us + (radio.phy_bytes + size) * radio.byte_ns / 1000

@@ -90,11 +90,7 @@ def placed(
 ) -> Network:
     """The network of nodes in the plane, drawn anew until good links connect it.
 
-    Args:
-        model: the scenario.
-        nodes: with their points, or without if they are to be placed.
-        profile: the radio.
-        starts: where robots begin, cm; they need not be connected.
+    Nodes without points are placed. Robots, which begin at `starts`, cm, need not be connected.
 
     Raises:
         ScenarioError: no network that is asked for in this way is connected.

@@ -59,11 +59,7 @@ def baseline(
     packet as soon as all who hear it have heard its end. Everybody hears every packet to its end:
     slots are long enough, and between two packets there is a slot where there is no common clock.
 
-    Args:
-        mac: its name in a scenario, a key of NUMBERS.
-        stations: how many.
-        params: of `plan.parameters`.
-        draws: how it draws.
+    `mac` is its name in a scenario, a key of NUMBERS; `params` are those of `plan.parameters`.
     """
     number = NUMBERS[mac]
     slot, turn = params["slot_us"], 0 if number == D1 else params["ta_us"]
