@@ -70,7 +70,7 @@ def copy(fields: Iterable[Field], source: Any, target: Any) -> None:
 
 
 class Outbox:
-    """The outbox of a role in C, as `dialect.plain.Outbox` is in Python; one frame an action."""
+    """The outbox of a role in C, as `dialect.plain.Outbox` in Python; one frame an action."""
 
     def __init__(self, frame: Fields, action: Fields, room: int) -> None:
         one = kept_of(frame)

@@ -70,7 +70,7 @@ class Comparison:
 
 
 def compare(a: Side, b: Side) -> Comparison:
-    """What differs between two runs, or folders of runs; if so, they are simulated again to see where.
+    """What differs between two runs, or folders of runs; if so, simulated again to find where.
 
     Raises:
         RunError: one of them is not a run folder, or damaged.

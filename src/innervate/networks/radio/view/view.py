@@ -14,14 +14,7 @@ from innervate.networks.radio.analysis.air import CARRYING
 from innervate.networks.radio.analysis.headline import headline
 from innervate.networks.radio.analysis.state import facts
 from innervate.networks.radio.plot.words import fault_words, protocol_words
-from innervate.networks.radio.protocol.constants import (
-    CRR,
-    DATA,
-    OPEN,
-    REPORT,
-    REPORT_BOUNDS,
-    REPORT_STOPPED,
-)
+from innervate.networks.radio.protocol import constants as c
 from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.scenario.planning import duration_us
 from innervate.scenario.actions.channel import JOIN, KILL, TABLE
@@ -32,7 +25,7 @@ from innervate.web.history import TIMELINE, History
 from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
-KINDS = {DATA: "frame", OPEN: "voc", CRR: "cr", REPORT: "ack"}
+KINDS = {c.DATA: "frame", c.OPEN: "voc", c.CRR: "cr", c.REPORT: "ack"}
 IDLE, SENDING, RECEIVING, SEVERAL, WAITING, TURNING = range(6)
 PLACES = ("pos", "place")  # fields of a station that say when its turn is
 
@@ -95,10 +88,10 @@ class RadioView(View):
             if fault.action == KILL:
                 self._stop(fault.node, fault.at_us)
         told = rows["rows"]
-        memory.wrong.update(told["node"][told["code"] == REPORT_BOUNDS].tolist())
-        told = told[np.isin(told["code"], (REPORT_STOPPED, REPORT_LEFT))]
+        memory.wrong.update(told["node"][told["code"] == c.REPORT_BOUNDS].tolist())
+        told = told[np.isin(told["code"], (c.REPORT_STOPPED, REPORT_LEFT))]
         for at, node, code, _a, _b in told.tolist():
-            if code == REPORT_STOPPED:
+            if code == c.REPORT_STOPPED:
                 self._stop(node, at)
             else:
                 self.memory.taken.gone(node)
