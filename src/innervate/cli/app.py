@@ -12,13 +12,14 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors, examples
-from innervate.cli.export_app import export, fit
 from innervate.cli.files_app import (
     check,
     check_protocol,
     compare,
     docs,
     doctor,
+    export,
+    fit,
     new,
     scenarios,
     schema,
@@ -26,10 +27,6 @@ from innervate.cli.files_app import (
 from innervate.cli.flowing import Flowing
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
-    PAGE_DEFAULTS,
-    RUN_DEFAULTS,
-    SWEEP_DEFAULTS,
-    VERIFY_DEFAULTS,
     PageOptions,
     RunOptions,
     SizeOptions,
@@ -89,7 +86,7 @@ def run(
     seed: Seed = None,
     out: Path | None = None,
     json: Annotated[bool, Parameter(negative="")] = False,
-    how: Annotated[RunOptions, Parameter(name="*")] = RUN_DEFAULTS,
+    how: Annotated[RunOptions, Parameter(name="*")] = RunOptions(),
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
 
@@ -116,7 +113,7 @@ def sweep(
     file: str,
     /,
     *,
-    options: Annotated[SweepOptions, Parameter(name="*")] = SWEEP_DEFAULTS,
+    options: Annotated[SweepOptions, Parameter(name="*")] = SweepOptions(),
 ) -> int:
     """Run a scenario for every combination of some settings, many times each.
 
@@ -189,7 +186,7 @@ def verify(
     system: str | None = None,
     /,
     *,
-    options: Annotated[VerifyOptions, Parameter(name="*")] = VERIFY_DEFAULTS,
+    options: Annotated[VerifyOptions, Parameter(name="*")] = VerifyOptions(),
     json: Annotated[bool, Parameter(negative="")] = False,
     out: Path | None = None,
 ) -> int:
@@ -241,7 +238,7 @@ def watch(
     set_: Sets = None,
     seed: Seed = None,
     speed: float | None = None,
-    page: Annotated[PageOptions, Parameter(name="*")] = PAGE_DEFAULTS,
+    page: Annotated[PageOptions, Parameter(name="*")] = PageOptions(),
 ) -> int:
     """Serve a page to watch a network on and to break it, until Ctrl-C.
 
@@ -295,8 +292,8 @@ def firmware(
     """
     from innervate.cli import firmware as command
 
-    wanted = command.Wanted(out, nodes, prefix, sealed)
-    return command.firmware(network, list(settings), wanted, json)
+    files = command.library.made_of(network, list(settings), nodes, prefix, sealed)
+    return command.write(files, out, json)
 
 
 app.command(scenarios)

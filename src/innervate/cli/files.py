@@ -12,7 +12,7 @@ from typing import Any
 
 from innervate import scenario
 from innervate.cli.errors import UserError
-from innervate.cli.new_options import MEASURED_DEFAULTS, MeasuredOptions
+from innervate.cli.new_options import MeasuredOptions
 from innervate.export import files
 from innervate.network import networks
 
@@ -44,18 +44,19 @@ def _is_comment(line: str) -> bool:
     return line.startswith("#")
 
 
-def check_unused(options: Any, usual: Any, whose: str) -> None:
+def check_unused(options: Any, whose: str) -> None:
     """Refuse options of something else than what is made.
 
     Raises:
         UserError: one of them was given.
     """
+    usual = type(options)()
     for one in fields(options):
         if getattr(options, one.name) != getattr(usual, one.name):
             raise UserError(f"--{one.name.replace('_', '-')} is for {whose}")
 
 
-def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAULTS) -> int:
+def new(kind: str, file: Path | None, measured: MeasuredOptions) -> int:
     """Write a commented scenario; never over a file that is there."""
     found = ""
     if measured.network is not None:

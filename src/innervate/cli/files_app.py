@@ -1,4 +1,4 @@
-"""`scenarios`, `new`, `check`, `schema`, `compare`, `docs` and `doctor`: their options."""
+"""Commands that read and write files, and nothing else: what is said before anything is loaded."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from innervate.cli.new_options import MEASURED_DEFAULTS, OWN_DEFAULTS, MeasuredOptions, OwnOptions
+from innervate.cli.new_options import MeasuredOptions, OwnOptions
+from innervate.cli.options import ExportOptions
 from innervate.cli.seeds import Seed, Sets
 
 Json = Annotated[bool, Parameter(negative="")]
@@ -70,8 +71,8 @@ def new(
     file: Path | None = None,
     /,
     *,
-    measured: Annotated[MeasuredOptions, Parameter(name="*")] = MEASURED_DEFAULTS,
-    own: Annotated[OwnOptions, Parameter(name="*")] = OWN_DEFAULTS,
+    measured: Annotated[MeasuredOptions, Parameter(name="*")] = MeasuredOptions(),
+    own: Annotated[OwnOptions, Parameter(name="*")] = OwnOptions(),
 ) -> int:
     """Write a commented scenario to start from, or a network of one's own.
 
@@ -91,9 +92,9 @@ def new(
     if kind == "network":
         from innervate.cli import making
 
-        command.check_unused(measured, MEASURED_DEFAULTS, "a measured network, not for your own")
+        command.check_unused(measured, "a measured network, not for your own")
         return making.make(file, own.on, own.over)
-    command.check_unused(own, OWN_DEFAULTS, "a network of your own: innervate new network NAME")
+    command.check_unused(own, "a network of your own: innervate new network NAME")
     return command.new(kind, file, measured)
 
 
@@ -156,3 +157,45 @@ def check_protocol(
     from innervate.cli import making as command
 
     return command.check_protocol(folder, json, tests)
+
+
+def export(
+    source: str | None = None,
+    /,
+    *,
+    options: Annotated[ExportOptions, Parameter(name="*")] = ExportOptions(),
+) -> int:
+    """Write a run or a scenario as files for other tools.
+
+    Parameters
+    ----------
+    source
+        A run folder, a scenario file, or the name of a bundled one; with --dissector alone the
+        folder for that, Wireshark's own if left out.
+    """
+    from innervate.cli import exporting as command
+
+    return command.export(source, options)
+
+
+def fit(
+    capture: Path,
+    /,
+    *,
+    out: Path | None = None,
+    json: Json = False,
+) -> int:
+    """Make a scenario out of a capture of a mesh or a skin; 1 if its simulation has other links.
+
+    Parameters
+    ----------
+    capture
+        A capture by innervate, of a run or of live nodes; or what `live status --json` said.
+    out
+        The scenario file to write; it is printed if left out.
+    json
+        Print the scenario and how well it matches as JSON and nothing else.
+    """
+    from innervate.cli import fitting as command
+
+    return command.fit(capture, out, json)

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, Engine, SendOptions, UpOptions
+from innervate.cli.options import Engine, SendOptions, UpOptions
 from innervate.cli.seeds import Whole
 
 Json = Annotated[bool, Parameter(negative="")]
@@ -55,7 +55,7 @@ def live_up(
     file: str,
     /,
     *,
-    options: Annotated[UpOptions, Parameter(name="*")] = UP_DEFAULTS,
+    options: Annotated[UpOptions, Parameter(name="*")] = UpOptions(),
 ) -> int:
     """Bring a scenario up, a process for every node, and play its events, until Ctrl-C.
 
@@ -97,7 +97,7 @@ def live_send(
     text: Text,
     /,
     *,
-    how: Annotated[SendOptions, Parameter(name="*")] = SEND_DEFAULTS,
+    how: Annotated[SendOptions, Parameter(name="*")] = SendOptions(),
     json: Json = False,
 ) -> int:
     """Send a message from a running node; prints what becomes of it.
@@ -226,9 +226,12 @@ def live_medium(
     turnaround_us
         From deciding to send to being on the air, and back.
     """
-    from innervate.cli import live as command
+    import asyncio
 
-    return command.medium(address, slot_us, turnaround_us)
+    from innervate.live import channel
+
+    asyncio.run(channel.run(address, slot_us, turnaround_us))
+    return 0
 
 
 @live_app.command(name="modem")
@@ -253,9 +256,12 @@ def live_modem(
     baud
         Bits per second.
     """
-    from innervate.cli import live as command
+    import asyncio
 
-    return command.modem(device, address, number, baud)
+    from innervate.live import modem
+
+    asyncio.run(modem.run(device, baud, number, address))
+    return 0
 
 
 @live_app.command(name="enrol")

@@ -26,9 +26,6 @@ class OwnOptions:
     over: str = ""
 
 
-OWN_DEFAULTS = OwnOptions()
-
-
 @dataclass(frozen=True)
 class MeasuredOptions:
     """Which nodes and links of a measured network count.
@@ -63,6 +60,3 @@ class MeasuredOptions:
         chosen = {"types": self.types, "min_tq": self.min_tq, "around": self.around,
                   "nodes": self.nodes, "gateways": self.gateways}  # fmt: skip
         return {key: value for key, value in chosen.items() if value is not None}
-
-
-MEASURED_DEFAULTS = MeasuredOptions()

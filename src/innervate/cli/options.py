@@ -32,9 +32,6 @@ class RunOptions:
     plain: Flag = False
 
 
-RUN_DEFAULTS = RunOptions()
-
-
 @dataclass(frozen=True)
 class SweepOptions:
     """What is varied, how often it runs, and where.
@@ -107,9 +104,6 @@ class SweepOptions:
         }  # fmt: skip
 
 
-SWEEP_DEFAULTS = SweepOptions()
-
-
 @dataclass(frozen=True)
 class SizeOptions:
     """What is asked of a robot's skin, and how often it is tried.
@@ -178,9 +172,6 @@ class PageOptions:
     open_: Flag = False
 
 
-PAGE_DEFAULTS = PageOptions()
-
-
 @dataclass(frozen=True)
 class ExportOptions:
     """Which files are written of a run or scenario; those left out are not.
@@ -227,9 +218,6 @@ class ExportOptions:
     def has_files(self) -> bool:
         """True if something besides the dissector is to be written."""
         return any((self.pcapng, self.mcap, self.rerun, self.graph, self.tables))
-
-
-EXPORT_DEFAULTS = ExportOptions()
 
 
 Engine = Literal["python", "c", "auto"]
@@ -288,9 +276,6 @@ class UpOptions:
         return "key" if self.sealed else "identities" if self.identities else ""
 
 
-UP_DEFAULTS = UpOptions()
-
-
 @dataclass(frozen=True)
 class SendOptions:
     """How a message is sent.
@@ -314,9 +299,6 @@ class SendOptions:
         """What the node is asked for; an older one knows of no order."""
         order = {"in_order": True} if self.in_order else {}
         return {"priority": self.priority, "reliable": self.reliable, **order}
-
-
-SEND_DEFAULTS = SendOptions()
 
 
 @dataclass(frozen=True)
@@ -386,6 +368,3 @@ class VerifyOptions:
     count: Whole = 0
     reduce: bool = True
     plain: Flag = False
-
-
-VERIFY_DEFAULTS = VerifyOptions()
