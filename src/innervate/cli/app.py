@@ -291,8 +291,9 @@ def firmware(
         Print what was written as JSON and nothing else.
     """
     from innervate.cli import firmware as command
+    from innervate.firmware import library
 
-    files = command.library.made_of(network, list(settings), nodes, prefix, sealed)
+    files = library.made_of(network, list(settings), nodes, prefix, sealed)
     return command.write(files, out, json)
 
 

@@ -65,7 +65,7 @@ def forwarding(made: MeshPlan) -> str:
     """How packets find their way; of "auto" what that is here, and why."""
     failover, mode = made.scenario.model.protocol.failover, made.params["mode"]
     if failover != "auto":
-        return {c.WHOLE_GRAPH: "graph", c.TABLE_FREE: "table-free"}.get(mode, failover)
+        return str({c.WHOLE_GRAPH: "graph", c.TABLE_FREE: "table-free"}.get(mode, failover))
     near = neighbours(made.nodes, made.good)
     tables_us, graph_us = first_round(made.radio, made.params, near, made.ranks.index(0))
     takes = f"{graph_us / 1e6:.2f} s on the air"
