@@ -12,18 +12,13 @@ DELAYS_MAX = 4096  # kept of a way
 
 @dataclass
 class Way:
-    """One direction of a link.
+    """One direction of a link."""
 
-    Attributes:
-        got: frames that came in.
-        lost: frames that noise took.
-        delays_us: of frames that came in, from their start.
-        sizes: of the same, bytes.
-    """
-
-    got: int = 0
-    lost: int = 0
+    got: int = 0  # frames that came in
+    lost: int = 0  # frames that noise took
+    # Of frames that came in, from their start.
     delays_us: deque[float] = field(default_factory=lambda: deque(maxlen=DELAYS_MAX))
+    # Of the same, bytes.
     sizes: deque[int] = field(default_factory=lambda: deque(maxlen=DELAYS_MAX))
 
     @property
@@ -34,23 +29,15 @@ class Way:
 
 @dataclass
 class Measured:
-    """A network as a capture has it.
+    """A network as a capture has it."""
 
-    Attributes:
-        kind: of network.
-        ways: by sender and receiver, nodes or ends of cables.
-        seconds: from the first packet to the last.
-        packets: read.
-        cut: ends whose cable was cut for some time.
-        notes: what to know besides.
-    """
-
-    kind: str
+    kind: str  # of network
+    # By sender and receiver, nodes or ends of cables.
     ways: dict[tuple[Any, Any], Way] = field(default_factory=dict)
-    seconds: float = 0.0
-    packets: int = 0
-    cut: set[str] = field(default_factory=set)
-    notes: list[str] = field(default_factory=list)
+    seconds: float = 0.0  # from the first packet to the last
+    packets: int = 0  # read
+    cut: set[str] = field(default_factory=set)  # ends whose cable was cut for some time
+    notes: list[str] = field(default_factory=list)  # what to know besides
 
     def way(self, a: Any, b: Any) -> Way:
         """The way from a to b; a new one if it was not seen before."""

@@ -30,15 +30,10 @@ OUT = ("count", "limit", "overflow")
 
 
 class Type(NamedTuple):
-    """What an expression is.
+    """What an expression is."""
 
-    Attributes:
-        what: "int", a record's name, "out", "array" of numbers, "actions", "frames", or "none".
-        field: of an array, the field that it is.
-    """
-
-    what: str
-    field: Field | None = None
+    what: str  # "int", a record's name, "out", "array" of numbers, "actions", "frames", or "none"
+    field: Field | None = None  # of an array, the field that it is
 
     @property
     def is_pointer(self) -> bool:

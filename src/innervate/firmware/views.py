@@ -26,14 +26,10 @@ def struct_of(fields: Fields) -> Any:
 
 
 class Kept(ctypes.Structure):
-    """A record that stays: its arrays are looked up once.
-
-    Attributes:
-        ref: a pointer to it, for calls.
-    """
+    """A record that stays: its arrays are looked up once."""
 
     arrays: tuple[str, ...] = ()
-    ref: Any
+    ref: Any  # a pointer to it, for calls
 
 
 def kept_of(fields: Fields) -> type[Kept]:

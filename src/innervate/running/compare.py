@@ -26,18 +26,13 @@ Side = str | os.PathLike[str] | Run
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """The first handler call that differs between two runs.
+    """The first handler call that differs between two runs."""
 
-    Attributes:
-        time_s: when, the earlier of the two.
-        a, b: the call in either run, in words; "nothing more" where one had ended.
-        same_call: the same call in both, but with another outcome.
-    """
-
-    time_s: float
+    time_s: float  # when, the earlier of the two
+    # The call in either run, in words; "nothing more" where one had ended.
     a: str
     b: str
-    same_call: bool
+    same_call: bool  # the same call in both, but with another outcome
 
     def __str__(self) -> str:
         if self.same_call:

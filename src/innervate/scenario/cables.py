@@ -15,25 +15,15 @@ LOSS_ONE = 32_768
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One event of a run.
+    """One event of a run."""
 
-    Attributes:
-        at_us: when, true time, us.
-        action: CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE.
-        end: one end of the cable it happens to; -1 for kill, revive and restart.
-        node: the node it happens to; -1 for cables.
-        loss_q15: for LOOSE the loss on both directions in 1/32768; else 0.
-        frames: for LOSE how many frames are lost on the cable; else 0.
-        index: the event's place in the scenario file.
-    """
-
-    at_us: int
-    action: int
-    end: int = -1
-    node: int = -1
-    loss_q15: int = 0
-    frames: int = 0
-    index: int = 0
+    at_us: int  # when, true time, us
+    action: int  # CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE
+    end: int = -1  # one end of the cable it happens to; -1 for kill, revive and restart
+    node: int = -1  # the node it happens to; -1 for cables
+    loss_q15: int = 0  # for LOOSE the loss on both directions in 1/32768; else 0
+    frames: int = 0  # for LOSE how many frames are lost on the cable; else 0
+    index: int = 0  # the event's place in the scenario file
 
 
 class Input(NamedTuple):

@@ -20,22 +20,15 @@ UNREACHABLE = -1
 
 @dataclass(slots=True)
 class Graph:
-    """Cells, interface ports and cables.
+    """Cells, interface ports and cables."""
 
-    Attributes:
-        cells: how many cells there are, 0..4,000,000.
-        interfaces: how many interface ports the PC has.
-        peer: length 4 * cells + interfaces; the end on the other side, or -1.
-        patches: the patches, in order of their cells; empty for free graphs and bodies.
-        names: one name a cell for free graphs and bodies; empty for patches.
-        positions: x, y, z in mm per cell, flat, for bodies; empty otherwise.
-    """
-
-    cells: int
-    interfaces: int
-    peer: array[int]
+    cells: int  # how many cells there are, 0..4,000,000
+    interfaces: int  # how many interface ports the PC has
+    peer: array[int]  # length 4 * cells + interfaces; the end on the other side, or -1
+    # The patches, in order of their cells; empty for free graphs and bodies.
     patches: tuple[Patch, ...] = ()
-    names: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()  # one name a cell for free graphs and bodies; empty for patches
+    # x, y, z in mm per cell, flat, for bodies; empty otherwise.
     positions: array[float] = field(default_factory=lambda: array("d"))
 
     @property

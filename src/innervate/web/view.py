@@ -29,11 +29,7 @@ class Memory:
 
 
 class View(ABC):
-    """Draws an engine's world up for pages, and turns their commands into faults.
-
-    Attributes:
-        memory: all that it keeps from one moment to the next.
-    """
+    """Draws an engine's world up for pages, and turns their commands into faults."""
 
     # Seconds of the network per second, at which its changes can be seen; and from where on
     # frames on their way can.
@@ -44,7 +40,7 @@ class View(ABC):
     check_us: ClassVar[int] = 0
     actions: ClassVar[tuple[Action, ...]] = ()  # of the medium, by the numbers that faults have
     fault_type: ClassVar[Any]  # of the faults of a plan
-    memory: Any
+    memory: Any  # all that it keeps from one moment to the next
     saves: bool = True  # what was done to it can be written as a scenario's events
     is_still: bool = True  # the network is held, so that there is time to count all anew
 

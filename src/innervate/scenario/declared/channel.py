@@ -25,35 +25,24 @@ DONE = ("join", "kill", "revive")  # what can be done to any node on a channel
 
 
 class AirTable(Table, frozen=True, kw_only=True):
-    """The channel.
+    """The channel."""
 
-    Attributes:
-        slot_us: the unit of a frame's length, us: a frame takes `frame.slots` of them.
-        turnaround_us: from the decision to send to the first sound, and back to hearing, us.
-        delay_us: between any two nodes, us.
-        loss: share of frames that a receiver cannot read though it heard them alone, 0 to 1.
-    """
-
+    # The unit of a frame's length, us: a frame takes `frame.slots` of them.
     slot_us: Annotated[int, whole("microseconds", 1, 100_000)] = 100
+    # From the decision to send to the first sound, and back to hearing, us.
     turnaround_us: Micros = 20
-    delay_us: Annotated[int, whole("microseconds", 1, 10_000)] = 1
+    delay_us: Annotated[int, whole("microseconds", 1, 10_000)] = 1  # between any two nodes, us
+    # Share of frames that a receiver cannot read though it heard them alone, 0 to 1.
     loss: Annotated[float, number("frames lost", 0, 1)] = 0.0
 
 
 class EventTable(Table, frozen=True, kw_only=True):
-    """What happens to a node.
+    """What happens to a node."""
 
-    Attributes:
-        at_s: when, s.
-        action: kill, revive or join; or a word of the network's own.
-        node: its number.
-        value: of the network's own actions: a number for them.
-    """
-
-    at_s: Annotated[float, number("seconds", 0)]
-    action: str
-    node: Annotated[int, whole("", 0)]
-    value: int = 0
+    at_s: Annotated[float, number("seconds", 0)]  # when, s
+    action: str  # kill, revive or join; or a word of the network's own
+    node: Annotated[int, whole("", 0)]  # its number
+    value: int = 0  # of the network's own actions: a number for them
 
 
 class ChannelScenario(Table, frozen=True, kw_only=True):
@@ -100,30 +89,20 @@ class Fault:
 
 @dataclass(slots=True)
 class ChannelPlan:
-    """Everything a run on a channel needs, as whole numbers.
-
-    Attributes:
-        stations: how many.
-        params: of the protocol, by name, and those of the medium.
-        delays_us: per sender and receiver; -1 = they do not hear each other.
-        arrivals: per station, the moments of its inputs.
-        inputs: all of them, station by station, each in order of time.
-        absent: per station, 1 = off until it joins.
-        faults: in order of time.
-    """
+    """Everything a run on a channel needs, as whole numbers."""
 
     scenario: Any
     kind: str
     seed: int
     duration_us: int
-    stations: int
-    params: dict[str, int]
-    delays_us: list[list[int]]
+    stations: int  # how many
+    params: dict[str, int]  # of the protocol, by name, and those of the medium
+    delays_us: list[list[int]]  # per sender and receiver; -1 = they do not hear each other
     loss_q15: int
-    arrivals: list[list[int]]
-    inputs: list[Input]
-    absent: list[int]
-    faults: list[Fault] = field(default_factory=list)
+    arrivals: list[list[int]]  # per station, the moments of its inputs
+    inputs: list[Input]  # all of them, station by station, each in order of time
+    absent: list[int]  # per station, 1 = off until it joins
+    faults: list[Fault] = field(default_factory=list)  # in order of time
     sizes: list[list[int]] = field(default_factory=list)
     saturated: Literal[False] = False
     forced: Literal[False] = False

@@ -42,15 +42,11 @@ class InputTable(Table, frozen=True, kw_only=True):
 
 
 class ScriptTable(Table, frozen=True, kw_only=True):
-    """[script]: an order of events in place of the clock, as `innervate verify --out` writes it.
+    """[script]: an order of events in place of the clock, as `innervate verify --out` writes it."""
 
-    Attributes:
-        steps: an event each, as a story says it.
-        graph: on the air: who hears whom, as --graph of `innervate verify` has it.
-    """
-
+    # An event each, as a story says it.
     steps: Annotated[list[str], Meta(max_length=100_000, description="a list of events")]
-    graph: str = ""
+    graph: str = ""  # on the air: who hears whom, as --graph of `innervate verify` has it
 
 
 def script_of(plan: Any) -> ScriptTable | None:

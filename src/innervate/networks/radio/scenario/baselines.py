@@ -29,19 +29,12 @@ ANSWER_SLOTS = 2  # DCF: a one-byte answer and the idle slot before it
 
 
 class Draws(NamedTuple):
-    """What a baseline draws from.
+    """What a baseline draws from."""
 
-    Attributes:
-        p: probability to send in a slot (ALOHA after a collision; CSMA).
-        cw_min: DCF draws its backoff from so many values.
-        cw_max: ... doubled at each collision up to this.
-        backoff_slots: length of a slot of the backoff.
-    """
-
-    p: float = 0.1
-    cw_min: int = 32
-    cw_max: int = 1024
-    backoff_slots: int = 1
+    p: float = 0.1  # probability to send in a slot (ALOHA after a collision; CSMA)
+    cw_min: int = 32  # DCF draws its backoff from so many values
+    cw_max: int = 1024  # ... doubled at each collision up to this
+    backoff_slots: int = 1  # length of a slot of the backoff
 
 
 DRAWS = Draws()

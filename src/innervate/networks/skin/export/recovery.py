@@ -48,34 +48,25 @@ class Healing:
     """What became of a skin after something happened to it.
 
     Times are from then, ms; None = not while it was watched.
-
-    Attributes:
-        at_s: when, from the capture's first frame.
-        what: "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ...".
-        cells: cells whose way to the PC it cut, and that still have cables to it; or that it
-            brought back. Those that had none yet from what happened just before are among them.
-        apart: cells that it cut off: they run, and no cables lead from them to the PC any more, so
-            that they have a way again when somebody puts one back, and not before.
-        watched_ms: until something else happened, or the capture ended.
-        first_ms: the first of them said in a beacon that it has another parent, or none.
-        wrong_ms: the last one's last beacon whose parent did not lead to the PC.
-        routed_ms: all had said in beacons that their parents lead to the PC.
-        heard_ms: the PC had a sample of all of them by a way without what was hurt.
-        heard_median_ms: of half of them.
-        lost: samples of theirs that never came to the PC.
     """
 
-    at_s: float
-    what: str
+    at_s: float  # when, from the capture's first frame
+    what: str  # "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ..."
+    # Cells whose way to the PC it cut, and that still have cables to it; or that it brought back.
+    # Those that had none yet from what happened just before are among them.
     cells: int = 0
+    # Cells that it cut off: they run, and no cables lead from them to the PC any more, so that they
+    # have a way again when somebody puts one back, and not before.
     apart: list[str] = field(default_factory=list)
-    watched_ms: float = 0.0
+    watched_ms: float = 0.0  # until something else happened, or the capture ended
+    # The first of them said in a beacon that it has another parent, or none.
     first_ms: float | None = None
-    wrong_ms: float | None = None
-    routed_ms: float | None = None
+    wrong_ms: float | None = None  # the last one's last beacon whose parent did not lead to the PC
+    routed_ms: float | None = None  # all had said in beacons that their parents lead to the PC
+    # The PC had a sample of all of them by a way without what was hurt.
     heard_ms: float | None = None
-    heard_median_ms: float | None = None
-    lost: int = 0
+    heard_median_ms: float | None = None  # of half of them
+    lost: int = 0  # samples of theirs that never came to the PC
 
 
 @dataclass
