@@ -12,7 +12,7 @@ from typing import Any
 
 from innervate import scenario
 from innervate.cli.errors import UserError
-from innervate.cli.new_options import MeasuredOptions
+from innervate.cli.options import MeasuredOptions
 from innervate.export import files
 from innervate.network import networks
 

@@ -7,8 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from innervate.cli.new_options import MeasuredOptions, OwnOptions
-from innervate.cli.options import ExportOptions
+from innervate.cli.options import ExportOptions, MeasuredOptions, OwnOptions
 from innervate.cli.seeds import Seed, Sets
 
 Json = Annotated[bool, Parameter(negative="")]
