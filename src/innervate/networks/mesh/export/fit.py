@@ -32,18 +32,12 @@ class Flow(NamedTuple):
 
 @dataclass
 class Mesh(Measured):
-    """What is measured of a mesh; its ways are between numbers of nodes.
-
-    Attributes:
-        gateway: -1 nobody seen to be it.
-        flows: who sends what to whom.
-        longest: of all frames, bytes.
-    """
+    """What is measured of a mesh; its ways are between numbers of nodes."""
 
     kind: str = "mesh"
-    gateway: int = -1
-    flows: list[Flow] = field(default_factory=list)
-    longest: int = 0
+    gateway: int = -1  # -1 nobody seen to be it
+    flows: list[Flow] = field(default_factory=list)  # who sends what to whom
+    longest: int = 0  # of all frames, bytes
 
 
 class Reader(measure.Reader):

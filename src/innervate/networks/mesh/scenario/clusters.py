@@ -24,17 +24,11 @@ UNIT = 100  # of a link that loses nothing: hundredths of transmissions until on
 
 @dataclass(frozen=True, slots=True)
 class Cluster:
-    """Which part of a network a run is of.
+    """Which part of a network a run is of."""
 
-    Attributes:
-        number: of this cluster, from 1 on.
-        sizes: per cluster how many nodes it has.
-        gateways: per cluster what its gateway is called.
-    """
-
-    number: int
-    sizes: tuple[int, ...]
-    gateways: tuple[str, ...]
+    number: int  # of this cluster, from 1 on
+    sizes: tuple[int, ...]  # per cluster how many nodes it has
+    gateways: tuple[str, ...]  # per cluster what its gateway is called
 
     @property
     def words(self) -> str:

@@ -26,21 +26,14 @@ STEP_CDB = 10  # reception is tabulated in steps of 0.1 dB
 
 @dataclass(slots=True)
 class Network:
-    """A mesh before anything happens.
+    """A mesh before anything happens."""
 
-    Attributes:
-        nodes: their names.
-        points: per node (x, y) in cm; empty where none are known.
-        radio: who hears whom.
-        good: links (a < b) that are good both ways.
-        weakest_cdb: if qualities were given, rssi of the weakest good link, at most what is
-            reported anyway; else None.
-    """
-
-    nodes: Nodes
-    points: list[Point]
-    radio: MeshRadio
-    good: list[tuple[int, int]]
+    nodes: Nodes  # their names
+    points: list[Point]  # per node (x, y) in cm; empty where none are known
+    radio: MeshRadio  # who hears whom
+    good: list[tuple[int, int]]  # links (a < b) that are good both ways
+    # If qualities were given, rssi of the weakest good link, at most what is reported anyway; else
+    # None.
     weakest_cdb: int | None = None
 
 

@@ -30,16 +30,11 @@ CELL_BITS = TOUCH[_BEFORE][2]
 
 @dataclass
 class Skin(Measured):
-    """What is measured of a skin; its ways are between ends of cables like "c3.1" and "pc.0".
-
-    Attributes:
-        beacon_us: between beacons of a port; 0 unknown.
-        rate_hz: samples per cell and second.
-    """
+    """What is measured of a skin; its ways are between ends of cables like "c3.1" and "pc.0"."""
 
     kind: str = "skin"
-    beacon_us: float = 0.0
-    rate_hz: float = 0.0
+    beacon_us: float = 0.0  # between beacons of a port; 0 unknown
+    rate_hz: float = 0.0  # samples per cell and second
 
 
 class Reader(measure.Reader):
