@@ -8,7 +8,7 @@ from typing import Any
 
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
-from innervate.firmware.payloads import whole
+from innervate.firmware.payloads import cases
 from innervate.firmware.records import name_of
 from innervate.firmware.texts import filled, shipped
 from innervate.live.board import Coded, Form, Role
@@ -73,7 +73,8 @@ class Wire:
         coded, alone = self.coded, self.coded.alone
         version, version_bits = coded.version
         words: dict[str, Any] = {
-            "@payloads": "\n".join([*whole(self.prefix, coded), ""]),
+            "@cases": "\n".join(cases(coded)), "@kind_mask": (1 << coded.kind_bits) - 1,
+            "@flags_at": self.head_bits // 8, "@lead": coded.lead, "@trail": coded.trail,
             "@more": " + count" if self.has_payload else "",
             "@nothing": "count" if self.has_payload else 0,
             "@version_bits": version_bits, "@version": version, "@from": version_bits,
@@ -93,8 +94,10 @@ class Wire:
         return self._filled("made/wire.c", words)
 
     def _filled(self, file: str, words: dict[str, Any]) -> str:
-        having = {"payload": self.has_payload, "alone": self.coded.alone,
-                  "version": self.coded.version[1]}  # fmt: skip
+        coded = self.coded
+        having = {"payload": self.has_payload, "alone": coded.alone, "version": coded.version[1],
+                  "payloads": any(form.payloads for form in coded.forms),
+                  "lead": coded.lead, "trail": coded.trail}  # fmt: skip
         given = "const uint8_t *payload, int32_t count,\n        " if self.has_payload else ""
         text = shipped(file, self.prefix, frozenset(name for name in having if having[name]))
         return filled(text, {"@given": given} | {word: str(words[word]) for word in words})

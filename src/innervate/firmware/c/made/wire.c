@@ -2,7 +2,40 @@
 #include "role_wire.h"
 #include "innervate_wire.h"
 
-@payloadsint32_t role_size(const role_frame_t *frame)
+/*+ payloads */
+/* 1 if bits `at` to `end` are exactly a payload of this kind. */
+static int32_t role_is_whole(const uint8_t *data, int32_t kind, int32_t at, int32_t end)
+{
+    int32_t count;
+    switch (kind) {
+@cases
+    default:
+        return 0;
+    }
+}
+
+/* 1 if bytes `at` to `end` are a payload, and what forwarding puts around. */
+static int32_t role_fits(const uint8_t *data, int32_t at, int32_t end)
+{
+    const int32_t kind = data[0] & @kind_mask;
+    const int32_t flags = data[@flags_at];
+    int32_t begin = at;
+/*+ lead */
+    if ((flags & @lead) && at < end) {
+        begin = at + 1 + data[at];
+    }
+/*- */
+/*+ trail */
+    if ((flags & @trail) && begin < end && data[end - 1] > 0 &&
+            role_is_whole(data, kind, 8 * begin, 8 * (end - 1 - data[end - 1]))) {
+        return 1;
+    }
+/*- */
+    return role_is_whole(data, kind, 8 * begin, 8 * end);
+}
+
+/*- */
+int32_t role_size(const role_frame_t *frame)
 {
 /*+ alone */
     if (frame->kind == @alone_kind) {
