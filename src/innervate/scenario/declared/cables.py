@@ -40,27 +40,41 @@ EVENT = """
 
 
 class Links(Table, frozen=True, kw_only=True):
-    """What all cables have."""
+    """What all cables have.
 
-    # Least and greatest latency of a hop, its time on the wire included, us.
+    Attributes:
+        latency_us: least and greatest latency of a hop, its time on the wire included, us.
+        wire_us: how long a frame occupies the wire, us.
+        loss: share of frames that is lost, 0 to 1.
+        queue_frames: frames that wait at a port at most.
+    """
+
     latency_us: tuple[Micros, Micros] = (80, 160)
-    wire_us: Micros = 60  # how long a frame occupies the wire, us
-    # Share of frames that is lost, 0 to 1.
+    wire_us: Micros = 60
     loss: Annotated[float, number("frames lost", 0, 1)] = 0.0
-    queue_frames: Annotated[int, whole("frames", 1, 1000)] = 8  # frames that wait at a port at most
+    queue_frames: Annotated[int, whole("frames", 1, 1000)] = 8
 
 
 class EventTable(Table, frozen=True, kw_only=True):
-    """What happens to a cable, to a node, or whatever the network has words for."""
+    """What happens to a cable, to a node, or whatever the network has words for.
 
-    at_s: Annotated[float, number("seconds", 0)]  # when, s
-    action: str  # cut, restore, loose, lose of a `link`; kill, revive, restart of a `node`
-    link: str | None = None  # a cable, by its nodes: "n0-n1"
-    node: Annotated[int, whole("", 0)] | None = None  # a node's number
-    # Of loose: share of frames that is lost, 0 to 1.
+    Attributes:
+        at_s: when, s.
+        action: cut, restore, loose, lose of a `link`; kill, revive, restart of a `node`.
+        link: a cable, by its nodes: "n0-n1".
+        node: a node's number.
+        loss: of loose: share of frames that is lost, 0 to 1.
+        frames: of lose: how many frames are lost.
+        value: of the network's own actions: a number for them.
+    """
+
+    at_s: Annotated[float, number("seconds", 0)]
+    action: str
+    link: str | None = None
+    node: Annotated[int, whole("", 0)] | None = None
     loss: Annotated[float, number("frames lost", 0, 1)] = 0.5
-    frames: Annotated[int, whole("frames", 1, 1000)] = 1  # of lose: how many frames are lost
-    value: int = 0  # of the network's own actions: a number for them
+    frames: Annotated[int, whole("frames", 1, 1000)] = 1
+    value: int = 0
 
 
 class CablesScenario(Table, frozen=True, kw_only=True):

@@ -25,24 +25,35 @@ DONE = ("join", "kill", "revive")  # what can be done to any node on a channel
 
 
 class AirTable(Table, frozen=True, kw_only=True):
-    """The channel."""
+    """The channel.
 
-    # The unit of a frame's length, us: a frame takes `frame.slots` of them.
+    Attributes:
+        slot_us: the unit of a frame's length, us: a frame takes `frame.slots` of them.
+        turnaround_us: from the decision to send to the first sound, and back to hearing, us.
+        delay_us: between any two nodes, us.
+        loss: share of frames that a receiver cannot read though it heard them alone, 0 to 1.
+    """
+
     slot_us: Annotated[int, whole("microseconds", 1, 100_000)] = 100
-    # From the decision to send to the first sound, and back to hearing, us.
     turnaround_us: Micros = 20
-    delay_us: Annotated[int, whole("microseconds", 1, 10_000)] = 1  # between any two nodes, us
-    # Share of frames that a receiver cannot read though it heard them alone, 0 to 1.
+    delay_us: Annotated[int, whole("microseconds", 1, 10_000)] = 1
     loss: Annotated[float, number("frames lost", 0, 1)] = 0.0
 
 
 class EventTable(Table, frozen=True, kw_only=True):
-    """What happens to a node."""
+    """What happens to a node.
 
-    at_s: Annotated[float, number("seconds", 0)]  # when, s
-    action: str  # kill, revive or join; or a word of the network's own
-    node: Annotated[int, whole("", 0)]  # its number
-    value: int = 0  # of the network's own actions: a number for them
+    Attributes:
+        at_s: when, s.
+        action: kill, revive or join; or a word of the network's own.
+        node: its number.
+        value: of the network's own actions: a number for them.
+    """
+
+    at_s: Annotated[float, number("seconds", 0)]
+    action: str
+    node: Annotated[int, whole("", 0)]
+    value: int = 0
 
 
 class ChannelScenario(Table, frozen=True, kw_only=True):

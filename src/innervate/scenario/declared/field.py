@@ -33,26 +33,30 @@ PAIRS = ("cut", "restore")
 
 
 class AirTable(Table, frozen=True, kw_only=True):
-    """All nodes' radios."""
+    """All nodes' radios.
 
-    # Over so many metres 95 % of the frames are received, where nothing disturbs them.
+    Attributes:
+        reach_m: over so many metres 95 % of the frames are received, where nothing disturbs them.
+        bits_per_s: of a frame on the air.
+        preamble_bytes: in front of each.
+        turnaround_us: from the decision to send to the first sound; the radio is deaf then.
+        exponent: of the path loss: 2 in free space, 3 among machines.
+        shadowing_db: sigma of what a pair gains or loses besides, drawn from the seed.
+        capture_db: a frame survives others that are weaker by so much.
+        sense_db: the carrier is sensed down to so much below the level of 50 % reception.
+        queue_frames: frames that wait in a node for those before them.
+        backoff_us, exponent_min, exponent_max, busy_max: of CSMA, where the network is over it.
+    """
+
     reach_m: Annotated[float, above_0("metres", 100_000)] = 30.0
-    # Of a frame on the air.
     bits_per_s: Annotated[int, whole("bits per second", 100, 1_000_000_000)] = 250_000
-    preamble_bytes: Annotated[int, whole("bytes", 0, 1000)] = 6  # in front of each
-    # From the decision to send to the first sound; the radio is deaf then.
+    preamble_bytes: Annotated[int, whole("bytes", 0, 1000)] = 6
     turnaround_us: Micros = 192
-    # Of the path loss: 2 in free space, 3 among machines.
     exponent: Annotated[float, number("", 1, 6)] = 3.0
-    # Sigma of what a pair gains or loses besides, drawn from the seed.
     shadowing_db: Annotated[float, number("dB", 0, 20)] = 0.0
-    # A frame survives others that are weaker by so much.
     capture_db: Annotated[float, number("dB", 0, 60)] = 6.0
-    # The carrier is sensed down to so much below the level of 50 % reception.
     sense_db: Annotated[float, number("dB", 0, 60)] = 5.0
-    # Frames that wait in a node for those before them.
     queue_frames: Annotated[int, whole("frames", 1, 64)] = 8
-    # These four of CSMA, where the network is over it.
     backoff_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 320
     exponent_min: Annotated[int, whole("bits", 0, 15)] = 3
     exponent_max: Annotated[int, whole("bits", 0, 15)] = 6
@@ -60,22 +64,35 @@ class AirTable(Table, frozen=True, kw_only=True):
 
 
 class LinkTable(Table, frozen=True, kw_only=True):
-    """Two nodes that hear each other; if there is one such table, no others do."""
+    """Two nodes that hear each other; if there is one such table, no others do.
 
-    nodes: tuple[int, int]  # their numbers
-    # Share of the frames that is received, where nothing disturbs them, 0 to 1.
+    Attributes:
+        nodes: their numbers.
+        quality: share of the frames that is received, where nothing disturbs them, 0 to 1.
+    """
+
+    nodes: tuple[int, int]
     quality: Annotated[float, number("frames received", 0, 1)] = 1.0
 
 
 class EventTable(Table, frozen=True, kw_only=True):
-    """What happens to a node, or between two."""
+    """What happens to a node, or between two.
 
-    at_s: Annotated[float, number("seconds", 0)]  # when, s
-    action: str  # kill, revive, restart, jam, quiet; cut, restore with `other`; or an own word
-    node: Annotated[int, whole("", 0)]  # its number
-    other: Annotated[int, whole("", 0)] | None = None  # of cut and restore: the other node's number
-    noise_dbm: Annotated[float, number("dBm", -150, 0)] = -60.0  # of jam: how loud, dBm
-    value: int = 0  # of the network's own actions: a number for them
+    Attributes:
+        at_s: when, s.
+        action: kill, revive, restart, jam, quiet; cut, restore with `other`; or an own word.
+        node: its number.
+        other: of cut and restore: the other node's number.
+        noise_dbm: of jam: how loud, dBm.
+        value: of the network's own actions: a number for them.
+    """
+
+    at_s: Annotated[float, number("seconds", 0)]
+    action: str
+    node: Annotated[int, whole("", 0)]
+    other: Annotated[int, whole("", 0)] | None = None
+    noise_dbm: Annotated[float, number("dBm", -150, 0)] = -60.0
+    value: int = 0
 
 
 class FieldScenario(Table, frozen=True, kw_only=True):

@@ -42,11 +42,15 @@ class InputTable(Table, frozen=True, kw_only=True):
 
 
 class ScriptTable(Table, frozen=True, kw_only=True):
-    """[script]: an order of events in place of the clock, as `innervate verify --out` writes it."""
+    """[script]: an order of events in place of the clock, as `innervate verify --out` writes it.
 
-    # An event each, as a story says it.
+    Attributes:
+        steps: an event each, as a story says it.
+        graph: on the air: who hears whom, as --graph of `innervate verify` has it.
+    """
+
     steps: Annotated[list[str], Meta(max_length=100_000, description="a list of events")]
-    graph: str = ""  # on the air: who hears whom, as --graph of `innervate verify` has it
+    graph: str = ""
 
 
 def script_of(plan: Any) -> ScriptTable | None:
