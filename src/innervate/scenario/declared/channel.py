@@ -89,13 +89,13 @@ class ChannelScenario(Table, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One event: `at_us`, an action of `actions/channel`, the `node`; place in the file."""
+    """One event of a run on a channel."""
 
-    at_us: int
-    action: int
-    node: int
-    index: int = 0
-    value: int = 0
+    at_us: int  # when, true time, us
+    action: int  # of `actions/channel`
+    node: int  # the station it happens to
+    value: int = 0  # for GARBLE and FADE how many of its next CR-Rs
+    index: int = 0  # the event's place in the scenario file
 
 
 @dataclass(slots=True)
@@ -159,7 +159,7 @@ def plan(scenario: Any) -> ChannelPlan:
     for a, b in model.hidden:
         delays[a][b] = delays[b][a] = -1
     medium = dict(zip(CHANNEL_OWN, (air.slot_us, air.turnaround_us, 0, 0, 0, 1), strict=True))
-    faults = [Fault(round(1e6 * event.at_s), WORDS[event.action], event.node, place)
+    faults = [Fault(round(1e6 * event.at_s), WORDS[event.action], event.node, index=place)
               for place, event in enumerate(model.event) if event.action in DONE]  # fmt: skip
     return ChannelPlan(
         scenario=scenario,

@@ -138,14 +138,14 @@ class FieldScenario(Table, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One event: `at_us`, an action of `actions/field`, its nodes; place in the file."""
+    """One event of a run in a field."""
 
-    at_us: int
-    action: int
-    node: int
-    other: int = -1
-    value: int = 0
-    index: int = 0
+    at_us: int  # when, true time, us
+    action: int  # of `actions/field`
+    node: int  # the node it happens to
+    other: int = -1  # CUT and RESTORE: the other node of the pair, both ways
+    value: int = 0  # JAM: the noise there, 0.01 dBm
+    index: int = 0  # the event's place in the scenario file
 
 
 @dataclass(frozen=True, slots=True)

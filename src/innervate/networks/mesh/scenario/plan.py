@@ -5,23 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from innervate.scenario.declared.field import Fault
+
 CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
 ONE = 32_768
+MeshFault = Fault  # happens to a mesh as to any network in a field
 HEADER_SLOTS = 2  # what medium access protocols of radio teams put in front of a frame, bytes
-
-
-@dataclass(frozen=True, slots=True)
-class MeshFault:
-    """One event of a mesh run."""
-
-    at_us: int  # when, true time, us
-    # KILL, REVIVE (with its memory lost), CUT or RESTORE a pair (both ways), JAM or QUIET: a noise
-    # at a node, RESTART.
-    action: int
-    node: int  # the node it happens to
-    other: int = 0  # CUT and RESTORE: the other node
-    value: int = 0  # JAM: the noise there, 0.01 dBm
-    index: int = 0  # the event's place in the scenario file
 
 
 @dataclass(frozen=True, slots=True)

@@ -258,7 +258,7 @@ class MeshView(View):
             raise Refused("this node is on" if state == ALIVE else "this node starts by itself")
         if not revive and state != ALIVE:
             raise Refused("this node is not on")
-        return {"action": REVIVE if revive else KILL, "node": node}
+        return {"action": REVIVE if revive else KILL, "node": node, "other": 0}
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""

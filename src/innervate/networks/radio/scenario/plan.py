@@ -6,17 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
 
 from innervate.networks.radio.scenario.baselines import NONE
+from innervate.scenario.declared.channel import Fault
 
-
-@dataclass(frozen=True, slots=True)
-class RadioFault:
-    """One event of a radio run."""
-
-    at_us: int  # when, true time, us
-    action: int  # JOIN, KILL, LEAVE, GARBLE or FADE
-    node: int  # the station it happens to
-    value: int = 0  # for GARBLE and FADE how many of its next CR-Rs
-    index: int = 0  # the event's place in the scenario file
+RadioFault = Fault  # happens to a team as to any network on a channel
 
 
 @dataclass(frozen=True, slots=True)
