@@ -27,13 +27,17 @@ from innervate.cli.files_app import (
 from innervate.cli.flowing import Flowing
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
+    Flag,
     PageOptions,
     RunOptions,
+    Seed,
+    Sets,
     SizeOptions,
     SweepOptions,
+    Texts,
     VerifyOptions,
+    Whole,
 )
-from innervate.cli.seeds import Seed, Sets, Whole
 from innervate.network import first
 
 HELP = """Describe and simulate the networks inside and between robots.
@@ -59,7 +63,7 @@ def demo(
     *,
     seed: Seed = None,
     out: Path | None = None,
-    open_: Annotated[bool, Parameter(negative="")] = False,
+    open_: Flag = False,
 ) -> int:
     """The main jobs: a skin mends itself, radios get in order, an alarm gets through. With reports.
 
@@ -85,7 +89,7 @@ def run(
     set_: Sets = None,
     seed: Seed = None,
     out: Path | None = None,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Flag = False,
     how: Annotated[RunOptions, Parameter(name="*")] = RunOptions(),
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
@@ -151,9 +155,9 @@ def papers(
     paper: str | None = None,
     /,
     *,
-    only: Annotated[list[str] | None, Parameter(negative="")] = None,
-    quick: Annotated[bool, Parameter(negative="")] = False,
-    redraw: Annotated[bool, Parameter(negative="")] = False,
+    only: Texts = None,
+    quick: Flag = False,
+    redraw: Flag = False,
     page: Path | None = None,
     out: Path = Path("papers"),
 ) -> int:
@@ -187,7 +191,7 @@ def verify(
     /,
     *,
     options: Annotated[VerifyOptions, Parameter(name="*")] = VerifyOptions(),
-    json: Annotated[bool, Parameter(negative="")] = False,
+    json: Flag = False,
     out: Path | None = None,
 ) -> int:
     """Explore every interleaving of the protocol on small networks; 1 if something is broken.
@@ -211,8 +215,8 @@ def prove(
     system: str | None = None,
     /,
     *,
-    faults: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    faults: Flag = False,
+    json: Flag = False,
 ) -> int:
     """Prove what holds for any number of nodes, from the protocol's own source; 1 if it does not.
 
@@ -268,8 +272,8 @@ def firmware(
     out: Path = Path("lib"),
     nodes: Whole | None = None,
     prefix: str = "",
-    sealed: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    sealed: Flag = False,
+    json: Flag = False,
 ) -> int:
     """Write a node's protocol as C99 for a microcontroller: one .c and one .h.
 

@@ -7,13 +7,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from innervate.cli.options import ExportOptions, MeasuredOptions, OwnOptions
-from innervate.cli.seeds import Seed, Sets
-
-Json = Annotated[bool, Parameter(negative="")]
+from innervate.cli.options import ExportOptions, Flag, MeasuredOptions, OwnOptions, Seed, Sets
 
 
-def scenarios(*, json: Json = False) -> int:
+def scenarios(*, json: Flag = False) -> int:
     """List the bundled scenarios, each with what it shows.
 
     Parameters
@@ -52,7 +49,7 @@ def docs(page: str = "", /) -> int:
     return command.show(page)
 
 
-def doctor(*, json: Json = False) -> int:
+def doctor(*, json: Flag = False) -> int:
     """Say what is installed, what is missing and what will be slow; 1 if nothing can be simulated.
 
     Parameters
@@ -97,7 +94,7 @@ def new(
     return command.new(kind, file, measured)
 
 
-def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Json = False) -> int:
+def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Flag = False) -> int:
     """Check a scenario without running it; says what it holds.
 
     Parameters
@@ -116,7 +113,7 @@ def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Json = Fa
     return command.check(file, set_ or [], seed, json)
 
 
-def compare(first: Path, second: Path, /, *, json: Json = False) -> int:
+def compare(first: Path, second: Path, /, *, json: Flag = False) -> int:
     """Compare two run folders: scenario, summary, first event that differs.
 
     The exit code is 0 if both were the same, event by event, and 1 if not.
@@ -140,7 +137,7 @@ def check_protocol(
     /,
     *,
     tests: bool = True,
-    json: Json = False,
+    json: Flag = False,
 ) -> int:
     """Check a network of your own: dialect, ranges, frames, outbox, what no test reaches.
 
@@ -182,7 +179,7 @@ def fit(
     /,
     *,
     out: Path | None = None,
-    json: Json = False,
+    json: Flag = False,
 ) -> int:
     """Make a scenario out of a capture of a mesh or a skin; 1 if its simulation has other links.
 

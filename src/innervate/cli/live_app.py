@@ -8,10 +8,8 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.options import Engine, SendOptions, UpOptions
-from innervate.cli.seeds import Whole
+from innervate.cli.options import Engine, Flag, SendOptions, UpOptions, Whole
 
-Json = Annotated[bool, Parameter(negative="")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 live_app = App(
     name="live",
@@ -75,7 +73,7 @@ def live_up(
 
 
 @live_app.command(name="status")
-def live_status(*nodes: str, json: Json = False) -> int:
+def live_status(*nodes: str, json: Flag = False) -> int:
     """Show neighbours, routes, counters, broken cables of running nodes.
 
     Parameters
@@ -98,7 +96,7 @@ def live_send(
     /,
     *,
     how: Annotated[SendOptions, Parameter(name="*")] = SendOptions(),
-    json: Json = False,
+    json: Flag = False,
 ) -> int:
     """Send a message from a running node; prints what becomes of it.
 
@@ -126,7 +124,7 @@ def live_command(
     /,
     *,
     cell: Whole | None = None,
-    json: Json = False,
+    json: Flag = False,
 ) -> int:
     """Have the PC of a skin send a command down to its cells, over the children of every cell.
 
@@ -149,7 +147,7 @@ def live_command(
 
 
 @live_app.command(name="listen")
-def live_listen(node: str, /, *, count: int = 0, in_order: Json = False, json: Json = False) -> int:
+def live_listen(node: str, /, *, count: int = 0, in_order: Flag = False, json: Flag = False) -> int:
     """Print what comes in at a running node, until Ctrl-C: messages, samples, commands.
 
     Parameters
@@ -192,7 +190,7 @@ def live_capture(
 
 
 @live_app.command(name="recovery")
-def live_recovery(capture: Path, /, *, json: Json = False) -> int:
+def live_recovery(capture: Path, /, *, json: Flag = False) -> int:
     """Say how a skin healed, from a capture of all its nodes: when routes and samples were back.
 
     Parameters
@@ -283,7 +281,7 @@ def live_enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
 
 
 @live_app.command(name="revoke")
-def live_revoke(where: Path, /, *numbers: int, json: Json = False) -> int:
+def live_revoke(where: Path, /, *numbers: int, json: Flag = False) -> int:
     """Put nodes out whose identity has leaked; running nodes are told and tell each other.
 
     Parameters
@@ -301,7 +299,7 @@ def live_revoke(where: Path, /, *numbers: int, json: Json = False) -> int:
 
 
 @live_app.command(name="cut")
-def live_cut(node: str, port: int, /, *, restore: Json = False) -> int:
+def live_cut(node: str, port: int, /, *, restore: Flag = False) -> int:
     """Cut a cable in silence at one end, as if its plug had come out; or put it back.
 
     Parameters

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from innervate.dialect import plain
 from innervate.export import measure, pcapng
 from innervate.export.errors import ExportError
-from innervate.export.measured import Measured
+from innervate.export.measure import Measured
 from innervate.export.reading import Capture, Packet
 from innervate.networks.mesh import frames
 from innervate.networks.mesh.protocol import constants as const

@@ -12,7 +12,7 @@ from innervate.analysis.intervals import quantile
 from innervate.export import measure, pcapng
 from innervate.export.errors import ExportError
 from innervate.export.links import Place
-from innervate.export.measured import Measured, Way
+from innervate.export.measure import Measured, Way
 from innervate.export.reading import Capture, Packet
 from innervate.networks.skin.frames import KIND_BITS, SIZES, TOUCH
 from innervate.networks.skin.protocol.constants import BEACON, DATA
