@@ -104,12 +104,9 @@ class Coder:
 
 
 def take_place(stack: Any, network: Network) -> str:
-    """Let a stack, not yet started, call C from now on; "" if it does, else why not.
+    """Let a network's stack, not yet started, call C from now on; "" if it does, else why not.
 
-    Args:
-        stack: with `do`, `node`, `params`, `inbox`, `out`, and if it has them `gate`, `coder`,
-            `item`.
-        network: whose it is.
+    It has `do`, `node`, `params`, `inbox`, `out`, and perhaps `gate`, `coder`, `item`.
     """
     found = _role_of(stack, network)
     if found is None:

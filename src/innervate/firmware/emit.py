@@ -32,12 +32,7 @@ MEANINGS = {
 
 
 class Library:
-    """A role as C.
-
-    Args:
-        role: the protocol.
-        params: what the header's default parameters are.
-        prefix: in front of all names; the role's name if left out.
+    """A role as C; `prefix` stands in front of all names, the role's own if left out.
 
     Raises:
         FirmwareError: it is outside the dialect, or a parameter is missing.

@@ -16,12 +16,7 @@ def heads(near: Sequence[Sequence[int]], count: int, eligible: Sequence[int]) ->
     """So many nodes that are far from each other, each in the middle of those nearest to it.
 
     Each is at first the one that is farthest from those before; then each moves to the middle of
-    its cluster, until none does.
-
-    Args:
-        near: per node whom its links lead to.
-        count: 1 to the number of eligible nodes.
-        eligible: nodes that can be heads, ascending.
+    its cluster, until none does. Heads are of the eligible ones alone, which ascend.
     """
     found = [eligible[0]]
     apart = distances(near, found[0])

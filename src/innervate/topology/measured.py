@@ -90,12 +90,7 @@ class Measured:
     def least_for(self, most: int, *, in_one: bool) -> float | None:
         """The least quality, in hundredths, with which `kept` leaves at most so many nodes.
 
-        Args:
-            most: nodes.
-            in_one: only those of the largest part are to count.
-
-        Returns:
-            None where no quality leaves any.
+        With `in_one` those of the largest part count. None where no quality leaves any.
         """
 
         def left(least: float) -> int:

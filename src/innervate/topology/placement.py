@@ -88,12 +88,7 @@ def threshold(gain: Sequence[int], count: int, links: int) -> tuple[int, list[tu
     """The gain that so many pairs have both ways, and the pairs (a < b) to weaken by 0.01 dB.
 
     Pairs that are exactly as loud as the last one would make more links than asked for; those that
-    come last are to be weakened.
-
-    Args:
-        gain: per sender and receiver, 0.01 dB.
-        count: how many nodes.
-        links: 1 .. count * (count - 1) / 2.
+    come last are to be weakened. There are 1 .. count * (count - 1) / 2 links.
     """
     loudness = sorted(
         (-min(gain[a * count + b], gain[b * count + a]), a, b)

@@ -52,10 +52,7 @@ def find(names: list[str]) -> list[Path]:
 
 
 class Live(Source):
-    """Nodes that run now.
-
-    Args:
-        sockets: their status sockets.
+    """Nodes that run now, by their status sockets.
 
     Raises:
         WatchError: none of them answers, or they are of different kinds.
