@@ -137,8 +137,11 @@ class Reader:
         raise NotImplementedError
 
     def end(self, last_ns: int) -> None:
-        """That was the last one."""
-        raise NotImplementedError
+        """That was the last one: what left long enough before came in nowhere."""
+        for key, waiting in self.left.items():
+            for packet in waiting:
+                if last_ns - packet.time_ns > WAIT_NS:
+                    self.give_up(key, packet)
 
     def depart(self, key: Any, packet: Packet) -> None:
         """A frame left: it may come in elsewhere, by the same key."""

@@ -281,14 +281,10 @@ class _Reader:
         if kind != NOTHING:
             made.returns = kind
 
-    def _Pass(self, _node: ast.Pass) -> None:
+    def _Pass(self, _node: ast.stmt) -> None:
         pass
 
-    def _Break(self, _node: ast.Break) -> None:
-        pass
-
-    def _Continue(self, _node: ast.Continue) -> None:
-        pass
+    _Break = _Continue = _Pass
 
     def type(self, node: ast.expr) -> Type:
         """What an expression is; everything in it is looked at."""

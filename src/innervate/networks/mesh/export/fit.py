@@ -98,10 +98,7 @@ class Reader(measure.Reader):
 
     def end(self, last_ns: int) -> None:
         """Frames that came in nowhere; flows."""
-        for key, waiting in self.left.items():
-            for packet in waiting:
-                if last_ns - packet.time_ns > measure.WAIT_NS:
-                    self.give_up(key, packet)
+        super().end(last_ns)
         self.found.ways = {key: way for key, way in self.found.ways.items() if way.got}
         for (origin, dest), seen in sorted(self.sent.items()):
             times = sorted(time for time, _ in seen.values())

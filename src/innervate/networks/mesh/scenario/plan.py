@@ -9,8 +9,13 @@ from innervate.scenario.declared.field import Fault
 
 CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
 ONE = 32_768
-MeshFault = Fault  # happens to a mesh as to any network in a field
 HEADER_SLOTS = 2  # what medium access protocols of radio teams put in front of a frame, bytes
+
+
+class MeshFault(Fault):
+    """One event of a mesh run: what happens in any field."""
+
+    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)

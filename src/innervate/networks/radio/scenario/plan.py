@@ -8,7 +8,11 @@ from typing import Any, NamedTuple, Self
 from innervate.networks.radio.scenario.baselines import NONE
 from innervate.scenario.declared.channel import Fault
 
-RadioFault = Fault  # happens to a team as to any network on a channel
+
+class RadioFault(Fault):
+    """One event of a radio run: what happens on any channel."""
+
+    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
