@@ -67,14 +67,10 @@ def demo(
 ) -> int:
     """The main jobs: a skin mends itself, radios get in order, an alarm gets through. With reports.
 
-    Parameters
-    ----------
-    seed
-        Root seed in place of the scenario's; same seed, same run.
-    out
-        Folder to write into, a run folder for each; runs/ if left out.
-    open_
-        Open the reports in a browser.
+    Args:
+        seed: Root seed in place of the scenario's; same seed, same run.
+        out: Folder to write into, a run folder for each; runs/ if left out.
+        open_: Open the reports in a browser.
     """
     from innervate.cli import demo as command
 
@@ -94,18 +90,12 @@ def run(
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
 
-    Parameters
-    ----------
-    file
-        A scenario file, or the name of a bundled one (see: innervate scenarios).
-    set_
-        Change a key, like protocol.k=3 or event.0.at_s=1.5; may be given again.
-    seed
-        Root seed in place of the scenario's; same seed, same run.
-    out
-        Folder to write; runs/NAME-SEED if left out.
-    json
-        Print the summary as JSON and nothing else.
+    Args:
+        file: A scenario file, or the name of a bundled one (see: innervate scenarios).
+        set_: Change a key, like protocol.k=3 or event.0.at_s=1.5; may be given again.
+        seed: Root seed in place of the scenario's; same seed, same run.
+        out: Folder to write; runs/NAME-SEED if left out.
+        json: Print the summary as JSON and nothing else.
     """
     from innervate.cli import running as command
 
@@ -124,10 +114,9 @@ def sweep(
     Give the same command again after an interrupt, a crash or with more values: what is done is
     not done twice. The exit code is 1 if no run succeeded, or a figure could not be drawn.
 
-    Parameters
-    ----------
-    file
-        A scenario file, the name of a bundled one, or a plan file (see: innervate docs sweeps).
+    Args:
+        file: A scenario file, the name of a bundled one, or a plan file (see: innervate docs
+            sweeps).
     """
     from innervate.cli import sweeping as command
 
@@ -140,10 +129,8 @@ def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")])
 
     The exit code is 1 if at some rate none of the numbers of ports that were tried is enough.
 
-    Parameters
-    ----------
-    robot
-        A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
+    Args:
+        robot: A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
     """
     from innervate.cli import sizing as command
 
@@ -163,21 +150,15 @@ def papers(
 ) -> int:
     """Draw and tabulate the published figures, each claim beside what was measured.
 
-    Parameters
-    ----------
-    paper
-        Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
-    only
-        A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare; may be
-        given again.
-    quick
-        Few seeds and settings: in about a minute.
-    redraw
-        Use kept results even if the sources have changed since.
-    page
-        Of compare: a page of Markdown whose tables are made anew between its marks.
-    out
-        Folder for pictures, tables and kept results.
+    Args:
+        paper: Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
+        only: A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare;
+            may be
+            given again.
+        quick: Few seeds and settings: in about a minute.
+        redraw: Use kept results even if the sources have changed since.
+        page: Of compare: a page of Markdown whose tables are made anew between its marks.
+        out: Folder for pictures, tables and kept results.
     """
     from innervate.cli import papers as command
 
@@ -196,14 +177,10 @@ def verify(
 ) -> int:
     """Explore every interleaving of the protocol on small networks; 1 if something is broken.
 
-    Parameters
-    ----------
-    system
-        Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
-    json
-        Print the results as JSON and nothing else.
-    out
-        Folder for counterexamples: scenario, story, picture.
+    Args:
+        system: Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
+        json: Print the results as JSON and nothing else.
+        out: Folder for counterexamples: scenario, story, picture.
     """
     from innervate.cli import verifying as command
 
@@ -220,14 +197,10 @@ def prove(
 ) -> int:
     """Prove what holds for any number of nodes, from the protocol's own source; 1 if it does not.
 
-    Parameters
-    ----------
-    system
-        Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
-    faults
-        Plant small mistakes in the protocol, one after the other: each must be refuted.
-    json
-        Print the results as JSON and nothing else.
+    Args:
+        system: Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
+        faults: Plant small mistakes in the protocol, one after the other: each must be refuted.
+        json: Print the results as JSON and nothing else.
     """
     from innervate.cli import proving as command
 
@@ -246,18 +219,12 @@ def watch(
 ) -> int:
     """Serve a page to watch a network on and to break it, until Ctrl-C.
 
-    Parameters
-    ----------
-    what
-        A scenario, the name of a bundled one, a run folder, or live: nodes that run.
-    nodes
-        With live: names or sockets; all nodes of this user if left out.
-    set_
-        Change a key of the scenario, as for run.
-    seed
-        Root seed in place of the scenario's.
-    speed
-        Seconds of the network per second; 0 is as fast as possible.
+    Args:
+        what: A scenario, the name of a bundled one, a run folder, or live: nodes that run.
+        nodes: With live: names or sockets; all nodes of this user if left out.
+        set_: Change a key of the scenario, as for run.
+        seed: Root seed in place of the scenario's.
+        speed: Seconds of the network per second; 0 is as fast as possible.
     """
     from innervate.cli import watching as command
 
@@ -277,22 +244,14 @@ def firmware(
 ) -> int:
     """Write a node's protocol as C99 for a microcontroller: one .c and one .h.
 
-    Parameters
-    ----------
-    network
-        skin, radio, mesh, csma, or a folder with a network of your own.
-    settings
-        Parameters of the protocol in place of the usual ones, like beacon_us=20000.
-    out
-        Folder to write into.
-    nodes
-        How many a network of this kind has at most, where arrays depend on it.
-    prefix
-        In front of all names; the network's name if left out.
-    sealed
-        With a driver that shakes hands and seals, with a network's key, as live nodes do.
-    json
-        Print what was written as JSON and nothing else.
+    Args:
+        network: skin, radio, mesh, csma, or a folder with a network of your own.
+        settings: Parameters of the protocol in place of the usual ones, like beacon_us=20000.
+        out: Folder to write into.
+        nodes: How many a network of this kind has at most, where arrays depend on it.
+        prefix: In front of all names; the network's name if left out.
+        sealed: With a driver that shakes hands and seals, with a network's key, as live nodes do.
+        json: Print what was written as JSON and nothing else.
     """
     from innervate.cli import firmware as command
     from innervate.firmware import library

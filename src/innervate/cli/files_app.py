@@ -13,10 +13,8 @@ from innervate.cli.options import ExportOptions, Flag, MeasuredOptions, OwnOptio
 def scenarios(*, json: Flag = False) -> int:
     """List the bundled scenarios, each with what it shows.
 
-    Parameters
-    ----------
-    json
-        Print names, sentences and files as JSON.
+    Args:
+        json: Print names, sentences and files as JSON.
     """
     from innervate.cli import files as command
 
@@ -26,10 +24,8 @@ def scenarios(*, json: Flag = False) -> int:
 def schema(*, out: Path | None = None) -> int:
     """Print the JSON Schema of scenario files, for editors.
 
-    Parameters
-    ----------
-    out
-        File to write it to.
+    Args:
+        out: File to write it to.
     """
     from innervate.cli import files as command
 
@@ -39,10 +35,8 @@ def schema(*, out: Path | None = None) -> int:
 def docs(page: str = "", /) -> int:
     """Print a page of the documentation, or the list of them.
 
-    Parameters
-    ----------
-    page
-        Its name, as the list has it.
+    Args:
+        page: Its name, as the list has it.
     """
     from innervate.cli import pages as command
 
@@ -52,10 +46,8 @@ def docs(page: str = "", /) -> int:
 def doctor(*, json: Flag = False) -> int:
     """Say what is installed, what is missing and what will be slow; 1 if nothing can be simulated.
 
-    Parameters
-    ----------
-    json
-        Print it as JSON and nothing else.
+    Args:
+        json: Print it as JSON and nothing else.
     """
     from innervate.cli import doctor as command
 
@@ -72,16 +64,11 @@ def new(
 ) -> int:
     """Write a commented scenario to start from, or a network of one's own.
 
-    Parameters
-    ----------
-    kind
-        What it describes: skin, radio or mesh. network: a folder with a network of your own.
-    file
-        Where to write it; a scenario is printed if left out. Of a network, its folder: NAME.
-    measured
-        Which nodes and links of a measured network count.
-    own
-        What a network of your own is joined by.
+    Args:
+        kind: What it describes: skin, radio or mesh. network: a folder with a network of your own.
+        file: Where to write it; a scenario is printed if left out. Of a network, its folder: NAME.
+        measured: Which nodes and links of a measured network count.
+        own: What a network of your own is joined by.
     """
     from innervate.cli import files as command
 
@@ -97,16 +84,11 @@ def new(
 def check(file: str, /, *, set_: Sets = None, seed: Seed = None, json: Flag = False) -> int:
     """Check a scenario without running it; says what it holds.
 
-    Parameters
-    ----------
-    file
-        A scenario file, or the name of a bundled one.
-    set_
-        Change a key, as for run.
-    seed
-        Root seed in place of the scenario's.
-    json
-        Print it as JSON and nothing else.
+    Args:
+        file: A scenario file, or the name of a bundled one.
+        set_: Change a key, as for run.
+        seed: Root seed in place of the scenario's.
+        json: Print it as JSON and nothing else.
     """
     from innervate.cli import files as command
 
@@ -118,14 +100,10 @@ def compare(first: Path, second: Path, /, *, json: Flag = False) -> int:
 
     The exit code is 0 if both were the same, event by event, and 1 if not.
 
-    Parameters
-    ----------
-    first
-        A run folder.
-    second
-        Another one.
-    json
-        Print all that differs as JSON and nothing else.
+    Args:
+        first: A run folder.
+        second: Another one.
+        json: Print all that differs as JSON and nothing else.
     """
     from innervate.cli import comparing as command
 
@@ -141,14 +119,10 @@ def check_protocol(
 ) -> int:
     """Check a network of your own: dialect, ranges, frames, outbox, what no test reaches.
 
-    Parameters
-    ----------
-    folder
-        The network's folder.
-    tests
-        Run its tests, and say which functions of the protocol they do not reach.
-    json
-        Print what was found as JSON and nothing else.
+    Args:
+        folder: The network's folder.
+        tests: Run its tests, and say which functions of the protocol they do not reach.
+        json: Print what was found as JSON and nothing else.
     """
     from innervate.cli import making as command
 
@@ -163,11 +137,10 @@ def export(
 ) -> int:
     """Write a run or a scenario as files for other tools.
 
-    Parameters
-    ----------
-    source
-        A run folder, a scenario file, or the name of a bundled one; with --dissector alone the
-        folder for that, Wireshark's own if left out.
+    Args:
+        source: A run folder, a scenario file, or the name of a bundled one; with --dissector alone
+            the
+            folder for that, Wireshark's own if left out.
     """
     from innervate.cli import exporting as command
 
@@ -183,14 +156,11 @@ def fit(
 ) -> int:
     """Make a scenario out of a capture of a mesh or a skin; 1 if its simulation has other links.
 
-    Parameters
-    ----------
-    capture
-        A capture by innervate, of a run or of live nodes; or what `live status --json` said.
-    out
-        The scenario file to write; it is printed if left out.
-    json
-        Print the scenario and how well it matches as JSON and nothing else.
+    Args:
+        capture: A capture by innervate, of a run or of live nodes; or what `live status --json`
+            said.
+        out: The scenario file to write; it is printed if left out.
+        json: Print the scenario and how well it matches as JSON and nothing else.
     """
     from innervate.cli import fitting as command
 
