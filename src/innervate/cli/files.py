@@ -36,12 +36,9 @@ def scenarios(as_json: bool) -> int:
 def _first_sentence(path: Path) -> str:
     """Of the comment that a file begins with."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    comment = " ".join(line.lstrip("# ") for line in takewhile(_is_comment, lines))
-    return re.split(r"(?<=\.) (?=[A-Z])", comment, maxsplit=1)[0]
-
-
-def _is_comment(line: str) -> bool:
-    return line.startswith("#")
+    comment = takewhile(lambda line: line.startswith("#"), lines)
+    text = " ".join(line.lstrip("# ") for line in comment)
+    return re.split(r"(?<=\.) (?=[A-Z])", text, maxsplit=1)[0]
 
 
 def check_unused(options: Any, whose: str) -> None:

@@ -40,11 +40,7 @@ class Network:
 def reception_q15(over_cdb: int) -> int:
     """Chance of reception in 1/32768 at so much above the 50 % point (0.01 dB) [mesh 6]."""
     steps = (over_cdb + STEP_CDB // 2) // STEP_CDB
-    return _logistic(min(max(steps, -300), 300))
-
-
-def _logistic(steps: int) -> int:
-    return round(ONE / (1 + exp(-steps / 10)))
+    return round(ONE / (1 + exp(-min(max(steps, -300), 300) / 10)))
 
 
 def quality_cdb(quality: float) -> int:
@@ -101,7 +97,7 @@ def placed(
             points[node] = start
         faded = placement.fading(count, shadowing, direction, draw)
         network = _heard(model, nodes, profile, points, faded)
-        if left > 1 and not _connected(count, network.good, robots):
+        if left > 1 and len(_parts(count, network.good, robots)) > 1:
             continue
         _check_connected(nodes, network.good, robots, _remedy(model))
         return network
@@ -214,10 +210,6 @@ def _parts(count: int, good: list[tuple[int, int]], robots: set[int]) -> list[li
     fixed = [link for link in good if not robots.intersection(link)]
     found = placement.components(placement.neighbours(count, fixed))
     return [part for part in found if len(part) > 1 or part[0] not in robots]
-
-
-def _connected(count: int, good: list[tuple[int, int]], robots: set[int]) -> bool:
-    return len(_parts(count, good, robots)) <= 1
 
 
 def _check_connected(
