@@ -42,7 +42,7 @@ Numbers = Annotated[list[float] | None, Parameter(negative="")]
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How a scenario runs."""
+    """How a scenario runs, whichever command runs it."""
 
     report: bool = True
     """Write report.html as well."""

@@ -33,7 +33,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass
 class Written:
-    """What a capture holds."""
+    """What a capture holds, once it is written."""
 
     frames: int  # how many packets
     sent: int  # frames that left, or were lost at their sender

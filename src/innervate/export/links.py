@@ -31,7 +31,7 @@ class Interface(NamedTuple):
 
 
 class Place(NamedTuple):
-    """What a description says."""
+    """What an interface's description says of a link."""
 
     what: str  # "cell", "pc", "node", "station"; "" if it says nothing of the kind
     number: int  # which; -1 not said

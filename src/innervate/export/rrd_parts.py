@@ -21,7 +21,7 @@ HEAT: tuple[Rgb, ...] = ((246, 243, 238), (251, 211, 156), (242, 162, 76), (210,
 
 
 class Column(NamedTuple):
-    """An entity over time."""
+    """An entity over time: one value at each moment."""
 
     name: str  # its path
     times_us: list[int]  # of its rows

@@ -30,7 +30,7 @@ OUT = ("count", "limit", "overflow")
 
 
 class Type(NamedTuple):
-    """What an expression is."""
+    """What an expression is, in C's terms."""
 
     what: str  # "int", a record's name, "out", "array" of numbers, "actions", "frames", or "none"
     field: Field | None = None  # of an array, the field that it is

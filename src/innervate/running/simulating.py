@@ -54,7 +54,7 @@ TABLES = (REPORTS, DELIVERIES)
 
 @dataclass(slots=True)
 class Result:
-    """What a simulation leaves."""
+    """What a simulation leaves when it ends."""
 
     plan: Any  # what ran
     world: Any  # its tables at the end

@@ -18,7 +18,7 @@ DEPTH_MAX = 16
 
 @dataclass(slots=True)
 class Source:
-    """A scenario's origin."""
+    """A scenario's origin, for what errors say."""
 
     path: str = ""  # the file as the user named it; "" for a scenario made in code
     folder: str = ""  # where relative paths in it start; "" is the working folder

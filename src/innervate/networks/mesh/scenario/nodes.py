@@ -27,7 +27,7 @@ BUNDLED_IMPORTS = "freifunk/"
 
 @dataclass(slots=True)
 class Nodes:
-    """Who is there."""
+    """Who is there, and what the scenario gives of them."""
 
     source: Source  # for error messages
     names: list[str]  # per node, all different

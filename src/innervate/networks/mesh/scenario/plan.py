@@ -41,7 +41,7 @@ class Walk:
 
 @dataclass(slots=True)
 class MeshRadio:
-    """The medium [mesh 6]."""
+    """The medium: who hears whom [mesh 6]."""
 
     byte_ns: int  # airtime of a byte, ns; airtime_us = (phy_bytes + frame bytes) * byte_ns // 1000
     phy_bytes: int  # preamble and the like, in front of every frame

@@ -17,7 +17,7 @@ CELLS_MAX = 65_535  # 65535 in a command means all
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """One command."""
+    """One command of the PC to cells."""
 
     at_us: int  # when the PC is told to send it, true time, us
     cell: int  # whom it is for; ALL = every cell

@@ -34,7 +34,7 @@ DRAW_MAX = 2**30 - 1
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step."""
+    """One step of a script, as read."""
 
     # TICK, SOON, DELIVER, STEP_LOSE, DETECT, DRAW, STEP_CUT, STEP_RESTORE or STEP_RESTART.
     action: int
