@@ -58,7 +58,7 @@ def _command(words: str) -> list[str]:
     command: Any = app
     for word in words.split():
         command = command[word]
-    about = command.help.partition("    Parameters\n")[0]
+    about = command.help.partition("    Args:\n")[0]
     if command.default_command is None:
         return [f'.SS "{_plain(words)}"', *_paragraphs(about)]
     given = [one for one in command.assemble_argument_collection(parse_docstring=True) if one.show]

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import polars
 import pytest
 
-from innervate.cli import comparing, errors, sweeping, verifying, verifying_random
+from innervate.cli import comparing, errors, sweeping, verifying
 from innervate.running import fuzz
 
 
@@ -82,7 +82,7 @@ def attempts(monkeypatch):
 ])  # fmt: skip
 def test_so_many_networks_are_tried_from_a_seed_on(attempts, capsys, seed, count, first, last):
     for as_json in (False, True):
-        assert verifying_random.search(seed, count, as_json, None) == 0
+        assert verifying.search(seed, count, as_json, None) == 0
     assert attempts == [*range(first, last + 1)] * 2
     words, told = capsys.readouterr().out.splitlines()
     many = "1 network, 5" if count == 1 else f"{count} networks, {first} to {last}"
@@ -93,7 +93,7 @@ def test_so_many_networks_are_tried_from_a_seed_on(attempts, capsys, seed, count
 @pytest.mark.parametrize(("out", "file"), [(None, Path("runs/12.toml")), ("o", Path("o/12.toml"))])
 def test_the_first_network_that_breaks_is_the_last(attempts, capsys, out, file):
     for as_json in (False, True):
-        assert verifying_random.search(10, 0, as_json, out and Path(out)) == 1
+        assert verifying.search(10, 0, as_json, out and Path(out)) == 1
     assert attempts == [10, 11, 12] * 2
     *words, told = capsys.readouterr().out.splitlines()
     assert words == ["Network 12 breaks: a loop",
@@ -104,7 +104,7 @@ def test_the_first_network_that_breaks_is_the_last(attempts, capsys, out, file):
 
 
 def test_who_is_stopped_has_tried_what_was_under_way(attempts, capsys):
-    assert verifying_random.search(3, 5, False, None) == errors.INTERRUPTED
-    assert verifying_random.search(3, 1, False, None) == 0  # that was all
+    assert verifying.search(3, 5, False, None) == errors.INTERRUPTED
+    assert verifying.search(3, 1, False, None) == 0  # that was all
     assert attempts == [3, 3]
     assert capsys.readouterr().out == "Nothing broken in 1 network, 3.\n" * 2

@@ -11,7 +11,7 @@ from innervate import scenario
 from innervate.cli import app, capturing
 from innervate.export import capture, fitting, measure, pcapng
 from innervate.export.errors import ExportError
-from innervate.export.measured import Way
+from innervate.export.measure import Way
 from innervate.live import status, tap
 from innervate.networks.mesh.export import statuslog
 from tests.live.net import Mesh, until

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from innervate.dialect import plain
 from innervate.export import fitting, links, measure, pcapng
 from innervate.export.errors import ExportError
-from innervate.export.measured import Way
+from innervate.export.measure import Way
 from innervate.networks.mesh import frames as mesh
 from innervate.networks.mesh.export.fit import Mesh
 from innervate.networks.mesh.protocol import constants as mesh_const

@@ -10,7 +10,7 @@ import pytest
 from innervate.firmware import compiled, payloads
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.packed import Packed
-from innervate.firmware.payloads import whole
+from innervate.firmware.payloads import cases
 from innervate.firmware.records import (
     BYTES,
     TYPES,
@@ -170,8 +170,8 @@ def test_libraries_that_were_not_used_for_longest_go(tmp_path):
     assert left == {*(f"{age}.so" for age in range(compiled.KEPT_MOST)), "one.lock"}
 
 
-def test_payloads_that_are_not_looked_into_need_no_functions():
-    assert whole("some", SimpleNamespace(forms=(SimpleNamespace(payloads={}),))) == []
+def test_payloads_that_are_not_looked_into_have_no_cases():
+    assert cases(SimpleNamespace(forms=(SimpleNamespace(payloads={}),))) == []
 
 
 @pytest.mark.parametrize(("fields", "why"), [

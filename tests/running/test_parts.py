@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -186,7 +187,7 @@ def test_a_compiler_stops_at_the_innermost_place_in_the_folder(tmp_path):
 def test_the_first_action_that_found_no_room_is_blamed():
     lines = iter([("protocol.py", 4), ("protocol.py", 9)])
     watch = SimpleNamespace(overflow=None, here=lambda: next(lines))
-    flag = blaming._Flag([0], watch)
+    flag = blaming.Told([0], partial(blaming.Watched._overflow_set, watch))
     flag[0] = 0
     assert watch.overflow is None
     flag[0] = 1
@@ -197,7 +198,8 @@ def test_the_first_action_that_found_no_room_is_blamed():
 def test_values_of_an_array_are_within_their_range_and_places_within_it():
     noted = []
     watch = SimpleNamespace(_ranges={"x": (0, 9)}, note=lambda *one: noted.append(one))
-    made = blaming._Row([1, 2, 3], "x", 5, watch)
+    made = blaming._Row([1, 2, 3], partial(blaming.Watched._in_row_set, watch, 5, "x"))
+    made.name = "x"
     for value in (0, 9):
         made[1] = value
     assert noted == []

@@ -12,13 +12,14 @@ from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors, examples
-from innervate.cli.export_app import export, fit
 from innervate.cli.files_app import (
     check,
     check_protocol,
     compare,
     docs,
     doctor,
+    export,
+    fit,
     new,
     scenarios,
     schema,
@@ -26,17 +27,17 @@ from innervate.cli.files_app import (
 from innervate.cli.flowing import Flowing
 from innervate.cli.live_app import live_app
 from innervate.cli.options import (
-    PAGE_DEFAULTS,
-    RUN_DEFAULTS,
-    SWEEP_DEFAULTS,
-    VERIFY_DEFAULTS,
+    Flag,
     PageOptions,
     RunOptions,
+    Seed,
+    Sets,
     SizeOptions,
     SweepOptions,
+    Texts,
     VerifyOptions,
+    Whole,
 )
-from innervate.cli.seeds import Seed, Sets, Whole
 from innervate.network import first
 
 HELP = """Describe and simulate the networks inside and between robots.
@@ -62,18 +63,14 @@ def demo(
     *,
     seed: Seed = None,
     out: Path | None = None,
-    open_: Annotated[bool, Parameter(negative="")] = False,
+    open_: Flag = False,
 ) -> int:
     """The main jobs: a skin mends itself, radios get in order, an alarm gets through. With reports.
 
-    Parameters
-    ----------
-    seed
-        Root seed in place of the scenario's; same seed, same run.
-    out
-        Folder to write into, a run folder for each; runs/ if left out.
-    open_
-        Open the reports in a browser.
+    Args:
+        seed: Root seed in place of the scenario's; same seed, same run.
+        out: Folder to write into, a run folder for each; runs/ if left out.
+        open_: Open the reports in a browser.
     """
     from innervate.cli import demo as command
 
@@ -88,23 +85,17 @@ def run(
     set_: Sets = None,
     seed: Seed = None,
     out: Path | None = None,
-    json: Annotated[bool, Parameter(negative="")] = False,
-    how: Annotated[RunOptions, Parameter(name="*")] = RUN_DEFAULTS,
+    json: Flag = False,
+    how: Annotated[RunOptions, Parameter(name="*")] = RunOptions(),
 ) -> int:
     """Run a scenario; writes a folder with summary, tables, provenance and report.
 
-    Parameters
-    ----------
-    file
-        A scenario file, or the name of a bundled one (see: innervate scenarios).
-    set_
-        Change a key, like protocol.k=3 or event.0.at_s=1.5; may be given again.
-    seed
-        Root seed in place of the scenario's; same seed, same run.
-    out
-        Folder to write; runs/NAME-SEED if left out.
-    json
-        Print the summary as JSON and nothing else.
+    Args:
+        file: A scenario file, or the name of a bundled one (see: innervate scenarios).
+        set_: Change a key, like protocol.k=3 or event.0.at_s=1.5; may be given again.
+        seed: Root seed in place of the scenario's; same seed, same run.
+        out: Folder to write; runs/NAME-SEED if left out.
+        json: Print the summary as JSON and nothing else.
     """
     from innervate.cli import running as command
 
@@ -116,17 +107,16 @@ def sweep(
     file: str,
     /,
     *,
-    options: Annotated[SweepOptions, Parameter(name="*")] = SWEEP_DEFAULTS,
+    options: Annotated[SweepOptions, Parameter(name="*")] = SweepOptions(),
 ) -> int:
     """Run a scenario for every combination of some settings, many times each.
 
     Give the same command again after an interrupt, a crash or with more values: what is done is
     not done twice. The exit code is 1 if no run succeeded, or a figure could not be drawn.
 
-    Parameters
-    ----------
-    file
-        A scenario file, the name of a bundled one, or a plan file (see: innervate docs sweeps).
+    Args:
+        file: A scenario file, the name of a bundled one, or a plan file (see: innervate docs
+            sweeps).
     """
     from innervate.cli import sweeping as command
 
@@ -139,10 +129,8 @@ def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")])
 
     The exit code is 1 if at some rate none of the numbers of ports that were tried is enough.
 
-    Parameters
-    ----------
-    robot
-        A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
+    Args:
+        robot: A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
     """
     from innervate.cli import sizing as command
 
@@ -154,29 +142,23 @@ def papers(
     paper: str | None = None,
     /,
     *,
-    only: Annotated[list[str] | None, Parameter(negative="")] = None,
-    quick: Annotated[bool, Parameter(negative="")] = False,
-    redraw: Annotated[bool, Parameter(negative="")] = False,
+    only: Texts = None,
+    quick: Flag = False,
+    redraw: Flag = False,
     page: Path | None = None,
     out: Path = Path("papers"),
 ) -> int:
     """Draw and tabulate the published figures, each claim beside what was measured.
 
-    Parameters
-    ----------
-    paper
-        Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
-    only
-        A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare; may be
-        given again.
-    quick
-        Few seeds and settings: in about a minute.
-    redraw
-        Use kept results even if the sources have changed since.
-    page
-        Of compare: a page of Markdown whose tables are made anew between its marks.
-    out
-        Folder for pictures, tables and kept results.
+    Args:
+        paper: Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
+        only: A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare;
+            may be
+            given again.
+        quick: Few seeds and settings: in about a minute.
+        redraw: Use kept results even if the sources have changed since.
+        page: Of compare: a page of Markdown whose tables are made anew between its marks.
+        out: Folder for pictures, tables and kept results.
     """
     from innervate.cli import papers as command
 
@@ -189,20 +171,16 @@ def verify(
     system: str | None = None,
     /,
     *,
-    options: Annotated[VerifyOptions, Parameter(name="*")] = VERIFY_DEFAULTS,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    options: Annotated[VerifyOptions, Parameter(name="*")] = VerifyOptions(),
+    json: Flag = False,
     out: Path | None = None,
 ) -> int:
     """Explore every interleaving of the protocol on small networks; 1 if something is broken.
 
-    Parameters
-    ----------
-    system
-        Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
-    json
-        Print the results as JSON and nothing else.
-    out
-        Folder for counterexamples: scenario, story, picture.
+    Args:
+        system: Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
+        json: Print the results as JSON and nothing else.
+        out: Folder for counterexamples: scenario, story, picture.
     """
     from innervate.cli import verifying as command
 
@@ -214,19 +192,15 @@ def prove(
     system: str | None = None,
     /,
     *,
-    faults: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    faults: Flag = False,
+    json: Flag = False,
 ) -> int:
     """Prove what holds for any number of nodes, from the protocol's own source; 1 if it does not.
 
-    Parameters
-    ----------
-    system
-        Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
-    faults
-        Plant small mistakes in the protocol, one after the other: each must be refuted.
-    json
-        Print the results as JSON and nothing else.
+    Args:
+        system: Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
+        faults: Plant small mistakes in the protocol, one after the other: each must be refuted.
+        json: Print the results as JSON and nothing else.
     """
     from innervate.cli import proving as command
 
@@ -241,22 +215,16 @@ def watch(
     set_: Sets = None,
     seed: Seed = None,
     speed: float | None = None,
-    page: Annotated[PageOptions, Parameter(name="*")] = PAGE_DEFAULTS,
+    page: Annotated[PageOptions, Parameter(name="*")] = PageOptions(),
 ) -> int:
     """Serve a page to watch a network on and to break it, until Ctrl-C.
 
-    Parameters
-    ----------
-    what
-        A scenario, the name of a bundled one, a run folder, or live: nodes that run.
-    nodes
-        With live: names or sockets; all nodes of this user if left out.
-    set_
-        Change a key of the scenario, as for run.
-    seed
-        Root seed in place of the scenario's.
-    speed
-        Seconds of the network per second; 0 is as fast as possible.
+    Args:
+        what: A scenario, the name of a bundled one, a run folder, or live: nodes that run.
+        nodes: With live: names or sockets; all nodes of this user if left out.
+        set_: Change a key of the scenario, as for run.
+        seed: Root seed in place of the scenario's.
+        speed: Seconds of the network per second; 0 is as fast as possible.
     """
     from innervate.cli import watching as command
 
@@ -271,32 +239,25 @@ def firmware(
     out: Path = Path("lib"),
     nodes: Whole | None = None,
     prefix: str = "",
-    sealed: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    sealed: Flag = False,
+    json: Flag = False,
 ) -> int:
     """Write a node's protocol as C99 for a microcontroller: one .c and one .h.
 
-    Parameters
-    ----------
-    network
-        skin, radio, mesh, csma, or a folder with a network of your own.
-    settings
-        Parameters of the protocol in place of the usual ones, like beacon_us=20000.
-    out
-        Folder to write into.
-    nodes
-        How many a network of this kind has at most, where arrays depend on it.
-    prefix
-        In front of all names; the network's name if left out.
-    sealed
-        With a driver that shakes hands and seals, with a network's key, as live nodes do.
-    json
-        Print what was written as JSON and nothing else.
+    Args:
+        network: skin, radio, mesh, csma, or a folder with a network of your own.
+        settings: Parameters of the protocol in place of the usual ones, like beacon_us=20000.
+        out: Folder to write into.
+        nodes: How many a network of this kind has at most, where arrays depend on it.
+        prefix: In front of all names; the network's name if left out.
+        sealed: With a driver that shakes hands and seals, with a network's key, as live nodes do.
+        json: Print what was written as JSON and nothing else.
     """
     from innervate.cli import firmware as command
+    from innervate.firmware import library
 
-    wanted = command.Wanted(out, nodes, prefix, sealed)
-    return command.firmware(network, list(settings), wanted, json)
+    files = library.made_of(network, list(settings), nodes, prefix, sealed)
+    return command.write(files, out, json)
 
 
 app.command(scenarios)

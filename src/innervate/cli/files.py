@@ -12,7 +12,7 @@ from typing import Any
 
 from innervate import scenario
 from innervate.cli.errors import UserError
-from innervate.cli.new_options import MEASURED_DEFAULTS, MeasuredOptions
+from innervate.cli.options import MeasuredOptions
 from innervate.export import files
 from innervate.network import networks
 
@@ -36,26 +36,24 @@ def scenarios(as_json: bool) -> int:
 def _first_sentence(path: Path) -> str:
     """Of the comment that a file begins with."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    comment = " ".join(line.lstrip("# ") for line in takewhile(_is_comment, lines))
-    return re.split(r"(?<=\.) (?=[A-Z])", comment, maxsplit=1)[0]
+    comment = takewhile(lambda line: line.startswith("#"), lines)
+    text = " ".join(line.lstrip("# ") for line in comment)
+    return re.split(r"(?<=\.) (?=[A-Z])", text, maxsplit=1)[0]
 
 
-def _is_comment(line: str) -> bool:
-    return line.startswith("#")
-
-
-def check_unused(options: Any, usual: Any, whose: str) -> None:
+def check_unused(options: Any, whose: str) -> None:
     """Refuse options of something else than what is made.
 
     Raises:
         UserError: one of them was given.
     """
+    usual = type(options)()
     for one in fields(options):
         if getattr(options, one.name) != getattr(usual, one.name):
             raise UserError(f"--{one.name.replace('_', '-')} is for {whose}")
 
 
-def new(kind: str, file: Path | None, measured: MeasuredOptions = MEASURED_DEFAULTS) -> int:
+def new(kind: str, file: Path | None, measured: MeasuredOptions) -> int:
     """Write a commented scenario; never over a file that is there."""
     found = ""
     if measured.network is not None:

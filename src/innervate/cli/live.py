@@ -138,19 +138,3 @@ def change(name: str, port: int, what: str) -> int:
     """Cut or restore a cable at one node."""
     status.ask_one(status.find(name), {"do": what, "port": port})
     return 0
-
-
-def modem(device: str, where: str, number: int, baud: int) -> int:
-    """Put a board at a serial line on a radio channel, until a signal comes."""
-    from innervate.live import modem as room
-
-    asyncio.run(room.run(device, baud, number, where))
-    return 0
-
-
-def medium(where: str, slot_us: int, turnaround_us: int) -> int:
-    """Run a radio channel for stations that are processes, until a signal comes."""
-    from innervate.live import channel as room
-
-    asyncio.run(room.run(where, slot_us, turnaround_us))
-    return 0

@@ -8,10 +8,8 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from innervate.cli import errors
-from innervate.cli.options import SEND_DEFAULTS, UP_DEFAULTS, Engine, SendOptions, UpOptions
-from innervate.cli.seeds import Whole
+from innervate.cli.options import Engine, Flag, SendOptions, UpOptions, Whole
 
-Json = Annotated[bool, Parameter(negative="")]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 live_app = App(
     name="live",
@@ -30,14 +28,12 @@ def live_node(
 ) -> int:
     """Run one node until SIGTERM or Ctrl-C; SIGHUP reads its keys again.
 
-    Parameters
-    ----------
-    file
-        A node file (see: innervate docs live).
-    engine
-        What runs its protocol here, in place of what the file says; auto: C where it can be made.
-    firmware
-        What runs its protocol, on an emulated board: an image (see: innervate docs firmware).
+    Args:
+        file: A node file (see: innervate docs live).
+        engine: What runs its protocol here, in place of what the file says; auto: C where it can be
+            made.
+        firmware: What runs its protocol, on an emulated board: an image (see: innervate docs
+            firmware).
     """
     from innervate.live.main import run as command
 
@@ -55,14 +51,12 @@ def live_up(
     file: str,
     /,
     *,
-    options: Annotated[UpOptions, Parameter(name="*")] = UP_DEFAULTS,
+    options: Annotated[UpOptions, Parameter(name="*")] = UpOptions(),
 ) -> int:
     """Bring a scenario up, a process for every node, and play its events, until Ctrl-C.
 
-    Parameters
-    ----------
-    file
-        A scenario, or the name of a bundled one.
+    Args:
+        file: A scenario, or the name of a bundled one.
     """
     from innervate.cli import live as command
 
@@ -75,15 +69,12 @@ def live_up(
 
 
 @live_app.command(name="status")
-def live_status(*nodes: str, json: Json = False) -> int:
+def live_status(*nodes: str, json: Flag = False) -> int:
     """Show neighbours, routes, counters, broken cables of running nodes.
 
-    Parameters
-    ----------
-    nodes
-        Names or sockets; all nodes of this user if left out.
-    json
-        Print JSON.
+    Args:
+        nodes: Names or sockets; all nodes of this user if left out.
+        json: Print JSON.
     """
     from innervate.cli import live as command
 
@@ -97,21 +88,16 @@ def live_send(
     text: Text,
     /,
     *,
-    how: Annotated[SendOptions, Parameter(name="*")] = SEND_DEFAULTS,
-    json: Json = False,
+    how: Annotated[SendOptions, Parameter(name="*")] = SendOptions(),
+    json: Flag = False,
 ) -> int:
     """Send a message from a running node; prints what becomes of it.
 
-    Parameters
-    ----------
-    node
-        Name or socket of the node that sends.
-    to
-        Number of the recipient; 255 all, 254 the monitor.
-    text
-        The message; - reads standard input.
-    json
-        Print JSON lines.
+    Args:
+        node: Name or socket of the node that sends.
+        to: Number of the recipient; 255 all, 254 the monitor.
+        text: The message; - reads standard input.
+        json: Print JSON lines.
     """
     from innervate.cli import live as command
 
@@ -126,22 +112,16 @@ def live_command(
     /,
     *,
     cell: Whole | None = None,
-    json: Json = False,
+    json: Flag = False,
 ) -> int:
     """Have the PC of a skin send a command down to its cells, over the children of every cell.
 
-    Parameters
-    ----------
-    node
-        Name or socket of the PC.
-    code
-        What to do, 0 to 255; your cells know what it means.
-    value
-        With what, 0 to 65535.
-    cell
-        Number of the cell it is for; all cells if left out.
-    json
-        Print JSON.
+    Args:
+        node: Name or socket of the PC.
+        code: What to do, 0 to 255; your cells know what it means.
+        value: With what, 0 to 65535.
+        cell: Number of the cell it is for; all cells if left out.
+        json: Print JSON.
     """
     from innervate.cli import live as room
 
@@ -149,19 +129,14 @@ def live_command(
 
 
 @live_app.command(name="listen")
-def live_listen(node: str, /, *, count: int = 0, in_order: Json = False, json: Json = False) -> int:
+def live_listen(node: str, /, *, count: int = 0, in_order: Flag = False, json: Flag = False) -> int:
     """Print what comes in at a running node, until Ctrl-C: messages, samples, commands.
 
-    Parameters
-    ----------
-    node
-        Name or socket.
-    count
-        End after so many; 0 = never.
-    in_order
-        Each sender's messages as it sent them, where it sent them in order.
-    json
-        Print JSON lines.
+    Args:
+        node: Name or socket.
+        count: End after so many; 0 = never.
+        in_order: Each sender's messages as it sent them, where it sent them in order.
+        json: Print JSON lines.
     """
     from innervate.cli import live as command
 
@@ -176,14 +151,10 @@ def live_capture(
 ) -> int:
     """Write frames of running nodes to a capture for Wireshark, until Ctrl-C.
 
-    Parameters
-    ----------
-    nodes
-        Names or sockets; all nodes of this user if left out.
-    out
-        The capture; it can be read while it grows. Standard output if left out.
-    for_
-        End after so many seconds; 0 = never.
+    Args:
+        nodes: Names or sockets; all nodes of this user if left out.
+        out: The capture; it can be read while it grows. Standard output if left out.
+        for_: End after so many seconds; 0 = never.
     """
     from innervate.cli import capturing as command
 
@@ -192,15 +163,12 @@ def live_capture(
 
 
 @live_app.command(name="recovery")
-def live_recovery(capture: Path, /, *, json: Json = False) -> int:
+def live_recovery(capture: Path, /, *, json: Flag = False) -> int:
     """Say how a skin healed, from a capture of all its nodes: when routes and samples were back.
 
-    Parameters
-    ----------
-    capture
-        What `live capture --out` wrote; or `export --pcapng` of a run.
-    json
-        Print JSON.
+    Args:
+        capture: What `live capture --out` wrote; or `export --pcapng` of a run.
+        json: Print JSON.
     """
     from innervate.cli import live_recovery as command
 
@@ -217,18 +185,17 @@ def live_medium(
 ) -> int:
     """Run a radio channel: stations whose files name its address hear each other on it.
 
-    Parameters
-    ----------
-    address
-        Where stations find it.
-    slot_us
-        Time of a slot on the air.
-    turnaround_us
-        From deciding to send to being on the air, and back.
+    Args:
+        address: Where stations find it.
+        slot_us: Time of a slot on the air.
+        turnaround_us: From deciding to send to being on the air, and back.
     """
-    from innervate.cli import live as command
+    import asyncio
 
-    return command.medium(address, slot_us, turnaround_us)
+    from innervate.live import channel
+
+    asyncio.run(channel.run(address, slot_us, turnaround_us))
+    return 0
 
 
 @live_app.command(name="modem")
@@ -242,34 +209,29 @@ def live_modem(
 ) -> int:
     """Put a board at a serial line on a radio channel of `live medium`, as one of its stations.
 
-    Parameters
-    ----------
-    device
-        The serial port, like /dev/ttyUSB0.
-    address
-        Where the channel is.
-    number
-        The board's, as its firmware has it.
-    baud
-        Bits per second.
+    Args:
+        device: The serial port, like /dev/ttyUSB0.
+        address: Where the channel is.
+        number: The board's, as its firmware has it.
+        baud: Bits per second.
     """
-    from innervate.cli import live as command
+    import asyncio
 
-    return command.modem(device, address, number, baud)
+    from innervate.live import modem
+
+    asyncio.run(modem.run(device, baud, number, address))
+    return 0
 
 
 @live_app.command(name="enrol")
 def live_enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
     """Make an identity for each node of a network: one file for each, which is all that it needs.
 
-    Parameters
-    ----------
-    folder
-        Of the network's authority; made if it is not there. Its authority.key stays with you.
-    numbers
-        Of the nodes.
-    nodes
-        Those with numbers 0 to nodes - 1, besides.
+    Args:
+        folder: Of the network's authority; made if it is not there. Its authority.key stays with
+            you.
+        numbers: Of the nodes.
+        nodes: Those with numbers 0 to nodes - 1, besides.
     """
     from innervate.cli import live_enrol as command
 
@@ -277,17 +239,13 @@ def live_enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
 
 
 @live_app.command(name="revoke")
-def live_revoke(where: Path, /, *numbers: int, json: Json = False) -> int:
+def live_revoke(where: Path, /, *numbers: int, json: Flag = False) -> int:
     """Put nodes out whose identity has leaked; running nodes are told and tell each other.
 
-    Parameters
-    ----------
-    where
-        The authority's folder; or a revoked.list from it, to tell nodes on this machine.
-    numbers
-        Of the nodes; none tells of the list as it is.
-    json
-        Print JSON.
+    Args:
+        where: The authority's folder; or a revoked.list from it, to tell nodes on this machine.
+        numbers: Of the nodes; none tells of the list as it is.
+        json: Print JSON.
     """
     from innervate.cli import live_enrol as command
 
@@ -295,17 +253,13 @@ def live_revoke(where: Path, /, *numbers: int, json: Json = False) -> int:
 
 
 @live_app.command(name="cut")
-def live_cut(node: str, port: int, /, *, restore: Json = False) -> int:
+def live_cut(node: str, port: int, /, *, restore: Flag = False) -> int:
     """Cut a cable in silence at one end, as if its plug had come out; or put it back.
 
-    Parameters
-    ----------
-    node
-        Name or socket.
-    port
-        Number of the path, as status shows it.
-    restore
-        Put it back.
+    Args:
+        node: Name or socket.
+        port: Number of the path, as status shows it.
+        restore: Put it back.
     """
     from innervate.cli import live as command
 

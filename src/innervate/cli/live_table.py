@@ -22,9 +22,7 @@ MEASURES_MAX = 2
 class LiveTable:
     """Shows how far a sweep is; a context manager, called with the Scheduler; on stderr.
 
-    Args:
-        name: of the sweep.
-        measures: whose means to show, as many as there is room for.
+    Of `measures` the means are shown, as many as there is room for.
     """
 
     def __init__(self, name: str, measures: tuple[str, ...]) -> None:

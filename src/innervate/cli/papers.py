@@ -15,11 +15,7 @@ from innervate.cli.progress import Display
 def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) -> int:
     """Draw and tabulate a paper's figures; say how many claims hold.
 
-    Args:
-        system: which.
-        out: folder for everything.
-        page: of Markdown, whose tables are made anew.
-        how: quick, only, redraw of `innervate.papers.main`.
+    The tables of a `page` of Markdown are made anew; `how` is quick, only, redraw of papers.main.
     """
     from innervate.papers.book import into_page, ready_for  # draws: not before it is wanted
 

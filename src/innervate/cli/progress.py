@@ -13,11 +13,7 @@ LINE_EVERY_S = 10.0
 
 
 class Display:
-    """Shows how far some work is; use it as a context manager.
-
-    Args:
-        quiet: show nothing unless standard error is a terminal (for --json).
-    """
+    """Shows how far some work is; a context manager. `quiet`, for --json: on a terminal alone."""
 
     def __init__(self, quiet: bool = False) -> None:
         self._terminal = sys.stderr.isatty()

@@ -65,12 +65,9 @@ def _seal(rows: Any) -> None:
 
 
 def by_kind(frames: Any, forms: dict[int, tuple[Any, int, int, int]]) -> list[bytes]:
-    """The bytes of frames, given as an array of records.
+    """The bytes of frames, given as an array of records with a column `kind`.
 
-    Args:
-        frames: with a column `kind`.
-        forms: per kind its fields, head, bits of the head, and bytes in all; other kinds stay
-            empty.
+    `forms`: per kind its fields, head, bits of the head, and bytes in all; other kinds stay empty.
     """
     made = [b""] * len(frames)
     for kind, (fields, head, head_bits, size) in forms.items():

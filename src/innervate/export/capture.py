@@ -33,21 +33,13 @@ Progress = Callable[[int, int], None]
 
 @dataclass
 class Written:
-    """What a capture holds.
+    """What a capture holds, once it is written."""
 
-    Attributes:
-        frames: how many packets.
-        sent: frames that left, or were lost at their sender.
-        received: frames that came in.
-        dropped: how many, by reason.
-        result: of the simulation.
-    """
-
-    frames: int
-    sent: int
-    received: int
-    dropped: dict[str, int]
-    result: Any
+    frames: int  # how many packets
+    sent: int  # frames that left, or were lost at their sender
+    received: int  # frames that came in
+    dropped: dict[str, int]  # how many, by reason
+    result: Any  # of the simulation
 
 
 def write(

@@ -22,20 +22,16 @@ USER0 = 147  # the link type that Wireshark calls USER0
 
 
 class Frames(NamedTuple):
-    """What a dissector has to know of a network's frames.
+    """What a dissector has to know of a network's frames."""
 
-    Attributes:
-        layouts: a Lua table: `kinds` by number, `others` that have a name and no fields, `bits` of
-            the type that a frame begins with, `common` and `ack` for frames with a header, `ends`:
-            the fields that say `from` whom `to` whom a frame is, and what there means `all`.
-        run: Lua that says `local function run(self, tvb, tree)`, which reads a frame and returns
-            its line, source and destination; "" = a type, the type's fields and a CRC.
-        constants: numbers, texts or tables in Lua that `run` speaks of.
-    """
-
+    # A Lua table: `kinds` by number, `others` that have a name and no fields, `bits` of the type
+    # that a frame begins with, `common` and `ack` for frames with a header, `ends`: the fields that
+    # say `from` whom `to` whom a frame is, and what there means `all`.
     layouts: str
+    # Lua that says `local function run(self, tvb, tree)`, which reads a frame and returns its line,
+    # source and destination; "" = a type, the type's fields and a CRC.
     run: str = ""
-    constants: Mapping[str, Any] = {}
+    constants: Mapping[str, Any] = {}  # numbers, texts or tables in Lua that `run` speaks of
 
 
 def plugin_folder() -> Path:

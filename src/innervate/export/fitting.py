@@ -9,8 +9,7 @@ from typing import Any
 from innervate import scenario as scenarios
 from innervate.export import capture
 from innervate.export.errors import ExportError
-from innervate.export.measure import measure
-from innervate.export.measured import Measured, Way
+from innervate.export.measure import Measured, Way, measure
 from innervate.network import networks
 from innervate.scenario.emit import to_toml
 

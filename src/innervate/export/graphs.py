@@ -25,17 +25,11 @@ Edge = tuple[str, str, Attributes]
 
 
 class Graph(NamedTuple):
-    """Nodes and links with their attributes, by the names that reports show.
+    """Nodes and links with their attributes, by the names that reports show."""
 
-    Attributes:
-        directed: a link has a direction, and the way back attributes of its own.
-        nodes: (name, attributes).
-        edges: (name of one end, of the other, attributes).
-    """
-
-    directed: bool
-    nodes: list[Node]
-    edges: list[Edge]
+    directed: bool  # a link has a direction, and the way back attributes of its own
+    nodes: list[Node]  # (name, attributes)
+    edges: list[Edge]  # (name of one end, of the other, attributes)
 
 
 def write(plan: Any, path: Path) -> None:

@@ -23,35 +23,21 @@ def kind_of(link_type: int) -> str | None:
 
 
 class Interface(NamedTuple):
-    """An interface of a capture.
+    """An interface of a capture."""
 
-    Attributes:
-        link_type: of its frames.
-        name: for people.
-        description: as above.
-    """
-
-    link_type: int
-    name: str
-    description: str
+    link_type: int  # of its frames
+    name: str  # for people
+    description: str  # as above
 
 
 class Place(NamedTuple):
-    """What a description says.
+    """What an interface's description says of a link."""
 
-    Attributes:
-        what: "cell", "pc", "node", "station"; "" if it says nothing of the kind.
-        number: which; -1 not said.
-        port: of a cell or the PC, or a path of a live node; -1 not said.
-        here: this end of the cable; "" not said.
-        there: its other end.
-    """
-
-    what: str
-    number: int
-    port: int
-    here: str
-    there: str
+    what: str  # "cell", "pc", "node", "station"; "" if it says nothing of the kind
+    number: int  # which; -1 not said
+    port: int  # of a cell or the PC, or a path of a live node; -1 not said
+    here: str  # this end of the cable; "" not said
+    there: str  # its other end
 
 
 def describe(what: str, number: int = -1, port: int = -1, cable: tuple[str, str] = ("", "")) -> str:

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from innervate.export import links
 from innervate.export.capture import DROPPED, WORDS
 from innervate.export.errors import ExportError
 from innervate.export.links import Place
-from innervate.export.measured import Measured, Way
 from innervate.export.reading import Capture, Packet
 from innervate.network import networks
 from innervate.sim import taps
@@ -24,6 +25,46 @@ from innervate.sim import taps
 WAIT_NS = 1_000_000_000  # who has not come in by then was lost
 NOISE = DROPPED + WORDS[taps.NOISE]
 NEVER_LEFT = {DROPPED + WORDS[why] for why in (taps.QUEUE, taps.BROKEN, taps.OFF)}
+DELAYS_MAX = 4096  # kept of a way
+
+
+@dataclass
+class Way:
+    """One direction of a link."""
+
+    got: int = 0  # frames that came in
+    lost: int = 0  # frames that noise took
+    # Of frames that came in, from their start.
+    delays_us: deque[float] = field(default_factory=lambda: deque(maxlen=DELAYS_MAX))
+    # Of the same, bytes.
+    sizes: deque[int] = field(default_factory=lambda: deque(maxlen=DELAYS_MAX))
+
+    @property
+    def quality(self) -> float:
+        """Share of frames that came in, 0 to 1."""
+        return self.got / max(1, self.got + self.lost)
+
+
+@dataclass
+class Measured:
+    """A network as a capture has it."""
+
+    kind: str  # of network
+    # By sender and receiver, nodes or ends of cables.
+    ways: dict[tuple[Any, Any], Way] = field(default_factory=dict)
+    seconds: float = 0.0  # from the first packet to the last
+    packets: int = 0  # read
+    cut: set[str] = field(default_factory=set)  # ends whose cable was cut for some time
+    notes: list[str] = field(default_factory=list)  # what to know besides
+
+    def way(self, a: Any, b: Any) -> Way:
+        """The way from a to b; a new one if it was not seen before."""
+        return self.ways.setdefault((a, b), Way())
+
+    def delay_us(self) -> tuple[float, float, float]:
+        """Least, median and greatest of the ways' median delays; 0 unknown."""
+        found = [median(way.delays_us) for way in self.ways.values() if way.delays_us]
+        return (min(found), median(found), max(found)) if found else (0.0, 0.0, 0.0)
 
 
 def measure(path: Path) -> Measured:
@@ -75,13 +116,7 @@ def _all(first: Packet, rest: Iterator[Packet]) -> Iterable[Packet]:
 
 
 class Reader:
-    """Matches frames that left with frames that came in.
-
-    Args:
-        found: to be filled.
-        path: of the capture.
-        capture: as it is read.
-    """
+    """Matches frames of a capture that left with frames that came in; fills `found`."""
 
     def __init__(self, found: Measured, path: Path, capture: Capture) -> None:
         self.found = found
@@ -102,8 +137,11 @@ class Reader:
         raise NotImplementedError
 
     def end(self, last_ns: int) -> None:
-        """That was the last one."""
-        raise NotImplementedError
+        """That was the last one: what left long enough before came in nowhere."""
+        for key, waiting in self.left.items():
+            for packet in waiting:
+                if last_ns - packet.time_ns > WAIT_NS:
+                    self.give_up(key, packet)
 
     def depart(self, key: Any, packet: Packet) -> None:
         """A frame left: it may come in elsewhere, by the same key."""

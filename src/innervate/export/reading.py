@@ -16,21 +16,13 @@ INTERFACES_MAX = 1 << 20
 
 
 class Packet(NamedTuple):
-    """A frame of a capture.
+    """A frame of a capture."""
 
-    Attributes:
-        interface: number of its interface.
-        time_ns: when.
-        data: its bytes.
-        flags: pcapng.INBOUND, OUTBOUND, CRC_ERROR; 0 not said.
-        comment: what is said of it.
-    """
-
-    interface: int
-    time_ns: int
-    data: bytes
-    flags: int
-    comment: str
+    interface: int  # number of its interface
+    time_ns: int  # when
+    data: bytes  # its bytes
+    flags: int  # pcapng.INBOUND, OUTBOUND, CRC_ERROR; 0 not said
+    comment: str  # what is said of it
 
 
 class Capture:

@@ -17,12 +17,7 @@ INFORMATION, WARNING = 2, 3
 
 
 def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:
-    """Write a recording; how many messages it has.
-
-    Args:
-        plan: of the run.
-        found: its tables by name, polars frames.
-        path: the file; there whole or not at all.
+    """Write a recording, whole or not at all, of a run's tables (polars); how many messages it has.
 
     Raises:
         ExportError: it cannot be written.

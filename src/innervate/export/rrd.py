@@ -35,12 +35,7 @@ def check(plan: Any) -> None:
 
 
 def write(plan: Any, found: Mapping[str, Any], path: Path) -> int:
-    """Write a recording; how many rows of time it has.
-
-    Args:
-        plan: of the run.
-        found: its tables by name, polars frames.
-        path: the file, "….rrd"; there whole or not at all.
+    """Write a recording, whole or not at all, of a run's tables (polars); how many rows it has.
 
     Raises:
         ExportError: as check() says, or the file cannot be written.

@@ -21,35 +21,21 @@ HEAT: tuple[Rgb, ...] = ((246, 243, 238), (251, 211, 156), (242, 162, 76), (210,
 
 
 class Column(NamedTuple):
-    """An entity over time.
+    """An entity over time: one value at each moment."""
 
-    Attributes:
-        name: its path.
-        times_us: of its rows.
-        content: columns of components, as Rerun has them.
-    """
-
-    name: str
-    times_us: list[int]
-    content: Any
+    name: str  # its path
+    times_us: list[int]  # of its rows
+    content: Any  # columns of components, as Rerun has them
 
 
 class Parts(NamedTuple):
-    """All that is recorded of a run.
+    """All that is recorded of a run."""
 
-    Attributes:
-        still: entities that stay as they are: (path, what).
-        columns: those that change.
-        log: what happened.
-        views: (name, entities in it) of the views in space.
-        curves: entities that are plotted over time.
-    """
-
-    still: list[tuple[str, Any]]
-    columns: list[Column]
-    log: list[Log]
-    views: list[tuple[str, list[str]]]
-    curves: list[str]
+    still: list[tuple[str, Any]]  # entities that stay as they are: (path, what)
+    columns: list[Column]  # those that change
+    log: list[Log]  # what happened
+    views: list[tuple[str, list[str]]]  # (name, entities in it) of the views in space
+    curves: list[str]  # entities that are plotted over time
 
 
 def heat(shares: Any) -> Any:

@@ -22,17 +22,11 @@ Message = tuple[int, Any]  # us, content
 
 
 class Channel(NamedTuple):
-    """One kind of messages of a recording.
+    """One kind of messages of a recording."""
 
-    Attributes:
-        topic: its name, "/cells".
-        schema: of its messages.
-        messages: (time us, content), in order of time.
-    """
-
-    topic: str
-    schema: schemas.Schema
-    messages: Iterator[Message]
+    topic: str  # its name, "/cells"
+    schema: schemas.Schema  # of its messages
+    messages: Iterator[Message]  # (time us, content), in order of time
 
 
 def stamp(time_us: int) -> dict[str, int]:

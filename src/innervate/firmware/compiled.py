@@ -19,6 +19,7 @@ from innervate.dialect.source import reached
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.program import GIVEN
 from innervate.firmware.records import records_of
+from innervate.firmware.texts import filled, shipped
 from innervate.firmware.tools import find, run
 from innervate.kernel.cache import alone, cache_root
 from innervate.kernel.sources import ROOT, hash_of
@@ -29,17 +30,6 @@ SHIPPED, QUICK = ("innervate_wire.h", "innervate_wire.c"), frozenset({"quick"})
 FOLDER = "nodes"  # below the cache
 KEPT_MOST = 32  # libraries; those not used for longest go first
 MAKERS = ("firmware", "dialect", "wire")  # rooms that have a part in what is made
-TYPES = {"int": "int32_t", "frame": "const {p}_frame_t *", "item": "const {p}_item_t *"}
-ENTRY = """
-void innervate_{name}({p}_state_t *state, {gate}const {p}_params_t *params, int32_t now,
-        {given}, {p}_out_t *out);
-void innervate_{name}({p}_state_t *state, {gate}const {p}_params_t *params, int32_t now,
-        {given}, {p}_out_t *out)
-{{
-    {p}_clear(out);
-    {p}_{name}(state, {has_gate}params, now, {names}, out);
-}}
-"""
 
 
 def key_of(role: Role, coded: Coded | None) -> str:
@@ -112,7 +102,6 @@ def texts_of(role: Role, coded: Coded | None, key: str) -> dict[str, str]:
         FirmwareError: see Library.
     """
     from innervate.firmware.emit import Library  # half a second that a library at hand spares
-    from innervate.firmware.library import shipped
     from innervate.firmware.wire import Wire
 
     library = Library(role, {})
@@ -129,15 +118,19 @@ def texts_of(role: Role, coded: Coded | None, key: str) -> dict[str, str]:
 def _entries(role: Role, name: str, key: str) -> str:
     """What Python calls: the handlers, each with an empty outbox; sizes of the records."""
     sizes = [f"sizeof({name}_{record}_t)" for record in (*records_of(role), "out")]
-    words = {"p": name, "gate": f"{name}_gate_t *gate, " if role.has_gate else "",
-             "has_gate": "gate, " if role.has_gate else ""}  # fmt: skip
     parts = [f'#include "{name}.h"', "", f'const char innervate_source[] = "{key}";',
              f"const int32_t innervate_sizes[] = {{{', '.join(sizes)}}};"]  # fmt: skip
+    entry = shipped("made/entry.c", name)
     for handler in handlers_of(role):
-        given = [(f"{TYPES[kind].format(**words)} a{i}", f"a{i}")
-                 for i, kind in enumerate(GIVEN[handler])]  # fmt: skip
-        declared, names = (", ".join(column) for column in zip(*given, strict=True))
-        parts.append(ENTRY.format(name=handler, given=declared, names=names, **words))
+        kinds = ["int32_t " if kind == "int" else f"const {name}_{kind}_t *"
+                 for kind in GIVEN[handler]]  # fmt: skip
+        words = {
+            "@name": handler, "@gate_given": f"{name}_gate_t *gate, " if role.has_gate else "",
+            "@given": ", ".join(f"{kind}a{i}" for i, kind in enumerate(kinds)),
+            "@gate_passed": "gate, " if role.has_gate else "",
+            "@passed": ", ".join(f"a{i}" for i in range(len(kinds))),
+        }  # fmt: skip
+        parts.append(filled(entry, words))
     return "\n".join(parts)
 
 

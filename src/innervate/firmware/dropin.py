@@ -23,13 +23,8 @@ from innervate.network import Network
 class Handlers:
     """The handlers of a role in C, called as those of its module are, with records of C's memory.
 
-    Args:
-        library: the role's.
-        role: which.
-        item: the fields of what a user hands down.
-
     Attributes:
-        Item: a record for that; any other object with its fields is copied.
+        Item: a record for what a user hands down; any other object with its fields is copied.
     """
 
     def __init__(self, library: Any, role: Role, item: views.Fields) -> None:
@@ -76,13 +71,7 @@ def _gated_with(call: Any, pointer: Any) -> Any:
 
 
 class Coder:
-    """A role's coder in C.
-
-    Args:
-        library: the role's.
-        name: the role's, in C.
-        coded: its frames.
-    """
+    """A role's coder in C; `name` is what the role is called there."""
 
     def __init__(self, library: Any, name: str, coded: Coded) -> None:
         self._names = names_of(coded)
@@ -115,12 +104,9 @@ class Coder:
 
 
 def take_place(stack: Any, network: Network) -> str:
-    """Let a stack, not yet started, call C from now on; "" if it does, else why not.
+    """Let a network's stack, not yet started, call C from now on; "" if it does, else why not.
 
-    Args:
-        stack: with `do`, `node`, `params`, `inbox`, `out`, and if it has them `gate`, `coder`,
-            `item`.
-        network: whose it is.
+    It has `do`, `node`, `params`, `inbox`, `out`, and perhaps `gate`, `coder`, `item`.
     """
     found = _role_of(stack, network)
     if found is None:

@@ -17,6 +17,7 @@ from innervate.firmware.outbox import Outbox
 from innervate.firmware.program import Made, Program, Type
 from innervate.firmware.records import initial, name_of, records_of, struct
 from innervate.firmware.statements import Statements, comment, declaration, wrapped
+from innervate.firmware.texts import filled, shipped
 from innervate.live.board import Role
 
 ABI = 3  # counts changes of what stands in headers and how it is called
@@ -31,12 +32,7 @@ MEANINGS = {
 
 
 class Library:
-    """A role as C.
-
-    Args:
-        role: the protocol.
-        params: what the header's default parameters are.
-        prefix: in front of all names; the role's name if left out.
+    """A role as C; `prefix` stands in front of all names, the role's own if left out.
 
     Raises:
         FirmwareError: it is outside the dialect, or a parameter is missing.
@@ -65,7 +61,7 @@ class Library:
             always = (int(getattr(outbox, name)), note_of(outbox.__name__, name))
             self.constants.setdefault(f"{self.prefix.upper()}_{name}", always)
         self.helpers = helpers | {
-            helper for name in helpers & set(HELPERS) for helper in HELPERS[name].needs
+            helper for name in helpers & set(HELPERS) for helper in HELPERS[name]
         }
 
     def _types(self) -> dict[Type, str]:
@@ -95,27 +91,17 @@ class Library:
 
     def header(self) -> str:
         """The text of the header."""
-        big, small = self.prefix.upper(), self.prefix
-        top = [
-            f"/** {self.role.name}: a node's protocol, made from {self.role.entry}.",
-            " *",
-            f" * {small}_init, then {small}_on_start; from then on the driver calls a handler for",
-            " * everything that happens, carries out what is in the outbox, and calls",
-            f" * {small}_clear.",
-            " * Nothing is allocated; times are microseconds modulo 2^30. */",
-            f"#ifndef {big}_H", f"#define {big}_H", "", "#include <stdint.h>", "",
-            "#ifdef __cplusplus", 'extern "C" {', "#endif", "",
-            f"#define {big}_ABI {ABI} /* of this header */",
-            f'#define {big}_SOURCE "{self.digest()}" /* hash of functions and declarations */',
-            f"#define {big}_OUTBOX {self.role.room} /* actions of one call at most */",
-            self.outbox.size(),
-        ]  # fmt: skip
-        if self.role.timers:
-            top.append(f"#define {big}_TIMERS_MAX {self.role.timers} /* timers */")
-        if self.role.nodes:
-            top.append(f"#define {big}_NODES {self.role.nodes} /* of a network at most */")
-        parts = ["\n".join(top) + "\n", self._constants(), *self._structs(), self._public()]
-        return "\n".join([*parts, "#ifdef __cplusplus\n}\n#endif\n", f"#endif /* {big}_H */\n"])
+        role = self.role
+        having = {"timers": role.timers, "nodes": role.nodes}
+        words = {f"@{name}": str(having[name]) for name in having}
+        parts = [self._constants(), *self._structs(), self._public()]
+        words |= {"@abi": str(ABI), "@digest": self.digest(), "@room": str(role.room),
+                  "@outbox": self.outbox.size(), "@parts": "\n".join(parts)}  # fmt: skip
+        return self._filled("made/protocol.h", words, {name for name in having if having[name]})
+
+    def _filled(self, file: str, words: dict[str, str], having: set[str]) -> str:
+        text = shipped(file, self.prefix, frozenset(having))
+        return filled(text, {"@name": self.role.name, "@entry": self.role.entry} | words)
 
     def _constants(self) -> str:
         lines = []
@@ -178,16 +164,7 @@ class Library:
     def source(self, header: str) -> str:
         """The text of the source; `header` is the name of the header's file."""
         prefix = self.prefix
-        top = [
-            f"/* {self.role.name}: made from {self.role.entry}, function by function.",
-            " * Above each stands where it was made from. Do not edit: edit that. */",
-            f'#include "{header}"', "",
-            "/* Sums of two values below 2^30 must fit into an int, and >> must keep the sign. */",
-            f"typedef char {prefix}_int_has_32_bits[",
-            "        (sizeof(int) >= 4 && (-1 >> 1) == -1) ? 1 : -1];",
-            "",
-        ]  # fmt: skip
-        helpers = [HELPERS[name].text.format(p=prefix, P=prefix.upper()) for name in HELPERS
+        helpers = [shipped("made/helpers.c", prefix, frozenset({name})) for name in HELPERS
                    if name in self.helpers]  # fmt: skip
         helpers += [self.outbox.helper()] if "frame" in self.helpers else []
         functions = []
@@ -195,7 +172,8 @@ class Library:
             lines = [*self._comment(made), self._head(made), "{", *body, "}", ""]
             functions.append("\n".join(lines))
         beginning = [*self._defaults(), own(self.prefix, self.records), self.outbox.functions()]
-        return "\n".join([*top, *helpers, *beginning, *functions])
+        text = "\n".join([*helpers, *beginning, *functions])
+        return self._filled("made/protocol.c", {"@header": header, "@functions\n": text}, set())
 
     def _defaults(self) -> list[str]:
         small = self.prefix

@@ -34,12 +34,9 @@ QEMU = "qemu-system-arm"
 
 
 class Emulated(Engine):
-    """Runs a stack's handlers on an emulated board.
+    """Runs a stack's handlers on an emulated board, given what an `Engine` is given.
 
-    Args:
-        image: what the board runs.
-        packed: the role's records as they lie in its memory: "state", "frame", "item".
-        given: what an `Engine` is given: stack, transmit, deliver, report, settled.
+    `packed` are the role's records as they lie in its memory: "state", "frame", "item".
 
     Raises:
         FirmwareError: there is no QEMU.

@@ -9,12 +9,7 @@ Given = Set[str] | None  # the variables with a value on every way; None = there
 
 
 def without_value(function: ast.FunctionDef, names: Set[str]) -> ast.Name | None:
-    """The first use of one of a function's own variables that on some way has no value.
-
-    Args:
-        function: of the dialect.
-        names: its variables.
-    """
+    """The first use of one of a function's own variables that on some way has no value."""
     body = _Body(names)
     body.block(function.body[1:], frozenset())
     return body.found

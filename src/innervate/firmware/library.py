@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from innervate import scenario
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
+from innervate.firmware.texts import filled, renamed, shipped
 from innervate.firmware.wire import Wire, coded_of
 from innervate.folders import not_for_boards
 from innervate.live.board import CABLES, Role, roles_of
@@ -34,8 +35,6 @@ PORTS = (
     "CMakeLists.txt", "zephyr/module.yml", "zephyr/Kconfig", "zephyr/CMakeLists.txt",
     "library.json", "library.properties", "examples/role_node/role_node.ino",
 )  # fmt: skip
-# A line at which a part of a driver begins, by its name, or ends.
-SECTION = re.compile(r"(?:/\*|#) ?([+-]) ?(\w*)(?: \*/)?")
 FRAME_MAX = 245  # bytes of a frame: what a modem says with it has to be stuffed at once, too
 PREFIX = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
@@ -212,35 +211,7 @@ def _told(library: Library, text: str, key_kind: int) -> str:
     if air:
         words["PACKET_BYTES"] = str(min(255, params["packet_slots"] - 2))
         words["PER_TURN"] = str(params["per_turn"])
-    for old, new in words.items():
-        text = text.replace(old, new)
-    return text
-
-
-def shipped(file: str, prefix: str = "", having: frozenset[str] = frozenset()) -> str:
-    """A file that lies here; one of the driver's with a network's names.
-
-    Of sections, which stand between `/*+ name */` and `/*- */` (or `# + name`, `# -`) on lines of
-    their own, those are kept that are in `having`.
-    """
-    text = (resources.files("innervate.firmware") / "c" / file).read_text(encoding="utf-8")
-    kept, inside = [], []  # type: ignore[var-annotated]
-    for line in text.splitlines(keepends=True):
-        found = SECTION.fullmatch(line.rstrip())
-        if found is None:
-            kept += [line] * all(inside)
-        elif found[1] == "+":
-            inside.append(found[2] in having)
-        else:
-            inside.pop()
-    text = "".join(kept)
-    return renamed(text, prefix) if prefix else text
-
-
-def renamed(text: str, prefix: str) -> str:
-    """A text with a network's names for the word role."""
-    text = re.sub(r"(?<![a-z])role(?![a-z])", prefix, text)
-    return re.sub(r"(?<![A-Z])ROLE(?![A-Z])", prefix.upper(), text)
+    return filled(text, words)
 
 
 def write(files: Files, folder: Path) -> dict[str, int]:

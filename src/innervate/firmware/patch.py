@@ -15,12 +15,7 @@ from innervate.network import Network, networks
 
 
 def images(plan: Any, folder: Path, in_python: list[str]) -> dict[str, Path]:
-    """Images by the names of nodes: of all that can be boards, but for those that are named.
-
-    Args:
-        plan: of nodes over cables.
-        folder: where they are made.
-        in_python: names of nodes that stay as they are.
+    """Images by the names of nodes over cables: of all that can be boards, but for `in_python`.
 
     Raises:
         FirmwareError: there are no such nodes, or a compiler or QEMU is missing.

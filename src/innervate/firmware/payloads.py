@@ -1,4 +1,4 @@
-"""Payloads in C: functions that say whether bytes are what a frame's kind has, from layouts."""
+"""Payloads in C: what says whether bytes are what a frame's kind has, from layouts."""
 
 from __future__ import annotations
 
@@ -9,43 +9,17 @@ from innervate.live.board import Coded
 from innervate.wire.layout import PAIRS, REST, is_fixed, width
 
 
-def whole(prefix: str, coded: Coded) -> list[str]:
-    """The texts of the functions; none where payloads are not looked into."""
+def cases(coded: Coded) -> list[str]:
+    """A case for each kind of payload; none where payloads are not looked into."""
     payloads: dict[Any, list[int]] = {}
     for form in coded.forms:
         for kind, fields in form.payloads.items():
             payloads.setdefault(fields, []).append(kind)
-    if not payloads:
-        return []
     lines = []
     for fields, kinds in payloads.items():
         lines += [f"    case {kind}:" for kind in kinds]
         lines += [f"        {line}" for line in _walk(fields)]
-    return ["\n".join([
-        "/* 1 if bits `at` to `end` are exactly a payload of this kind. */",
-        f"static int32_t {prefix}_is_whole(const uint8_t *data, int32_t kind, int32_t at, "
-        "int32_t end)", "{",
-        "    int32_t count;", "    switch (kind) {", *lines, "    default:", "        return 0;",
-        "    }", "}", "",
-    ]), _fits(prefix, coded)]  # fmt: skip
-
-
-def _fits(prefix: str, coded: Coded) -> str:
-    """What may be in front of a payload and behind it, and the payload."""
-    flags = coded.version[1] + coded.kind_bits
-    lead = [f"    if ((flags & {coded.lead}) && at < end) {{",
-            "        begin = at + 1 + data[at];", "    }"] if coded.lead else []  # fmt: skip
-    trail = [f"    if ((flags & {coded.trail}) && begin < end && data[end - 1] > 0 &&",
-             f"            {prefix}_is_whole(data, kind, 8 * begin, "
-             "8 * (end - 1 - data[end - 1]))) {",
-             "        return 1;", "    }"] if coded.trail else []  # fmt: skip
-    return "\n".join([
-        "/* 1 if bytes `at` to `end` are a payload, and what forwarding puts around. */",
-        f"static int32_t {prefix}_fits(const uint8_t *data, int32_t at, int32_t end)", "{",
-        f"    const int32_t kind = data[0] & {(1 << coded.kind_bits) - 1};",
-        f"    const int32_t flags = data[{flags // 8}];", "    int32_t begin = at;", *lead, *trail,
-        f"    return {prefix}_is_whole(data, kind, 8 * begin, 8 * end);", "}", "",
-    ])  # fmt: skip
+    return lines
 
 
 def _walk(fields: tuple[Any, ...]) -> list[str]:

@@ -30,15 +30,10 @@ OUT = ("count", "limit", "overflow")
 
 
 class Type(NamedTuple):
-    """What an expression is.
+    """What an expression is, in C's terms."""
 
-    Attributes:
-        what: "int", a record's name, "out", "array" of numbers, "actions", "frames", or "none".
-        field: of an array, the field that it is.
-    """
-
-    what: str
-    field: Field | None = None
+    what: str  # "int", a record's name, "out", "array" of numbers, "actions", "frames", or "none"
+    field: Field | None = None  # of an array, the field that it is
 
     @property
     def is_pointer(self) -> bool:
@@ -286,14 +281,10 @@ class _Reader:
         if kind != NOTHING:
             made.returns = kind
 
-    def _Pass(self, _node: ast.Pass) -> None:
+    def _Pass(self, _node: ast.stmt) -> None:
         pass
 
-    def _Break(self, _node: ast.Break) -> None:
-        pass
-
-    def _Continue(self, _node: ast.Continue) -> None:
-        pass
+    _Break = _Continue = _Pass
 
     def type(self, node: ast.expr) -> Type:
         """What an expression is; everything in it is looked at."""

@@ -28,17 +28,12 @@ WORDS = frozenset((
 
 
 class Field(NamedTuple):
-    """A field of a struct.
-
-    Attributes:
-        type: of a number in it, in C.
-        length: 0 = a single number.
-        low, high: its declared range.
-    """
+    """A field of a struct."""
 
     name: str
-    type: str
-    length: int
+    type: str  # of a number in it, in C
+    length: int  # 0 = a single number
+    # Its declared range.
     low: int
     high: int
     unit: str

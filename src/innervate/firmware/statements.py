@@ -15,6 +15,7 @@ from innervate.firmware.program import Type
 
 COLUMNS = 100
 STEP = "    "
+WORDS = {ast.Pass: "", ast.Break: "break", ast.Continue: "continue"}
 
 
 @cache
@@ -203,14 +204,10 @@ class Statements:
         self._put(depth, f"const int32_t {name} = {self.expressions.text(end)};")
         return name
 
-    def _Pass(self, node: ast.Pass, depth: int, _declared: list[str]) -> None:
-        self._put(depth, ";", self._note(node.lineno))
+    def _Pass(self, node: ast.stmt, depth: int, _declared: list[str]) -> None:
+        self._put(depth, f"{WORDS[type(node)]};", self._note(node.lineno))
 
-    def _Break(self, node: ast.Break, depth: int, _declared: list[str]) -> None:
-        self._put(depth, "break;", self._note(node.lineno))
-
-    def _Continue(self, node: ast.Continue, depth: int, _declared: list[str]) -> None:
-        self._put(depth, "continue;", self._note(node.lineno))
+    _Break = _Continue = _Pass
 
 
 def ends(body: list[ast.stmt]) -> bool:

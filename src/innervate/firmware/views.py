@@ -26,14 +26,10 @@ def struct_of(fields: Fields) -> Any:
 
 
 class Kept(ctypes.Structure):
-    """A record that stays: its arrays are looked up once.
-
-    Attributes:
-        ref: a pointer to it, for calls.
-    """
+    """A record that stays: its arrays are looked up once."""
 
     arrays: tuple[str, ...] = ()
-    ref: Any
+    ref: Any  # a pointer to it, for calls
 
 
 def kept_of(fields: Fields) -> type[Kept]:
@@ -70,12 +66,7 @@ def copy(fields: Iterable[Field], source: Any, target: Any) -> None:
 
 
 class Outbox:
-    """The outbox of a role in C, as `dialect.plain.Outbox` is in Python.
-
-    Args:
-        fields: of frames and of actions.
-        room: actions that it holds, and so many frames.
-    """
+    """The outbox of a role in C, as `dialect.plain.Outbox` in Python; one frame an action."""
 
     def __init__(self, frame: Fields, action: Fields, room: int) -> None:
         one = kept_of(frame)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError
-from innervate.firmware.payloads import whole
+from innervate.firmware.payloads import cases
 from innervate.firmware.records import name_of
+from innervate.firmware.texts import filled, shipped
 from innervate.live.board import Coded, Form, Role
 from innervate.network import Network
 from innervate.wire.frames import REASONS
@@ -39,13 +41,7 @@ def coded_of(role: Role, network: Network) -> Coded | None:
 
 
 class Wire:
-    """The coder of a network.
-
-    Args:
-        library: the role.
-        coded: its frames.
-        payload_max: bytes that a frame's payload has at most, where it is none of the record's.
-    """
+    """The coder of a role; `payload_max`: bytes of payloads that are none of the record's."""
 
     def __init__(self, library: Library, coded: Coded, payload_max: int = 0) -> None:
         self.library, self.prefix, self.coded = library, library.prefix, coded
@@ -62,130 +58,75 @@ class Wire:
 
     def header(self) -> str:
         """The text of the coder's header."""
-        small, big = self.prefix, self.big
-        words = ["OK", *(f"BAD_{word.upper()}" for word in self.coded.reasons[1:])]
-        reasons = [f"#define {big}_{name} {i}" for i, name in enumerate(words)]
-        payload, size_max, front = [], f"{self.coded.size_max}", ""
+        names = ["OK", *(f"BAD_{word.upper()}" for word in self.coded.reasons[1:])]
+        reasons = [f"#define {self.big}_{name} {i}" for i, name in enumerate(names)]
+        words = {"@size_max": f"{self.coded.size_max}", "@size_min": f"{self.size_min}",
+                 "@reasons": "\n".join(reasons)}  # fmt: skip
         if self.has_payload:
             at = next(self._bytes(f) for f in self.coded.forms if f.has_payload) - CRC_BYTES
-            payload = [f"#ifndef {big}_PAYLOAD_MAX",
-                       f"#define {big}_PAYLOAD_MAX {self.payload_max} /* bytes of a payload */",
-                       "#endif",
-                       f"#define {big}_PAYLOAD_AT {at} /* where it begins */"]  # fmt: skip
-            size_max = f"({self.coded.size_max} + {big}_PAYLOAD_MAX)"
-            front = "const uint8_t *payload, int32_t count,\n        "
-        return "\n".join([
-            f"/** Frames of {small} on the wire, made from its layouts. */",
-            f"#ifndef {big}_WIRE_H", f"#define {big}_WIRE_H", "", f'#include "{small}.h"', "",
-            "#ifdef __cplusplus", 'extern "C" {', "#endif", "", *payload,
-            f"#define {big}_SIZE_MAX {size_max} /* bytes of the longest frame */",
-            f"#define {big}_SIZE_MIN {self.size_min} /* of the shortest */", "",
-            f"/* What {small}_decode says: read, or why not. */", *reasons, "",
-            "/** Bytes of a frame on the wire; 0 if there is no such frame. */",
-            f"int32_t {small}_size(const {small}_frame_t *frame);", "",
-            f"/** The bytes of a frame, {big}_SIZE_MAX at most; how many, 0 if there is no such",
-            " * frame. Bits that a field has too many of are left out. */",
-            f"int32_t {small}_encode(const {small}_frame_t *frame, {front}uint8_t *data);", "",
-            "/** Reads received bytes into a frame; any bytes at all will do. Sets `kind` and the",
-            f" * fields of that kind. Returns {big}_OK, or else why not, with the frame as it",
-            " * was. */",
-            f"int32_t {small}_decode(const uint8_t *data, int32_t size, {small}_frame_t *frame);",
-            "", "#ifdef __cplusplus", "}", "#endif", "", f"#endif /* {big}_WIRE_H */", "",
-        ])  # fmt: skip
+            words |= {"@size_max": f"({self.coded.size_max} + {self.big}_PAYLOAD_MAX)",
+                      "@payload_max": f"{self.payload_max}", "@payload_at": f"{at}"}  # fmt: skip
+        return self._filled("made/wire.h", words)
 
     def source(self) -> str:
         """The text of the coder's source."""
-        small = self.prefix
-        parts = [
-            f"/* Frames of {small} on the wire, most significant bit first. */\n"
-            f'#include "{small}_wire.h"\n#include "innervate_wire.h"\n',
-            *whole(small, self.coded), self._size(), self._encode(), self._reason(), self._decode(),
-        ]  # fmt: skip
-        return "\n".join(parts)
+        coded, alone = self.coded, self.coded.alone
+        version, version_bits = coded.version
+        words: dict[str, Any] = {
+            "@cases": "\n".join(cases(coded)), "@kind_mask": (1 << coded.kind_bits) - 1,
+            "@flags_at": self.head_bits // 8, "@lead": coded.lead, "@trail": coded.trail,
+            "@more": " + count" if self.has_payload else "",
+            "@nothing": "count" if self.has_payload else 0,
+            "@version_bits": version_bits, "@version": version, "@from": version_bits,
+            "@kind_bits": coded.kind_bits, "@kind_type": self._type("kind"),
+            "@least": min(self._bytes(form) for form in coded.forms),
+            "@sizes": self._switch("frame->kind", self._size, "return 0;"),
+            "@puts": self._switch("frame->kind", partial(self._fields, self._put), "break;"),
+            "@gets": self._switch("frame->kind", partial(self._fields, self._get), "break;"),
+            "@lengths": self._switch(f"innervate_get(data, &at, {coded.kind_bits})", self._lengths,
+                                     f"return {self.big}_BAD_KIND;"),
+        }  # fmt: skip
+        if alone:
+            values = {"kind": alone[1], **alone[2]}
+            fields = [f"        frame->{name_of(n)} = {v};" for n, v in values.items()]
+            words |= {"@alone_byte": alone[0], "@alone_kind": alone[1],
+                      "@alone_fields": "\n".join(fields)}  # fmt: skip
+        return self._filled("made/wire.c", words)
 
-    def _switch(self, what: str, inside: Callable[[Form], list[str]], other: str) -> list[str]:
+    def _filled(self, file: str, words: dict[str, Any]) -> str:
+        coded = self.coded
+        having = {"payload": self.has_payload, "alone": coded.alone, "version": coded.version[1],
+                  "payloads": any(form.payloads for form in coded.forms),
+                  "lead": coded.lead, "trail": coded.trail}  # fmt: skip
+        given = "const uint8_t *payload, int32_t count,\n        " if self.has_payload else ""
+        text = shipped(file, self.prefix, frozenset(name for name in having if having[name]))
+        return filled(text, {"@given": given} | {word: str(words[word]) for word in words})
+
+    def _switch(self, what: str, inside: Callable[[Form], list[str]], other: str) -> str:
         """A switch by the kind, with a case for each form."""
         found = [f"    switch ({what}) {{"]
         for form in self.coded.forms:
             found += [f"    case {kind}: /* {name} */" for kind, name in form.kinds.items()]
             found += [f"        {line}" for line in inside(form)]
-        return [*found, "    default:", f"        {other}", "    }"]
+        return "\n".join([*found, "    default:", f"        {other}", "    }"])
 
-    def _size(self) -> str:
-        def inside(form: Form) -> list[str]:
-            limits = [f"frame->{name_of(self._counter(form, name))} > {most}"
-                      for name, (most, _) in form.most.items()]  # fmt: skip
-            counters = [self._counter(form, name) for name, many, *_ in form.fields
-                        if name != SPARE and _varies(many)]  # fmt: skip
-            more = "".join(f" + frame->{name_of(counter)}" for counter in counters)
-            size = f"{self._bytes(form)}{more}"
-            if not more:
-                return [f"return {size};"]
-            tests = " || ".join([*limits, f"{size} > {self.big}_SIZE_MAX"])
-            return [f"if ({tests}) {{", "    return 0;", "}", f"return {size};"]
-
-        alone = []
-        if self.coded.alone:
-            alone = [
-                f"    if (frame->kind == {self.coded.alone[1]}) {{",
-                "        return 1;",
-                "    }",
-            ]
-        head = f"int32_t {self.prefix}_size(const {self.prefix}_frame_t *frame)"
-        cases = self._switch("frame->kind", inside, "return 0;")
-        return "\n".join([head, "{", *alone, *cases, "}", ""])
+    def _size(self, form: Form) -> list[str]:
+        limits = [f"frame->{name_of(self._counter(form, name))} > {most}"
+                  for name, (most, _) in form.most.items()]  # fmt: skip
+        counters = [self._counter(form, name) for name, many, *_ in form.fields
+                    if name != SPARE and _varies(many)]  # fmt: skip
+        more = "".join(f" + frame->{name_of(counter)}" for counter in counters)
+        size = f"{self._bytes(form)}{more}"
+        if not more:
+            return [f"return {size};"]
+        tests = " || ".join([*limits, f"{size} > {self.big}_SIZE_MAX"])
+        return [f"if ({tests}) {{", "    return 0;", "}", f"return {size};"]
 
     @staticmethod
     def _counter(form: Form, array: str) -> str:
         """The field that says how many an array has."""
         many = next(field[1] for field in form.fields if field[0] == array)
         return form.length if many == REST else str(many)
-
-    def _encode(self) -> str:
-        small, big, alone = self.prefix, self.big, self.coded.alone
-        version, bits = self.coded.version
-        given = "const uint8_t *payload, int32_t count,\n        " if self.has_payload else ""
-        more = " + count" if self.has_payload else ""
-        first = [f"    innervate_put(&place, {bits}, {version});"] if bits else []
-        single = []
-        if alone:
-            single = [f"    if (frame->kind == {alone[1]}) {{", f"        data[0] = {alone[0]};",
-                      "        return 1;", "    }"]  # fmt: skip
-        test = f"size == {'count' if self.has_payload else 0} || size > {big}_SIZE_MAX"
-        return "\n".join([
-            f"int32_t {small}_encode(const {small}_frame_t *frame, {given}uint8_t *data)", "{",
-            f"    const int32_t size = {small}_size(frame){more};",
-            "    innervate_bits_t place = {0, 0};", "    place.data = data;", *single,
-            f"    if ({test}) {{", "        return 0;", "    }",
-            "    for (int32_t i = 0; i < size; i++) {", "        data[i] = 0;", "    }", *first,
-            f"    innervate_put(&place, {self.coded.kind_bits}, frame->kind);",
-            *self._switch("frame->kind", lambda form: self._fields(form, self._put), "break;"),
-            "    innervate_seal_crc(data, size);", "    return size;", "}", "",
-        ])  # fmt: skip
-
-    def _reason(self) -> str:
-        small, big, coded = self.prefix, self.big, self.coded
-        version, bits = coded.version
-        alone, first = [], []
-        if coded.alone:
-            alone = ["    if (size == 1) {",
-                     f"        return data[0] == {coded.alone[0]} ? {big}_OK : {big}_BAD_KIND;",
-                     "    }"]  # fmt: skip
-        if bits:
-            first = [f"    if (innervate_get(data, &at, {bits}) != {version}) {{",
-                     f"        return {big}_BAD_VERSION;", "    }"]  # fmt: skip
-        least = min(self._bytes(form) for form in coded.forms)
-        return "\n".join([
-            "/* OK if these bytes are a frame, else why not. */",
-            f"static int32_t {small}_reason(const uint8_t *data, int32_t size)", "{",
-            "    int32_t at = 0;", *alone,
-            f"    if (size < {least} || size > {big}_SIZE_MAX) {{",
-            f"        return {big}_BAD_LENGTH;", "    }",
-            "    if (!innervate_is_sound(data, size)) {", f"        return {big}_BAD_CRC;", "    }",
-            *first,
-            *self._switch(f"innervate_get(data, &at, {coded.kind_bits})", self._lengths,
-                          f"return {big}_BAD_KIND;"), "}", "",
-        ])  # fmt: skip
 
     def _lengths(self, form: Form) -> list[str]:
         """What says whether a frame of a form is as long as it has to be."""
@@ -218,33 +159,10 @@ class Wire:
                   f": {big}_BAD_PAYLOAD;"]  # fmt: skip
         return lines
 
-    def _decode(self) -> str:
-        small, big, alone = self.prefix, self.big, self.coded.alone
-        bits = self.coded.version[1]
-        blank, single = [], []
-        if bits:
-            blank = ["    for (uint32_t i = 0; i < sizeof *frame; i++) {",
-                     "        ((uint8_t *)frame)[i] = 0;", "    }"]  # fmt: skip
-        if alone:
-            values = {"kind": alone[1], **alone[2]}
-            single = ["    if (size == 1) {",
-                      *(f"        frame->{name_of(n)} = {v};" for n, v in values.items()),
-                      f"        return {big}_OK;", "    }"]  # fmt: skip
-        return "\n".join([
-            f"int32_t {small}_decode(const uint8_t *data, int32_t size, {small}_frame_t *frame)",
-            "{", f"    int32_t at = {bits};",
-            f"    const int32_t why = {small}_reason(data, size);",
-            f"    if (why != {big}_OK) {{", "        return why;", "    }", *blank, *single,
-            f"    frame->kind = ({self._type('kind')})"
-            f"innervate_get(data, &at, {self.coded.kind_bits});",
-            *self._switch("frame->kind", lambda form: self._fields(form, self._get), "break;"),
-            f"    return {big}_OK;", "}", "",
-        ])  # fmt: skip
-
     def _type(self, name: str) -> str:
         return self.library.records["frame"][name].type
 
-    def _fields(self, form: Form, line: Any) -> list[str]:
+    def _fields(self, line: Any, form: Form) -> list[str]:
         """What writes or reads all fields of a form."""
         found = []
         if form.has_payload and line == self._put:

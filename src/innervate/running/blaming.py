@@ -11,12 +11,13 @@ import sys
 from bdb import BdbQuit
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
 from innervate import folders
 from innervate.network import Network
-from innervate.running.sent import Sent
+from innervate.running.sent import Sent, Told, telling
 from innervate.sim.driver import InvariantBroken, Simulation
 
 TRIAL_EVENTS = 5_000
@@ -29,12 +30,7 @@ Notes = dict[tuple[int, str], tuple[str, int]]
 
 
 class Watched:
-    """Watches a plain simulation's nodes, and its outbox.
-
-    Args:
-        running: not yet begun.
-        network: whose it is; from a folder.
-    """
+    """Watches nodes and outbox of a plain simulation, not yet begun, of a network from a folder."""
 
     def __init__(self, running: Simulation, network: Network) -> None:
         assert network.folder is not None
@@ -47,28 +43,31 @@ class Watched:
             name: (low, high) for name, _length, low, high, *_ in network.fields.STATE
         }  # fmt: skip
         self.states = states
-        kind = self._watching(type(states[0]))
+        kind = telling(states[0], self._field_set)
         for number, state in enumerate(states):
             for name, length, *_ in network.fields.STATE:
                 if length:
-                    setattr(state, name, _Row(getattr(state, name), name, number, self))
+                    told = partial(self._in_row_set, number, name)
+                    setattr(state, name, _Row(getattr(state, name), told))
+                    getattr(state, name).name = name
             state.__class__ = kind
         self._numbers = {id(state): number for number, state in enumerate(states)}
         self.sent = Sent(world, network, self.here)
-        out = world.out._replace(count=self.sent.count, overflow=_Flag([0], self))
+        out = world.out._replace(count=self.sent.count, overflow=Told([0], self._overflow_set))
         running.world, self.sent.out = world._replace(out=out), out
 
-    def _watching(self, made: type) -> type:
-        """A state's class that notes what is set out of range."""
-        watch = self
+    def _field_set(self, state: Any, name: str, value: Any) -> None:
+        if not isinstance(value, list):
+            self._in_row_set(self._numbers[id(state)], name, 0, value)
 
-        def set_field(state: Any, name: str, value: Any) -> None:
-            low, high = watch._ranges.get(name, (value, value))
-            if not isinstance(value, list) and not low <= value <= high:
-                watch.note(watch._numbers[id(state)], name)
-            object.__setattr__(state, name, value)
+    def _in_row_set(self, number: int, name: str, _place: int, value: int) -> None:
+        low, high = self._ranges.get(name, (value, value))
+        if not low <= value <= high:
+            self.note(number, name)
 
-        return type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+    def _overflow_set(self, _place: int, value: int) -> None:
+        if value and self.overflow is None:
+            self.overflow = self.here()
 
     def note(self, number: int, name: str) -> None:
         """A field of a node is out of its range from this line on."""
@@ -98,37 +97,21 @@ class Watched:
         return f"{self.sent.words}. {said}" if self.sent.words else said
 
 
-class _Row(list[int]):
+class _Row(Told):
     """An array field of a state."""
 
-    def __init__(self, values: Any, name: str, number: int, watch: Watched) -> None:
-        super().__init__(values)
-        self.name, self.number, self.watch = name, number, watch
+    name = ""
 
-    def __getitem__(self, place: Any) -> Any:
+    def _check(self, place: int) -> None:
         if place < 0:
             raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
+
+    def __getitem__(self, place: Any) -> Any:
+        self._check(place)
         return super().__getitem__(place)
 
     def __setitem__(self, place: Any, value: Any) -> None:
-        if place < 0:
-            raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
-        low, high = self.watch._ranges[self.name]
-        if not low <= value <= high:
-            self.watch.note(self.number, self.name)
-        super().__setitem__(place, value)
-
-
-class _Flag(list[int]):
-    """The outbox's overflow flag: notes who set it."""
-
-    def __init__(self, values: list[int], watch: Watched) -> None:
-        super().__init__(values)
-        self.watch = watch
-
-    def __setitem__(self, place: Any, value: Any) -> None:
-        if value and self.watch.overflow is None:
-            self.watch.overflow = self.watch.here()
+        self._check(place)
         super().__setitem__(place, value)
 
 

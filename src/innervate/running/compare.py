@@ -26,18 +26,13 @@ Side = str | os.PathLike[str] | Run
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """The first handler call that differs between two runs.
+    """The first handler call that differs between two runs."""
 
-    Attributes:
-        time_s: when, the earlier of the two.
-        a, b: the call in either run, in words; "nothing more" where one had ended.
-        same_call: the same call in both, but with another outcome.
-    """
-
-    time_s: float
+    time_s: float  # when, the earlier of the two
+    # The call in either run, in words; "nothing more" where one had ended.
     a: str
     b: str
-    same_call: bool
+    same_call: bool  # the same call in both, but with another outcome
 
     def __str__(self) -> str:
         if self.same_call:
@@ -70,11 +65,7 @@ class Comparison:
 
 
 def compare(a: Side, b: Side) -> Comparison:
-    """What differs between two runs; if they differ, both are simulated again to find where.
-
-    Args:
-        a: a run, or the folder of one.
-        b: another.
+    """What differs between two runs, or folders of runs; if so, simulated again to find where.
 
     Raises:
         RunError: one of them is not a run folder, or damaged.

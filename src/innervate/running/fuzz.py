@@ -24,19 +24,12 @@ TRIES = 400
 
 @dataclass(frozen=True, slots=True)
 class Broken:
-    """A network that breaks something.
+    """A network that breaks something."""
 
-    Attributes:
-        seed: what it was drawn from.
-        why: what is broken, in one line.
-        tables: the scenario, made as small as it goes.
-        tries: how many smaller ones were tried.
-    """
-
-    seed: int
-    why: str
-    tables: Tables
-    tries: int
+    seed: int  # what it was drawn from
+    why: str  # what is broken, in one line
+    tables: Tables  # the scenario, made as small as it goes
+    tries: int  # how many smaller ones were tried
 
     def save(self, folder: Path) -> Path:
         """Write the scenario; `innervate run` plays it."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +19,33 @@ from innervate.verify.frames import frames_of
 Here = Callable[[], tuple[str, int]]
 
 
-class Sent:
-    """Watches the frames of an outbox.
+class Told(list[int]):
+    """A list that tells a place and a value before it is set there."""
 
-    Args:
-        world: of a plain run, not yet begun.
-        network: whose it is.
-        here: the innermost line of the network's files that is being run.
+    def __init__(self, values: list[int], tell: Callable[[int, int], None]) -> None:
+        super().__init__(values)
+        self.tell = tell
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        self.tell(place, value)
+        super().__setitem__(place, value)
+
+
+def telling(record: Any, tell: Callable[[Any, str, Any], None]) -> type:
+    """A class like a record's, that tells record, field and value before it is set."""
+
+    def set_field(record: Any, name: str, value: Any) -> None:
+        tell(record, name, value)
+        object.__setattr__(record, name, value)
+
+    made = type(record)
+    return type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+
+
+class Sent:
+    """Watches the frames of the outbox of a plain run, not yet begun.
+
+    `here` says the innermost line of the network's files that is being run.
 
     Attributes:
         words: what is wrong with the frame that broke the run, and where it was set; "" nothing.
@@ -38,35 +59,34 @@ class Sent:
         # By frame and field, of this call: where a value was set that cannot be.
         self.set_at: dict[tuple[int, str], tuple[str, int] | None] = {}
         self.ranges = {name: (low, high) for name, _, low, high, *_ in self.frames.declared}
-        self.count = _Count([0], self)
-        kind = self._watching(type(world.out.frame[0]))
+        self.count = Told([0], self._count_set)
+        kind = telling(world.out.frame[0], self._field_set)
         for place, frame in enumerate(world.out.frame):
             for name, length, *_ in network.fields.FRAME:
                 if length:
-                    setattr(frame, name, _Row(getattr(frame, name), (place, name), self))
+                    told = partial(self._in_row_set, (place, name))
+                    setattr(frame, name, Told(getattr(frame, name), told))
             frame.__class__ = kind
         self.place = {id(frame): place for place, frame in enumerate(world.out.frame)}
-        self._watch_run(world.run[0])
+        world.run[0].__class__ = telling(world.run[0], self._run_set)
 
-    def _watching(self, made: type) -> type:
-        sent = self
+    def _field_set(self, frame: Any, name: str, value: Any) -> None:
+        self.note((self.place[id(frame)], name), value)
 
-        def set_field(frame: Any, name: str, value: Any) -> None:
-            sent.note((sent.place[id(frame)], name), value)
-            object.__setattr__(frame, name, value)
+    def _in_row_set(self, what: tuple[int, str], _place: int, value: int) -> None:
+        self.note(what, value)
 
-        return type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+    def _run_set(self, _run: Any, name: str, value: Any) -> None:
+        """Say what was set where, at the moment that a frame breaks the run."""
+        if name == "broken" and value in (FRAME_BROKEN, KIND_BROKEN) and not self.words:
+            self.words = self.first_wrong()
 
-    def _watch_run(self, run: Any) -> None:
-        """Have it say what was set where, at the moment that a frame breaks the run."""
-        sent, made = self, type(run)
-
-        def set_field(run: Any, name: str, value: Any) -> None:
-            if name == "broken" and value in (FRAME_BROKEN, KIND_BROKEN) and not sent.words:
-                sent.words = sent.first_wrong()
-            object.__setattr__(run, name, value)
-
-        run.__class__ = type(made.__name__, (made,), {"__slots__": (), "__setattr__": set_field})
+    def _count_set(self, _place: int, value: int) -> None:
+        """How many actions there are."""
+        if value:
+            self.put_at[value - 1] = _putter()
+        elif self.count[0]:
+            self.drained(self.count[0])
 
     def note(self, what: tuple[int, str], value: Any) -> None:
         """A field of a frame is set."""
@@ -113,36 +133,9 @@ class Sent:
         return f"{path}:{line}: {name} of a frame that {handler} {does} {what}"
 
 
-class _Count(list[int]):
-    """How many actions there are."""
-
-    def __init__(self, values: list[int], sent: Sent) -> None:
-        super().__init__(values)
-        self.sent = sent
-
-    def __setitem__(self, place: Any, value: Any) -> None:
-        if value:
-            self.sent.put_at[value - 1] = _putter()
-        elif self[0]:
-            self.sent.drained(self[0])
-        super().__setitem__(place, value)
-
-
-class _Row(list[int]):
-    """An array field of a frame."""
-
-    def __init__(self, values: Any, what: tuple[int, str], sent: Sent) -> None:
-        super().__init__(values)
-        self.what, self.sent = what, sent
-
-    def __setitem__(self, place: Any, value: Any) -> None:
-        self.sent.note(self.what, value)
-        super().__setitem__(place, value)
-
-
 def _putter() -> tuple[str, int, str]:
     """File and line that put an action into the outbox, and the handler that it belongs to."""
-    frame: Any = sys._getframe(2)
+    frame: Any = sys._getframe(3)
     while frame.f_code.co_filename == outbox.__file__:
         frame = frame.f_back
     place = frame.f_code.co_filename, frame.f_lineno

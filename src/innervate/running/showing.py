@@ -16,8 +16,7 @@ PREPARING = "preparing; where no compiled loop is there yet, half a minute, once
 class Bar:
     """A line and a bar in a notebook's cell, gone when the work is done; a context manager.
 
-    Args:
-        what: is done, before anything is known of how far it is.
+    `what` is done is shown before anything is known of how far it is.
     """
 
     def __init__(self, what: str = PREPARING) -> None:

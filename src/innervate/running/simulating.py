@@ -54,29 +54,18 @@ TABLES = (REPORTS, DELIVERIES)
 
 @dataclass(slots=True)
 class Result:
-    """What a simulation leaves.
+    """What a simulation leaves when it ends."""
 
-    Attributes:
-        plan: what ran.
-        world: its tables at the end.
-        rows: all rows of the loop's tables by their names, arrays of records, times in us.
-        counts: of the medium.
-        ended_us: up to where it ran.
-        wall_s: how long that took.
-        fingerprint: of everything that happened.
-        handled: handler calls.
-        interrupted: it was ended early.
-    """
-
-    plan: Any
-    world: Any
+    plan: Any  # what ran
+    world: Any  # its tables at the end
+    # All rows of the loop's tables by their names, arrays of records, times in us.
     rows: dict[str, Any]
-    counts: Counts
-    ended_us: int
-    wall_s: float
-    fingerprint: str
-    handled: int
-    interrupted: bool
+    counts: Counts  # of the medium
+    ended_us: int  # up to where it ran
+    wall_s: float  # how long that took
+    fingerprint: str  # of everything that happened
+    handled: int  # handler calls
+    interrupted: bool  # it was ended early
 
 
 def simulation(plan: Any, **kept: bool) -> Simulation:

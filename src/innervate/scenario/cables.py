@@ -15,25 +15,15 @@ LOSS_ONE = 32_768
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One event of a run.
+    """One event of a run."""
 
-    Attributes:
-        at_us: when, true time, us.
-        action: CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE.
-        end: one end of the cable it happens to; -1 for kill, revive and restart.
-        node: the node it happens to; -1 for cables.
-        loss_q15: for LOOSE the loss on both directions in 1/32768; else 0.
-        frames: for LOSE how many frames are lost on the cable; else 0.
-        index: the event's place in the scenario file.
-    """
-
-    at_us: int
-    action: int
-    end: int = -1
-    node: int = -1
-    loss_q15: int = 0
-    frames: int = 0
-    index: int = 0
+    at_us: int  # when, true time, us
+    action: int  # CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART or LOSE
+    end: int = -1  # one end of the cable it happens to; -1 for kill, revive and restart
+    node: int = -1  # the node it happens to; -1 for cables
+    loss_q15: int = 0  # for LOOSE the loss on both directions in 1/32768; else 0
+    frames: int = 0  # for LOSE how many frames are lost on the cable; else 0
+    index: int = 0  # the event's place in the scenario file
 
 
 class Input(NamedTuple):
@@ -53,42 +43,26 @@ class Happening(Input):
 
 @dataclass(slots=True)
 class CablesPlan:
-    """Everything a run over cables needs, as whole numbers.
+    """Everything a run over cables needs, as whole numbers."""
 
-    Attributes:
-        scenario: whose plan it is.
-        graph: nodes with up to four ports each, and their cables.
-        kind: name of the network.
-        seed: root of all random numbers.
-        duration_us: simulated time.
-        params: the protocol's parameters, by name.
-        start_us: nodes are switched on within so long.
-        drift_ppm: clocks run up to this much fast or slow.
-        latency_us: least and greatest hop latency, wire time included, us.
-        latency_per_frame: drawn for every frame; else once for each link and direction.
-        wire_us: time a frame occupies the wire.
-        queue_frames: frames a port can hold that are not urgent.
-        loss_q15: share of the frames that every cable loses, in 1/32768.
-        data_period_us: between a node's inputs of kind SAMPLE; 0 = none.
-        faults: in order of time, then of the file.
-        inputs: what nodes are given besides, in order of time.
-    """
-
-    scenario: Any
-    graph: Graph
-    kind: str
-    seed: int
-    duration_us: int
-    params: dict[str, int]
-    start_us: int = 1_000
-    drift_ppm: int = 0
+    scenario: Any  # whose plan it is
+    graph: Graph  # nodes with up to four ports each, and their cables
+    kind: str  # name of the network
+    seed: int  # root of all random numbers
+    duration_us: int  # simulated time
+    params: dict[str, int]  # the protocol's parameters, by name
+    start_us: int = 1_000  # nodes are switched on within so long
+    drift_ppm: int = 0  # clocks run up to this much fast or slow
+    # Least and greatest hop latency, wire time included, us.
     latency_us: tuple[int, int] = (80, 160)
-    latency_per_frame: bool = False
+    latency_per_frame: bool = False  # drawn for every frame; else once for each link and direction
+    # Time a frame occupies the wire.
     wire_us: int = 60  # a frame of 240 bit at 4 Mbit/s
-    queue_frames: int = 8
-    loss_q15: int = 0
-    data_period_us: int = 0
-    faults: list[Fault] = field(default_factory=list)
+    queue_frames: int = 8  # frames a port can hold that are not urgent
+    loss_q15: int = 0  # share of the frames that every cable loses, in 1/32768
+    data_period_us: int = 0  # between a node's inputs of kind SAMPLE; 0 = none
+    faults: list[Fault] = field(default_factory=list)  # in order of time, then of the file
+    # What nodes are given besides, in order of time.
     inputs: list[Input] = field(default_factory=list)
 
 

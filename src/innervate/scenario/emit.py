@@ -18,13 +18,9 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def dump(scenario: Scenario, whole: bool = True) -> str:
-    """TOML that loads to the same scenario.
+    """TOML that loads to the same scenario, with defaults, or (not `whole`) what was given alone.
 
     Relative paths in it become full ones, since the text may be kept elsewhere.
-
-    Args:
-        scenario: to be written.
-        whole: with defaults; else only what was given, as fits a text that is still changed.
     """
     tables = msgspec.to_builtins(scenario.model)
     networks()[scenario.kind].anchor(tables, scenario.source)

@@ -9,13 +9,19 @@ from __future__ import annotations
 import contextlib
 import json
 import re
+from collections.abc import Iterator
+from itertools import count
 
 Key = tuple[str | int, ...]
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _SPACE = re.compile(r"[ \t]*")
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_BETWEEN = re.compile(r"(?:[ \t\r\n,]|#[^\n]*)*")
 _SCALAR = re.compile(r"[^,\]}#\r\n]*")
+_STRING = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"((?:\\.|[^"\\])*)"|\'([^\']*)\'', re.DOTALL
+)
 
 
 def key_lines(text: str) -> dict[Key, int]:
@@ -107,59 +113,35 @@ class _Scan:
             self._skip(_SCALAR)
 
     def _array(self, path: Key) -> None:
-        self.at += 1
-        index = 0
-        while True:
-            self._skip(_BLANK)
-            if self.text[self.at] == "]":
-                self.at += 1
-                return
-            if self.text[self.at] == ",":
-                self.at += 1
-                continue
+        for index in self._elements("]"):
             self.lines.setdefault((*path, index), self._line())
             self._value((*path, index))
-            index += 1
 
     def _inline(self, path: Key) -> None:
+        for _ in self._elements("}"):
+            self._pair(path)
+
+    def _elements(self, end: str) -> Iterator[int]:
+        """The places of what is between brackets; whoever takes one moves past it."""
         self.at += 1
-        while True:
-            self._skip(_BLANK)
-            if self.text[self.at] == "}":
+        for index in count():
+            self._skip(_BETWEEN)
+            if self.text[self.at] == end:
                 self.at += 1
                 return
-            if self.text[self.at] == ",":
-                self.at += 1
-                continue
-            self._pair(path)
+            yield index
 
     def _string(self) -> str:
         """Move past a string of any of the four forms; its value for one-line ones."""
-        quote = self.text[self.at]
-        start = self.at
-        if self.text.startswith(3 * quote, start):
-            end = self._closing(start + 3, 3 * quote)
-            while self.text.startswith(quote, end + 3):
-                end += 1
-            self.at = end + 3
-            return ""
-        end = self._closing(start + 1, quote)
-        self.at = end + 1
-        inside = self.text[start + 1 : end]
-        if quote == "'" or "\\" not in inside:
-            return inside
+        match = _STRING.match(self.text, self.at)
+        if match is None:
+            raise ValueError
+        self.at = match.end()
+        basic, literal = match.groups()
         try:
-            return str(json.loads(f'"{inside}"'))
+            return literal or str(json.loads(f'"{basic or ""}"'))
         except ValueError:
-            return inside
-
-    def _closing(self, at: int, quote: str) -> int:
-        escapes = quote[0] == '"'
-        while not self.text.startswith(quote, at):
-            if at >= len(self.text):
-                raise IndexError
-            at += 2 if escapes and self.text[at] == "\\" else 1
-        return at
+            return str(basic)
 
     def _skip(self, pattern: re.Pattern[str]) -> None:
         match = pattern.match(self.text, self.at)

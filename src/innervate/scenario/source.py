@@ -18,21 +18,14 @@ DEPTH_MAX = 16
 
 @dataclass(slots=True)
 class Source:
-    """A scenario's origin.
+    """A scenario's origin, for what errors say."""
 
-    Attributes:
-        path: the file as the user named it; "" for a scenario made in code.
-        folder: where relative paths in it start; "" is the working folder.
-        lines: line of every key (see lines.py).
-        sets: the `--set` text that gave a key its value.
-        given: every key that has a value of its own, in the file, a dict or by `--set`; a run may
-            have no use for it, though the value is that which it has by itself.
-    """
-
-    path: str = ""
-    folder: str = ""
-    lines: dict[Key, int] = field(default_factory=dict)
-    sets: dict[Key, str] = field(default_factory=dict)
+    path: str = ""  # the file as the user named it; "" for a scenario made in code
+    folder: str = ""  # where relative paths in it start; "" is the working folder
+    lines: dict[Key, int] = field(default_factory=dict)  # line of every key (see lines.py)
+    sets: dict[Key, str] = field(default_factory=dict)  # the `--set` text that gave a key its value
+    # Every key that has a value of its own, in the file, a dict or by `--set`; a run may have no
+    # use for it, though the value is that which it has by itself.
     given: frozenset[Key] = frozenset()
 
     def error(self, key: Key, message: str) -> ScenarioError:

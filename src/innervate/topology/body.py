@@ -17,6 +17,7 @@ from pathlib import Path
 from innervate.topology.errors import TopologyError
 from innervate.topology.graph import Graph
 from innervate.topology.patch import NOTHING, PORTS
+from innervate.topology.placement import distances
 from innervate.topology.urdf import Vector, find_urdf, read_links, read_positions
 
 CELLS_MAX = 5000
@@ -222,16 +223,9 @@ def propose(graph: Graph, count: int) -> list[int]:
 
 
 def _hops(graph: Graph, start: int) -> list[int]:
-    """Hops from a cell to every cell, over cables between cells."""
-    hops = [graph.cells] * graph.cells
-    hops[start] = 0
-    queue = [start]
-    for cell in queue:
-        for other in graph.neighbours(cell):
-            if other < graph.cells and hops[other] > hops[cell] + 1:
-                hops[other] = hops[cell] + 1
-                queue.append(other)
-    return hops
+    """Hops from a cell to every cell, over cables between cells; more than any where none lead."""
+    hops = distances(graph.cells_around(), start)
+    return [graph.cells if far < 0 else far for far in hops]
 
 
 def joining_reach(positions: Sequence[Vector]) -> float:

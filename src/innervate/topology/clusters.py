@@ -16,12 +16,7 @@ def heads(near: Sequence[Sequence[int]], count: int, eligible: Sequence[int]) ->
     """So many nodes that are far from each other, each in the middle of those nearest to it.
 
     Each is at first the one that is farthest from those before; then each moves to the middle of
-    its cluster, until none does.
-
-    Args:
-        near: per node whom its links lead to.
-        count: 1 to the number of eligible nodes.
-        eligible: nodes that can be heads, ascending.
+    its cluster, until none does. Heads are of the eligible ones alone, which ascend.
     """
     found = [eligible[0]]
     apart = distances(near, found[0])
@@ -48,12 +43,7 @@ def nearest(
     """Per node the place in `starts` of the one it has the cheapest way to; -1: none.
 
     Of several the first. Who is nearest to the same one is joined by nodes that are, too.
-
-    Args:
-        near: per node whom its links lead to.
-        costs: of each link, in both directions, above 0.
-        starts: nodes, all different.
-        ahead: what each of them costs in itself; nothing if left out.
+    `costs` are above 0, for each link in both directions; `ahead` is what each start itself costs.
     """
     owner = [-1] * len(near)
     line = [(ahead[which] if ahead else 0, which, node) for which, node in enumerate(starts)]

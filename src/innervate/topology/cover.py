@@ -38,10 +38,7 @@ def has_surface(link: Link) -> bool:
 def cells_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> tuple[list[str], list[Vector]]:
     """(names, positions in mm) of cells on the surfaces of the links that match.
 
-    Args:
-        path: a URDF file.
-        pattern: as for read_positions().
-        pitch_mm: least distance between two cells of a link, > 0.
+    Two cells of a link are at least the pitch, > 0, apart; as read_positions() otherwise.
 
     Raises:
         TopologyError: no link matches, none has a shape, one has only shapes that cannot be read,

@@ -20,22 +20,15 @@ UNREACHABLE = -1
 
 @dataclass(slots=True)
 class Graph:
-    """Cells, interface ports and cables.
+    """Cells, interface ports and cables."""
 
-    Attributes:
-        cells: how many cells there are, 0..4,000,000.
-        interfaces: how many interface ports the PC has.
-        peer: length 4 * cells + interfaces; the end on the other side, or -1.
-        patches: the patches, in order of their cells; empty for free graphs and bodies.
-        names: one name a cell for free graphs and bodies; empty for patches.
-        positions: x, y, z in mm per cell, flat, for bodies; empty otherwise.
-    """
-
-    cells: int
-    interfaces: int
-    peer: array[int]
+    cells: int  # how many cells there are, 0..4,000,000
+    interfaces: int  # how many interface ports the PC has
+    peer: array[int]  # length 4 * cells + interfaces; the end on the other side, or -1
+    # The patches, in order of their cells; empty for free graphs and bodies.
     patches: tuple[Patch, ...] = ()
-    names: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()  # one name a cell for free graphs and bodies; empty for patches
+    # x, y, z in mm per cell, flat, for bodies; empty otherwise.
     positions: array[float] = field(default_factory=lambda: array("d"))
 
     @property
@@ -72,6 +65,11 @@ class Graph:
     def neighbours(self, node: int) -> list[int]:
         """Nodes cabled to a node, in port order; one appears once per cable."""
         return [self.node_of(e) for e in (self.peer[x] for x in self.ends_of(node)) if e >= 0]
+
+    def cells_around(self) -> list[list[int]]:
+        """Per cell the cells that it is cabled to, in port order."""
+        return [[other for other in self.neighbours(cell) if other < self.cells]
+                for cell in range(self.cells)]  # fmt: skip
 
     def connect(self, end_a: int, end_b: int) -> None:
         """Plug a cable into two free ends.

@@ -28,17 +28,13 @@ Quality = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A network as it was found.
+    """A network as it was found."""
 
-    Attributes:
-        names: per node.
-        links: (a, b) with a < b -> quality from a to b, and from b to a, 0 .. 1.
-        points: per node (x, y) in cm, x to the east, y to the north; empty where nobody's place
-            is known. Who has none is put amidst its neighbours.
-    """
-
-    names: list[str]
+    names: list[str]  # per node
+    # (a, b) with a < b -> quality from a to b, and from b to a, 0 .. 1.
     links: dict[tuple[int, int], Quality]
+    # Per node (x, y) in cm, x to the east, y to the north; empty where nobody's place is known. Who
+    # has none is put amidst its neighbours.
     points: list[Point]
 
     def kept(self, least: float) -> Measured:
@@ -94,12 +90,7 @@ class Measured:
     def least_for(self, most: int, *, in_one: bool) -> float | None:
         """The least quality, in hundredths, with which `kept` leaves at most so many nodes.
 
-        Args:
-            most: nodes.
-            in_one: only those of the largest part are to count.
-
-        Returns:
-            None where no quality leaves any.
+        With `in_one` those of the largest part count. None where no quality leaves any.
         """
 
         def left(least: float) -> int:

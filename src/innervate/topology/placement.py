@@ -47,12 +47,7 @@ def normal_cdb(draw: Draw, sigma_cdb: int) -> int:
 
 
 def path_loss_cdb(distance_cm: int, exponent_c: int) -> int:
-    """What a signal loses between 1 m and a distance, 0.01 dB.
-
-    Args:
-        distance_cm: how far, cm.
-        exponent_c: path loss exponent x 100.
-    """
+    """What a signal loses between 1 m and a distance, 0.01 dB; `exponent_c` is x 100."""
     return round(10 * exponent_c * math.log10(max(distance_cm, NEAREST_CM) / 100))
 
 
@@ -93,12 +88,7 @@ def threshold(gain: Sequence[int], count: int, links: int) -> tuple[int, list[tu
     """The gain that so many pairs have both ways, and the pairs (a < b) to weaken by 0.01 dB.
 
     Pairs that are exactly as loud as the last one would make more links than asked for; those that
-    come last are to be weakened.
-
-    Args:
-        gain: per sender and receiver, 0.01 dB.
-        count: how many nodes.
-        links: 1 .. count * (count - 1) / 2.
+    come last are to be weakened. There are 1 .. count * (count - 1) / 2 links.
     """
     loudness = sorted(
         (-min(gain[a * count + b], gain[b * count + a]), a, b)

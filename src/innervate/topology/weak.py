@@ -14,17 +14,11 @@ NONE = -1
 
 
 class Weak(NamedTuple):
-    """A cable or a cell whose loss cuts off others from the PC.
+    """A cable or a cell whose loss cuts off others from the PC."""
 
-    Attributes:
-        isolated: how many cells it cuts off, >= 1; a cell does not count itself.
-        end: the cable's end on the PC's side; -1 for a cell.
-        node: the cell; -1 for a cable.
-    """
-
-    isolated: int
-    end: int
-    node: int
+    isolated: int  # how many cells it cuts off, >= 1; a cell does not count itself
+    end: int  # the cable's end on the PC's side; -1 for a cell
+    node: int  # the cell; -1 for a cable
 
 
 def weak_points(graph: Graph) -> list[Weak]:

@@ -24,6 +24,7 @@ class ChannelView(DeclaredView):
 
     can: tuple[str, ...] = ("kill", "revive")
     actions: ClassVar[tuple[Action, ...]] = TABLE
+    fault_type: ClassVar[Any] = Fault
     around: ClassVar[float] = 1.5  # from one node to the next, in their diameters
 
     def __init__(self, engine: Engine, history: History) -> None:
@@ -73,10 +74,6 @@ class ChannelView(DeclaredView):
         if bool(self._on()[number("node", node, self.plan.nodes)]) == revive:
             raise Refused("this node is on" if revive else "this node is off already")
         return {"action": JOIN if revive else KILL, "node": node}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Any:
-        """A fault of the plan's own type."""
-        return Fault(at_us=at_us, index=index, **fields)
 
     def _on(self) -> Any:
         """Per node, true while it is on; before anything happens, who will be."""

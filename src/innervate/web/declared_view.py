@@ -40,6 +40,7 @@ class DeclaredView(View):
     ]
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     actions: ClassVar[tuple[Action, ...]] = TABLE
+    fault_type: ClassVar[Any] = Fault
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -112,8 +113,7 @@ class DeclaredView(View):
 
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""
-        mends = fault.action in (RESTORE, REVIVE)
-        return not mends and not (fault.action == LOOSE and fault.loss_q15 == 0)
+        return super().takes(fault) and not (fault.action == LOOSE and fault.loss_q15 == 0)
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""
@@ -131,10 +131,6 @@ class DeclaredView(View):
         if bool(self._on()[number("node", node, self.graph.cells)]) == revive:
             raise Refused("this node is on" if revive else "this node is off already")
         return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
-        """A fault of the plan's own type."""
-        return Fault(at_us=at_us, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time, as the network writes it."""

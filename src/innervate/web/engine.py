@@ -24,10 +24,9 @@ class Mark(NamedTuple):
 
 
 class Engine:
-    """A plan's network while it runs, compiled: held at any microsecond, changed, taken back.
+    """A network while it runs, compiled: held at any microsecond, changed, taken back.
 
-    Args:
-        running: the simulation, the same that `innervate run` drives: same plan, same network.
+    It is the simulation that `innervate run` drives, too: same plan, same network.
 
     Attributes:
         plan: what runs.

@@ -21,6 +21,7 @@ class FieldView(ChannelView):
 
     can: tuple[str, ...] = ("kill", "revive", "cut", "heal")
     actions: ClassVar[tuple[Action, ...]] = TABLE
+    fault_type: ClassVar[Any] = Fault
 
     def scene(self) -> dict[str, Any]:
         """Nodes, links, and the fields that nodes can be coloured by."""
@@ -62,10 +63,6 @@ class FieldView(ChannelView):
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """The fault that switches a node off, or on."""
         return {**super().kill(node, revive), "action": REVIVE if revive else KILL}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Any:
-        """A fault of the plan's own type."""
-        return Fault(at_us=at_us, index=index, **fields)
 
     def _on(self) -> Any:
         """Per node, true while it is on; before anything happens, who will be."""

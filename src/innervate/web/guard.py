@@ -18,11 +18,7 @@ REFUSED = 4403  # close code of a socket
 
 
 class Guard:
-    """The checks of one server.
-
-    Args:
-        host: what the server was told to bind to.
-    """
+    """The checks of one server; `host` is what it was told to bind to."""
 
     def __init__(self, host: str) -> None:
         self.token = os.environ.get(TOKEN_GIVEN) or secrets.token_urlsafe(TOKEN_BYTES)

@@ -23,11 +23,7 @@ Send = Callable[[str], Awaitable[None]]
 
 
 class Page:
-    """One page that looks on.
-
-    Args:
-        send: sends it a message; takes as long as the page takes to read.
-    """
+    """One page that looks on; to send it a message takes as long as it takes to read."""
 
     def __init__(self, hub: Hub, send: Send) -> None:
         self._hub = hub

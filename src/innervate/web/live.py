@@ -52,10 +52,7 @@ def find(names: list[str]) -> list[Path]:
 
 
 class Live(Source):
-    """Nodes that run now.
-
-    Args:
-        sockets: their status sockets.
+    """Nodes that run now, by their status sockets.
 
     Raises:
         WatchError: none of them answers, or they are of different kinds.
@@ -352,7 +349,7 @@ class Live(Source):
                 raise Refused(f"{label} could not be told; does it still run?")
         (self._off.discard if back else self._off.add)(place)
         self._ask_for(place, *(link for link in self._map.links if place in (link.a, link.b)))
-        self._note(f"{label} {'let back' if back else 'cut off'}", back)
+        self._note(self._words(place, back), back)
 
     def _ask_for(self, *those: Link | Place) -> None:
         """What happens to those now was done from here."""
@@ -380,8 +377,7 @@ class Live(Source):
         if not told:
             raise Refused("neither end could be told; do they still run?")
         self._ask_for(link)
-        names = f"{self._label(link.a)} - {self._label(link.b)}"
-        self._note(f"link {names} {'put back' if heal else 'cut'}", heal)
+        self._note(self._words(link, heal), heal)
 
     def _is_shared(self, place: Place, path: int) -> bool:
         """True if a path leads to several neighbours: a group, or the air."""

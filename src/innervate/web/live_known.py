@@ -24,7 +24,7 @@ def missing(folder: Path, there: Iterable[Path]) -> list[Path]:
     begins a log with each.
     """
     found, known = set(there), files(folder)
-    return [path for path in known if path not in found and _log(path).exists()]
+    return [path for path in known if path not in found and path.with_suffix(".log").exists()]
 
 
 def files(folder: Path) -> dict[Path, Loaded]:
@@ -76,7 +76,3 @@ def _ends(link: object) -> list[tuple[str, str]]:
         name = f"serial {link.device} to {link.far}"
         return [(f"serial {link.far} to {link.device}", name)]
     return []
-
-
-def _log(socket: Path) -> Path:
-    return socket.with_suffix(".log")

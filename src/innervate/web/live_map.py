@@ -11,15 +11,10 @@ Status = dict[str, Any]
 
 
 class Place(NamedTuple):
-    """A node on the map: a running node, or one port of a node that is drawn by its ports.
+    """A node on the map: a running node, or one port of a node that is drawn by its ports."""
 
-    Attributes:
-        node: which running node it is.
-        port: which port it is; -1 for a node as a whole.
-    """
-
-    node: int
-    port: int
+    node: int  # which running node it is
+    port: int  # which port it is; -1 for a node as a whole
 
 
 class Link(NamedTuple):

@@ -73,11 +73,7 @@ class _Line:
 
 
 class Poller:
-    """Connections to nodes.
-
-    Args:
-        paths: their sockets; nodes are known by their places here.
-    """
+    """Connections to nodes, which are known by the places of their sockets in a list."""
 
     def __init__(self, paths: list[Path]) -> None:
         self._lines = [_Line(path) for path in paths]

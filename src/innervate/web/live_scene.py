@@ -14,23 +14,16 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """What a scenario says of a map of running nodes.
+    """What a scenario says of a map of running nodes."""
 
-    Attributes:
-        name: the scenario's.
-        places: x and y, y down, by a node's name or a port's, like "n3", "c12", "pc.0".
-        labels: what the scenario calls them, where that is another name.
-        fence: rings of places; None without one.
-        metres: places are metres.
-        origin_m: the place from which nodes say where they are.
-    """
-
-    name: str
+    name: str  # the scenario's
+    # x and y, y down, by a node's name or a port's, like "n3", "c12", "pc.0".
     places: dict[str, Place]
+    # What the scenario calls them, where that is another name.
     labels: dict[str, str] = field(default_factory=dict)
-    fence: list[list[list[float]]] | None = None
-    metres: bool = False
-    origin_m: Place = (0.0, 0.0)
+    fence: list[list[list[float]]] | None = None  # rings of places; None without one
+    metres: bool = False  # places are metres
+    origin_m: Place = (0.0, 0.0)  # the place from which nodes say where they are
 
 
 def drawn(sockets: Sequence[Path], kind: str) -> Drawn | None:

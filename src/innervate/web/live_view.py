@@ -29,21 +29,14 @@ def shown_fields(network: Network) -> list[dict[str, str]]:
 
 
 class LiveView:
-    """Running nodes of one kind.
-
-    Attributes:
-        map: class of its maps.
-        state: class of its states.
-        lost: name and unit of the plot of nodes that are in trouble.
-        is_quick: what is shown changes all the time: nodes are asked more often.
-        has_ways: nodes have ways that they can lose and find again.
-    """
+    """Running nodes of one kind."""
 
     map: type[Map] = Map
     state: type[State] = State
+    # Name and unit of the plot of nodes that are in trouble.
     lost: tuple[str, str] = ("nodes without a way", "nodes")
-    is_quick = False
-    has_ways = True
+    is_quick = False  # what is shown changes all the time: nodes are asked more often
+    has_ways = True  # nodes have ways that they can lose and find again
 
     def drawn(self, plan: Any) -> Drawn:
         """Where nodes are drawn; without places they are drawn by who is linked with whom."""

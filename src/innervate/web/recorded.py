@@ -36,13 +36,7 @@ def plan_of(folder: Path) -> Any:
 
 
 class Recorded(Simulated):
-    """A run folder. Nothing can be done to it, but its time goes both ways.
-
-    Args:
-        folder: where the run is.
-        plan: of its scenario.
-        speed: see Simulated.
-    """
+    """A run folder. Nothing can be done to it, but its time goes both ways."""
 
     kind_of_source: ClassVar[str] = "run"
 

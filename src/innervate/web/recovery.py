@@ -8,26 +8,19 @@ from typing import Any
 
 @dataclass(slots=True)
 class Recovery:
-    """How the network gets over the newest fault, as in a run's summary.
+    """How the network gets over the newest fault, as in a run's summary."""
 
-    Attributes:
-        cause: in words.
-        at_us: when.
-        detected_ms: the first who noticed, from there.
-        recovered_ms: everybody has a way again since then; None = not yet. Who is cut off, so that
-            nothing leads to it whatever anybody does, does not count.
-        apart: how many were cut off at worst.
-        nobody: nobody is left who could have a way: all are off, silent or cut off. Then nothing
-            has recovered, and nothing can before somebody comes back.
-        closed: something else was done since everybody had: this does not change any more.
-    """
-
-    cause: str
-    at_us: int
-    detected_ms: float | None = None
+    cause: str  # in words
+    at_us: int  # when
+    detected_ms: float | None = None  # the first who noticed, from there
+    # Everybody has a way again since then; None = not yet. Who is cut off, so that nothing leads to
+    # it whatever anybody does, does not count.
     recovered_ms: float | None = None
-    apart: int = 0
+    apart: int = 0  # how many were cut off at worst
+    # Nobody is left who could have a way: all are off, silent or cut off. Then nothing has
+    # recovered, and nothing can before somebody comes back.
     nobody: bool = False
+    # Something else was done since everybody had: this does not change any more.
     closed: bool = False
 
     def close(self) -> None:

@@ -97,14 +97,9 @@ def _address(host: str, port: int, token: str) -> str:
 async def serve(
     source: Source, host: str, port: int, announce: Announce, report: Path | None = None
 ) -> None:
-    """Serve a source's page until SIGINT or SIGTERM; see `serving`.
+    """Serve a source's page, as `serving` does, until SIGINT or SIGTERM.
 
-    Args:
-        source: what is watched.
-        host: address to listen at.
-        port: 0 = any that is free.
-        announce: is given the page's address, once it can be opened.
-        report: a run's page.
+    `announce` is given the page's address, once it can be opened.
     """
     asked, loop = asyncio.Event(), asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):

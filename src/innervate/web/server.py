@@ -38,12 +38,9 @@ _NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*")
 
 
 def application(hub: Hub, guard: Guard, report: Path | None = None) -> ASGIApp:
-    """The server's application.
+    """The server's application; its caller starts and stops the hub.
 
-    Args:
-        hub: what is watched; the caller starts and stops it.
-        guard: who may.
-        report: a run's page, shown to who has the token.
+    A run's page, the report, is shown to who has the token.
     """
 
     async def index(_request: Request) -> Response:

@@ -38,11 +38,9 @@ class Checkpoint(NamedTuple):
 
 
 class Simulated(Source):
-    """A scenario that is simulated while one looks on.
+    """A plan that is simulated while one looks on.
 
-    Args:
-        plan: what is simulated.
-        speed: seconds of the network per second; None = one at which its changes can be seen.
+    Its speed is seconds of the network per second; None = one at which its changes can be seen.
 
     Attributes:
         broken: what a checker found that must not happen; the network is held there. "" = nothing.

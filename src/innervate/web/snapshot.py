@@ -41,17 +41,12 @@ class Part:
 
 
 class Snapshot:
-    """The state of a network at one moment.
+    """The state of a network at one moment."""
 
-    Attributes:
-        scene: the scene that it belongs to.
-        parts: its fields by name; a field that did not change is the same object as before.
-        newest: number of the newest item in the history at that moment.
-    """
-
-    scene: Part
+    scene: Part  # the scene that it belongs to
+    # Its fields by name; a field that did not change is the same object as before.
     parts: dict[str, Part]
-    newest: int
+    newest: int  # number of the newest item in the history at that moment
 
     def __init__(
         self, scene: Part, fields: dict[str, Any], newest: int, before: Snapshot | None

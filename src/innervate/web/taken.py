@@ -16,13 +16,9 @@ class Taken(dict[tuple[str, Any], bool]):
     def changes(
         self, table: tuple[Action, ...], action: Action, thing: Any, absent: Collection[int]
     ) -> bool:
-        """Take a fault in; false if all stays as it was.
+        """Take in what happens to a thing, a node, cable or link; false if all stays as it was.
 
-        Args:
-            table: the medium's actions.
-            action: that of the fault.
-            thing: the node, or the cable or link.
-            absent: nodes that are off until they come for the first time.
+        `table` are the medium's actions; absent nodes are off until they come for the first time.
         """
         is_node = action.target not in ("cable", "link")
         is_off = is_node and self.get((KILL, thing), thing in absent)

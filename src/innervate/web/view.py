@@ -29,11 +29,7 @@ class Memory:
 
 
 class View(ABC):
-    """Draws an engine's world up for pages, and turns their commands into faults.
-
-    Attributes:
-        memory: all that it keeps from one moment to the next.
-    """
+    """Draws an engine's world up for pages, and turns their commands into faults."""
 
     # Seconds of the network per second, at which its changes can be seen; and from where on
     # frames on their way can.
@@ -43,7 +39,8 @@ class View(ABC):
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     actions: ClassVar[tuple[Action, ...]] = ()  # of the medium, by the numbers that faults have
-    memory: Any
+    fault_type: ClassVar[Any]  # of the faults of a plan
+    memory: Any  # all that it keeps from one moment to the next
     saves: bool = True  # what was done to it can be written as a scenario's events
     is_still: bool = True  # the network is held, so that there is time to count all anew
 
@@ -77,9 +74,9 @@ class View(ABC):
     def words(self, fault: Any) -> str:
         """What a fault does, in words for the log."""
 
-    @abstractmethod
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""
+        return not self.actions[fault.action].mends
 
     @abstractmethod
     def cut(self, link: int, heal: bool) -> dict[str, int]:
@@ -89,9 +86,9 @@ class View(ABC):
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """Fields of the fault that switches a node off, or on; Refused if it is so already."""
 
-    @abstractmethod
     def make(self, at_us: int, index: int, fields: dict[str, int]) -> Any:
-        """A fault of the kind's own type."""
+        """A fault of the plan's own type, of what `cut` or `kill` says."""
+        return self.fault_type(at_us=at_us, index=index, **fields)
 
     @abstractmethod
     def event(self, fault: Any) -> dict[str, Any]:

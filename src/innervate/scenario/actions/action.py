@@ -6,23 +6,14 @@ from typing import NamedTuple
 
 
 class Action(NamedTuple):
-    """One thing that can be done, by the word for it; its number is its place in a table.
+    """One thing that can be done, by the word for it; its number is its place in a table."""
 
-    Attributes:
-        word: as in `action = "cut"`.
-        target: what it happens to: "cable" or "link"; "node", or "cell" for nodes but the PC.
-        key: of an event's table, that only this action has; "" = none.
-        harms: it makes things worse: recordings show it as a warning.
-        mends: the action that it undoes; "" = none.
-        revives: a node that is off is on after it, though it undoes nothing else.
-    """
-
-    word: str
-    target: str
-    key: str = ""
-    harms: bool = False
-    mends: str = ""
-    revives: bool = False
+    word: str  # as in `action = "cut"`
+    target: str  # what it happens to: "cable" or "link"; "node", or "cell" for nodes but the PC
+    key: str = ""  # of an event's table, that only this action has; "" = none
+    harms: bool = False  # it makes things worse: recordings show it as a warning
+    mends: str = ""  # the action that it undoes; "" = none
+    revives: bool = False  # a node that is off is on after it, though it undoes nothing else
 
 
 def words(table: tuple[Action, ...]) -> tuple[str, ...]:

@@ -15,29 +15,28 @@ from innervate.network import networks
 from innervate.scenario import cables
 from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TABLE
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
+from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
-from innervate.scenario.declared.shared import (
-    InputTable,
-    ScriptTable,
-    check_happening,
-    check_inputs,
-    check_node,
-    check_script,
-    check_values,
-    inputs_of,
-    own_events,
-    parameter_lines,
-    parameters,
-    script_lines,
-)
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, shown, with_article
+from innervate.scenario.source import Source, shown
 from innervate.topology import PORTS, TopologyError, free_graph
 from innervate.topology.graph import Graph
 
 NODES_MAX = 1_000_000
 WEST, EAST, NORTH, SOUTH = range(4)  # ports
+# Of a scenario to start from.
+SETTINGS = (
+    "nodes = 6",
+    'shape = "ring"  # line, ring, grid, tree; or cables = ["n0.E-n1.W", "n1-n2"]',
+    "duration_s = 1.0",
+)
+EVENT = """
+# [[event]]
+# at_s = 0.5
+# action = "cut"  # restore, loose, lose; kill, revive, restart of a node
+# link = "n0-n1"
+"""
 
 
 class Links(Table, frozen=True, kw_only=True):
@@ -108,9 +107,9 @@ class CablesScenario(Table, frozen=True, kw_only=True):
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     links: Links = Links()
     protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
-    script: ScriptTable | None = None
+    script: shared.ScriptTable | None = None
 
 
 def check(source: Source, model: CablesScenario) -> None:
@@ -123,12 +122,12 @@ def check(source: Source, model: CablesScenario) -> None:
     low, high = model.links.latency_us
     if low > high:
         raise source.error(("links", "latency_us"), "links.latency_us must be [least, greatest]")
-    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     graph = _graph(source, model)
-    check_script(source, model, graph)
-    check_inputs(source, model, network, graph.cells)
+    shared.check_script(source, model, graph)
+    shared.check_inputs(source, model, network, graph.cells)
     for place, event in enumerate(model.event):
-        check_happening(source, model, place, network, ACTIONS)
+        shared.check_happening(source, model, place, network, ACTIONS)
         _check_target(source, ("event", place), event, graph)
 
 
@@ -142,7 +141,7 @@ def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> 
         raise source.error((*key, other), f"{event.action} has no {other}; leave it out")
     if on_cable:
         _end_of(source, (*key, "link"), graph, str(event.link))
-    check_node(source, (*key, "node"), event.node, graph.cells)
+    shared.check_node(source, (*key, "node"), event.node, graph.cells)
 
 
 def _end_of(source: Source, key: Key, graph: Graph, text: str) -> int:
@@ -200,7 +199,7 @@ def plan(scenario: Any) -> CablesPlan:
         kind=model.kind,
         seed=model.seed,
         duration_us=round(1e6 * model.duration_s),
-        params=parameters(network.fields, model.protocol),
+        params=shared.parameters(network.fields, model.protocol),
         start_us=model.start_us,
         drift_ppm=model.drift_ppm,
         latency_us=model.links.latency_us,
@@ -208,7 +207,7 @@ def plan(scenario: Any) -> CablesPlan:
         queue_frames=model.links.queue_frames,
         loss_q15=round(model.links.loss * LOSS_ONE),
         faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
-        inputs=inputs_of(model, network, graph.cells, ACTIONS),
+        inputs=shared.inputs_of(model, network, graph.cells, ACTIONS),
     )
 
 
@@ -233,28 +232,10 @@ def describe(plan: Any) -> str:
     near = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
     found = ["nobody gets any frame: links.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, near, plan.start_us)
-    return cables.describe(plan, found, script_lines(plan), own_events(plan, ACTIONS))
+    return cables.describe(plan, found, shared.script_lines(plan), shared.own_events(plan, ACTIONS))
 
 
 def template(network: Any) -> str:
-    """A scenario to start from, with all parameters as they are by themselves; "" for a network
-    whose scenarios have keys of their own.
-    """
-    if network.model is not CablesScenario:
-        return ""
-    return "\n".join([
-        f"# {with_article(network.name).capitalize()} over cables.",
-        f'kind = "{network.name}"',
-        "nodes = 6",
-        'shape = "ring"  # line, ring, grid, tree; or cables = ["n0.E-n1.W", "n1-n2"]',
-        "duration_s = 1.0",
-        "",
-        "[protocol]",
-        *parameter_lines(network),
-        "",
-        "# [[event]]",
-        "# at_s = 0.5",
-        '# action = "cut"  # restore, loose, lose; kill, revive, restart of a node',
-        '# link = "n0-n1"',
-        "",
-    ])  # fmt: skip
+    """A scenario to start from, with all parameters; "" for a network with keys of its own."""
+    made = shared.template(network, CablesScenario, "over cables", SETTINGS)
+    return made and made + EVENT

@@ -14,24 +14,11 @@ from innervate.folders import CHANNEL_OWN
 from innervate.network import networks
 from innervate.scenario.actions.channel import ACTIONS, FADE, GARBLE, WORDS
 from innervate.scenario.cables import LOSS_ONE, Input
+from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
-from innervate.scenario.declared.shared import (
-    InputTable,
-    ScriptTable,
-    check_happening,
-    check_inputs,
-    check_node,
-    check_script,
-    check_values,
-    inputs_of,
-    own_events,
-    parameter_lines,
-    parameters,
-    script_lines,
-)
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
-from innervate.scenario.source import Source, with_article
+from innervate.scenario.source import Source
 
 NODES_MAX = 1_000
 DONE = ("join", "kill", "revive")  # what can be done to any node on a channel
@@ -95,48 +82,38 @@ class ChannelScenario(Table, frozen=True, kw_only=True):
     absent: list[int] = []  # noqa: RUF012
     air: AirTable = AirTable()
     protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
-    script: ScriptTable | None = None
+    script: shared.ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One event: `at_us`, an action of `actions/channel`, the `node`; place in the file."""
+    """One event of a run on a channel."""
 
-    at_us: int
-    action: int
-    node: int
-    index: int = 0
-    value: int = 0
+    at_us: int  # when, true time, us
+    action: int  # of `actions/channel`
+    node: int  # the station it happens to
+    value: int = 0  # for GARBLE and FADE how many of its next CR-Rs
+    index: int = 0  # the event's place in the scenario file
 
 
 @dataclass(slots=True)
 class ChannelPlan:
-    """Everything a run on a channel needs, as whole numbers.
-
-    Attributes:
-        stations: how many.
-        params: of the protocol, by name, and those of the medium.
-        delays_us: per sender and receiver; -1 = they do not hear each other.
-        arrivals: per station, the moments of its inputs.
-        inputs: all of them, station by station, each in order of time.
-        absent: per station, 1 = off until it joins.
-        faults: in order of time.
-    """
+    """Everything a run on a channel needs, as whole numbers."""
 
     scenario: Any
     kind: str
     seed: int
     duration_us: int
-    stations: int
-    params: dict[str, int]
-    delays_us: list[list[int]]
+    stations: int  # how many
+    params: dict[str, int]  # of the protocol, by name, and those of the medium
+    delays_us: list[list[int]]  # per sender and receiver; -1 = they do not hear each other
     loss_q15: int
-    arrivals: list[list[int]]
-    inputs: list[Input]
-    absent: list[int]
-    faults: list[Fault] = field(default_factory=list)
+    arrivals: list[list[int]]  # per station, the moments of its inputs
+    inputs: list[Input]  # all of them, station by station, each in order of time
+    absent: list[int]  # per station, 1 = off until it joins
+    faults: list[Fault] = field(default_factory=list)  # in order of time
     sizes: list[list[int]] = field(default_factory=list)
     saturated: Literal[False] = False
     forced: Literal[False] = False
@@ -155,17 +132,17 @@ def check(source: Source, model: ChannelScenario) -> None:
         ScenarioError: the first thing that cannot be.
     """
     network = networks()[model.kind]
-    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     for place, one in enumerate(model.hidden):
         for node in one:
-            check_node(source, ("hidden", place), node, model.nodes)
+            shared.check_node(source, ("hidden", place), node, model.nodes)
     for place, node in enumerate(model.absent):
-        check_node(source, ("absent", place), node, model.nodes)
-    check_script(source, model)
-    check_inputs(source, model, network, model.nodes)
+        shared.check_node(source, ("absent", place), node, model.nodes)
+    shared.check_script(source, model)
+    shared.check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
-        check_node(source, ("event", place, "node"), event.node, model.nodes)
-        check_happening(source, model, place, network, DONE)
+        shared.check_node(source, ("event", place, "node"), event.node, model.nodes)
+        shared.check_happening(source, model, place, network, DONE)
 
 
 def plan(scenario: Any) -> ChannelPlan:
@@ -176,13 +153,13 @@ def plan(scenario: Any) -> ChannelPlan:
     """
     model, network = scenario.model, networks()[scenario.model.kind]
     count, air = model.nodes, model.air
-    given = inputs_of(model, network, count, DONE)
+    given = shared.inputs_of(model, network, count, DONE)
     by_node = [[one for one in given if one.node == node] for node in range(count)]
     delays = [[0 if a == b else air.delay_us for b in range(count)] for a in range(count)]
     for a, b in model.hidden:
         delays[a][b] = delays[b][a] = -1
     medium = dict(zip(CHANNEL_OWN, (air.slot_us, air.turnaround_us, 0, 0, 0, 1), strict=True))
-    faults = [Fault(round(1e6 * event.at_s), WORDS[event.action], event.node, place)
+    faults = [Fault(round(1e6 * event.at_s), WORDS[event.action], event.node, index=place)
               for place, event in enumerate(model.event) if event.action in DONE]  # fmt: skip
     return ChannelPlan(
         scenario=scenario,
@@ -190,7 +167,7 @@ def plan(scenario: Any) -> ChannelPlan:
         seed=model.seed,
         duration_us=round(1e6 * model.duration_s),
         stations=count,
-        params={**medium, **parameters(network.fields, model.protocol)},
+        params={**medium, **shared.parameters(network.fields, model.protocol)},
         delays_us=delays,
         loss_q15=round(air.loss * LOSS_ONE),
         arrivals=[[one.at_us for one in some] for some in by_node],
@@ -214,8 +191,8 @@ def describe(plan: Any) -> str:
     ]
     found = ["nobody can read any frame: air.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, _near(plan))
-    own = own_events(plan, DONE)
-    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found, own)])
+    own = shared.own_events(plan, DONE)
+    return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 
 def _near(plan: ChannelPlan) -> list[tuple[int, int]]:
@@ -231,10 +208,5 @@ def fault_words(plan: Any, fault: Any) -> str:
 
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
-    if network.model is not ChannelScenario:
-        return ""
-    title = f"# {with_article(network.name).capitalize()} on a shared channel."
-    head = [title, f'kind = "{network.name}"', "nodes = 6",
-            "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20", "",
-            "[protocol]"]  # fmt: skip
-    return "\n".join([*head, *parameter_lines(network), ""])
+    settings = ("nodes = 6", "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20")
+    return shared.template(network, ChannelScenario, "on a shared channel", settings)

@@ -14,25 +14,12 @@ from msgspec import Meta
 from innervate.network import networks
 from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
+from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
-from innervate.scenario.declared.shared import (
-    InputTable,
-    ScriptTable,
-    check_happening,
-    check_inputs,
-    check_node,
-    check_script,
-    check_values,
-    inputs_of,
-    own_events,
-    parameter_lines,
-    parameters,
-    script_lines,
-)
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, with_article
+from innervate.scenario.source import Source
 from innervate.topology import placement
 from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
@@ -144,61 +131,47 @@ class FieldScenario(Table, frozen=True, kw_only=True):
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     air: AirTable = AirTable()
     protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
-    script: ScriptTable | None = None
+    script: shared.ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One event: `at_us`, an action of `actions/field`, its nodes; place in the file."""
+    """One event of a run in a field."""
 
-    at_us: int
-    action: int
-    node: int
-    other: int = -1
-    value: int = 0
-    index: int = 0
+    at_us: int  # when, true time, us
+    action: int  # of `actions/field`
+    node: int  # the node it happens to
+    other: int = -1  # CUT and RESTORE: the other node of the pair, both ways
+    value: int = 0  # JAM: the noise there, 0.01 dBm
+    index: int = 0  # the event's place in the scenario file
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """Who hears whom, per sender and receiver, row after row.
+    """Who hears whom, per sender and receiver, row after row."""
 
-    Attributes:
-        rssi_cdb: how loud, 0.01 dBm.
-        prob_q15: chance of reception in 1/32768, where nothing disturbs.
-    """
-
-    rssi_cdb: list[int]
-    prob_q15: list[int]
+    rssi_cdb: list[int]  # how loud, 0.01 dBm
+    prob_q15: list[int]  # chance of reception in 1/32768, where nothing disturbs
 
 
 @dataclass(slots=True)
 class FieldPlan:
-    """Everything a run over a field needs, as whole numbers.
-
-    Attributes:
-        nodes: how many.
-        positions_cm: where they are; empty where only links are known.
-        heard: who hears whom.
-        good: pairs that hear at least half of each other's frames.
-        starts_us: when each is switched on; of absent ones not looked at.
-        absent: per node, 1 = off until it is revived.
-    """
+    """Everything a run over a field needs, as whole numbers."""
 
     scenario: Any
     kind: str
     seed: int
     duration_us: int
-    nodes: int
+    nodes: int  # how many
     params: dict[str, int]
     air: AirTable
-    positions_cm: list[tuple[int, int]]
-    heard: Heard
-    good: list[tuple[int, int]]
-    starts_us: list[int]
-    absent: list[int]
+    positions_cm: list[tuple[int, int]]  # where they are; empty where only links are known
+    heard: Heard  # who hears whom
+    good: list[tuple[int, int]]  # pairs that hear at least half of each other's frames
+    starts_us: list[int]  # when each is switched on; of absent ones not looked at
+    absent: list[int]  # per node, 1 = off until it is revived
     inputs: list[Input]
     faults: list[Fault] = field(default_factory=list)
 
@@ -210,7 +183,7 @@ def check(source: Source, model: FieldScenario) -> None:
         ScenarioError: the first thing that cannot be.
     """
     network = networks()[model.kind]
-    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     if model.positions_m and len(model.positions_m) != model.nodes:
         what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
         raise source.error(("positions_m",), what)
@@ -219,12 +192,12 @@ def check(source: Source, model: FieldScenario) -> None:
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
     for place, node in enumerate(model.absent):
-        check_node(source, ("absent", place), node, model.nodes)
-    check_script(source, model)
-    check_inputs(source, model, network, model.nodes)
+        shared.check_node(source, ("absent", place), node, model.nodes)
+    shared.check_script(source, model)
+    shared.check_inputs(source, model, network, model.nodes)
     for place, event in enumerate(model.event):
-        check_node(source, ("event", place, "node"), event.node, model.nodes)
-        check_happening(source, model, place, network, ACTIONS)
+        shared.check_node(source, ("event", place, "node"), event.node, model.nodes)
+        shared.check_happening(source, model, place, network, ACTIONS)
         _check_other(source, ("event", place), event, model.nodes)
 
 
@@ -239,7 +212,7 @@ def _check_other(source: Source, key: Key, event: EventTable, nodes: int) -> Non
 
 def _check_pair(source: Source, key: Key, pair: tuple[int, int], nodes: int) -> None:
     for node in pair:
-        check_node(source, key, node, nodes)
+        shared.check_node(source, key, node, nodes)
     if pair[0] == pair[1]:
         raise source.error(key, f"node {pair[0]} is named twice; name two nodes")
 
@@ -264,14 +237,14 @@ def plan(scenario: Any) -> FieldPlan:
         seed=model.seed,
         duration_us=round(1e6 * model.duration_s),
         nodes=count,
-        params=parameters(network.fields, model.protocol),
+        params=shared.parameters(network.fields, model.protocol),
         air=model.air,
         positions_cm=points,
         heard=heard,
         good=placement.good_links(heard.rssi_cdb, count, RSSI50_CDB),
         starts_us=starts,
         absent=[int(node in model.absent) for node in range(count)],
-        inputs=inputs_of(model, network, count, ACTIONS),
+        inputs=shared.inputs_of(model, network, count, ACTIONS),
         faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
     )
 
@@ -343,8 +316,8 @@ def describe(plan: Any) -> str:
         f"  protocol   {params}",
     ]
     found = warnings(plan, plan.good, plan.scenario.model.start_us)
-    own = own_events(plan, ACTIONS)
-    return "\n".join([*lines, *script_lines(plan), *told(plan, fault_words, found, own)])
+    own = shared.own_events(plan, ACTIONS)
+    return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 
 def fault_words(plan: Any, fault: Any) -> str:
@@ -366,11 +339,6 @@ def event(plan: Any, fault: Any) -> dict[str, Any]:
 
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
-    if network.model is not FieldScenario:
-        return ""
-    title = f"# {with_article(network.name).capitalize()} over a field."
-    head = [title, f'kind = "{network.name}"', "nodes = 9",
-            'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
-            "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30", "",
-            "[protocol]"]  # fmt: skip
-    return "\n".join([*head, *parameter_lines(network), ""])
+    settings = ("nodes = 9", 'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
+                "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30")  # fmt: skip
+    return shared.template(network, FieldScenario, "over a field", settings)

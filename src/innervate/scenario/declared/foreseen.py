@@ -13,13 +13,7 @@ NODE = "node"  # the unit of fields that name one
 
 
 def warnings(plan: Any, near: list[tuple[int, int]], start_us: int = 0) -> list[str]:
-    """A sentence for each thing; none if all is well.
-
-    Args:
-        plan: of cables, a channel or a field.
-        near: pairs of nodes that hear each other.
-        start_us: within which nodes are switched on.
-    """
+    """A sentence for each thing; `near` are pairs that hear each other, `start_us` as in plans."""
     network = networks()[plan.kind]
     own = network.foreseen(plan) if network.has("foreseen") else ()
     return [*_late(plan, start_us), *_apart(_count(plan), near), *_nobody(plan, network), *own]

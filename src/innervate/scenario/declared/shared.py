@@ -16,7 +16,7 @@ from innervate.scenario.events import exact, in_time, refuse
 from innervate.scenario.explain import alternatives, nearest
 from innervate.scenario.keys import Table, number, whole
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, shown
+from innervate.scenario.source import Source, shown, with_article
 from innervate.topology import Graph, TopologyError, free_graph
 
 INPUTS_MAX = 1_000_000
@@ -184,11 +184,7 @@ def check_happening(
 def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]) -> list[Input]:
     """What nodes are given, repeated and for every node, in order of time.
 
-    Args:
-        model: with the tables `input` and `event`.
-        network: whose `happenings` are events, too.
-        nodes: how many there are.
-        actions: words of events that are no inputs.
+    The network's `happenings` are among them: all events that are none of these `actions`.
 
     Raises:
         ScenarioError: more inputs than can be held.
@@ -227,3 +223,11 @@ def parameter_lines(network: Network) -> Iterator[str]:
     values = parameters(network.fields, {})
     for name, _length, low, high, unit, meaning in network.fields.PARAMS:
         yield f"{name:{width}} = {values[name]}  # {low} to {high} {unit}: {meaning}"
+
+
+def template(network: Network, model: type, where: str, settings: Iterable[str]) -> str:
+    """A scenario to start from; "" for a network whose scenarios are not of this `model`."""
+    if network.model is not model:
+        return ""
+    head = [f"# {with_article(network.name).capitalize()} {where}.", f'kind = "{network.name}"']
+    return "\n".join([*head, *settings, "", "[protocol]", *parameter_lines(network), ""])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.export.measured import Way
+from innervate.export.measure import Way
 from innervate.networks.mesh.export import fit
 from innervate.networks.mesh.export.fit import Flow, Mesh
 

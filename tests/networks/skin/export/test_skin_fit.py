@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.export.errors import ExportError
-from innervate.export.measured import Way
+from innervate.export.measure import Way
 from innervate.networks.skin.export import fit
 from innervate.networks.skin.export.fit import Skin
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from innervate.dialect import plain
 from innervate.export import measure, pcapng
 from innervate.export.errors import ExportError
-from innervate.export.measured import Measured
+from innervate.export.measure import Measured
 from innervate.export.reading import Capture, Packet
 from innervate.networks.mesh import frames
 from innervate.networks.mesh.protocol import constants as const
@@ -32,18 +32,12 @@ class Flow(NamedTuple):
 
 @dataclass
 class Mesh(Measured):
-    """What is measured of a mesh; its ways are between numbers of nodes.
-
-    Attributes:
-        gateway: -1 nobody seen to be it.
-        flows: who sends what to whom.
-        longest: of all frames, bytes.
-    """
+    """What is measured of a mesh; its ways are between numbers of nodes."""
 
     kind: str = "mesh"
-    gateway: int = -1
-    flows: list[Flow] = field(default_factory=list)
-    longest: int = 0
+    gateway: int = -1  # -1 nobody seen to be it
+    flows: list[Flow] = field(default_factory=list)  # who sends what to whom
+    longest: int = 0  # of all frames, bytes
 
 
 class Reader(measure.Reader):
@@ -104,10 +98,7 @@ class Reader(measure.Reader):
 
     def end(self, last_ns: int) -> None:
         """Frames that came in nowhere; flows."""
-        for key, waiting in self.left.items():
-            for packet in waiting:
-                if last_ns - packet.time_ns > measure.WAIT_NS:
-                    self.give_up(key, packet)
+        super().end(last_ns)
         self.found.ways = {key: way for key, way in self.found.ways.items() if way.got}
         for (origin, dest), seen in sorted(self.sent.items()):
             times = sorted(time for time, _ in seen.values())

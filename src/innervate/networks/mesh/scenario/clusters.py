@@ -24,17 +24,11 @@ UNIT = 100  # of a link that loses nothing: hundredths of transmissions until on
 
 @dataclass(frozen=True, slots=True)
 class Cluster:
-    """Which part of a network a run is of.
+    """Which part of a network a run is of."""
 
-    Attributes:
-        number: of this cluster, from 1 on.
-        sizes: per cluster how many nodes it has.
-        gateways: per cluster what its gateway is called.
-    """
-
-    number: int
-    sizes: tuple[int, ...]
-    gateways: tuple[str, ...]
+    number: int  # of this cluster, from 1 on
+    sizes: tuple[int, ...]  # per cluster how many nodes it has
+    gateways: tuple[str, ...]  # per cluster what its gateway is called
 
     @property
     def words(self) -> str:
@@ -43,11 +37,7 @@ class Cluster:
 
 
 def cut(model: MeshScenario, network: Network) -> tuple[MeshScenario, Network, Cluster]:
-    """A run's cluster: the scenario and the network as they are for those in it.
-
-    Args:
-        model: a scenario with [clusters].
-        network: with all nodes.
+    """A run's cluster: a scenario with [clusters] and its network as they are for those in it.
 
     Raises:
         ScenarioError: a gateway that is not there or is named twice, or too few of them.

@@ -92,13 +92,8 @@ def faults(
 ) -> list[MeshFault]:
     """The faults of a run.
 
-    Args:
-        model: the scenario.
-        nodes: their names.
-        good: the good links at the start; random cuts are drawn from them.
-        spared: nodes that a random event leaves alone.
-        roles: "gateway" and "monitor" -> node.
-        rssi50_cdb: the radio's 50 % point, 0.01 dBm.
+    Random cuts are drawn from the `good` links; random events leave `spared` nodes alone. `roles`
+    are the nodes of "gateway" and "monitor"; the radio's 50 % point is in 0.01 dBm.
 
     Raises:
         ScenarioError: somebody who is not there, or too few to draw from.

@@ -61,11 +61,7 @@ def parameters(
 ) -> dict[str, Any]:
     """The fence's part of the protocol's parameters.
 
-    Args:
-        source: for error messages.
-        fence: the table, already checked.
-        visited: where robots come, cm: their coordinates must fit too.
-        robots: how many there are.
+    It is checked already. Where robots come (`visited`, cm) must fit into coordinates, too.
 
     Raises:
         ScenarioError: the unit is too small for the extent, or too large for the corners.

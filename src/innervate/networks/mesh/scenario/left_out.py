@@ -12,13 +12,9 @@ STEPS = 100  # min_tq is proposed in hundredths
 
 
 def left_out(table: ImportTable, whole: Measured, name: str, most: int) -> str:
-    """Why a node is not there; "" if the file does not name it, either.
+    """Why an [import] leaves a node of its file out; "" if the file does not name it, either.
 
-    Args:
-        table: an [import] that leaves some links.
-        whole: all that its file holds.
-        name: a node's.
-        most: how many nodes the mesh may have.
+    The mesh may have `most` nodes.
     """
     if name not in whole.names:
         return ""

@@ -6,6 +6,7 @@ from typing import Any
 
 from innervate.networks.mesh.protocol.fields import NEIGHBOURS
 from innervate.networks.mesh.scenario.nodes import NODES_MAX, Nodes, found_at, nodes_of
+from innervate.scenario.bundled import text_of
 from innervate.scenario.emit import inline
 from innervate.scenario.load import loads
 from innervate.topology.errors import TopologyError
@@ -47,35 +48,6 @@ CLUSTERS = """\
 [clusters]                    # several meshes, each on a channel of its own
 gateways = {gateways:<18} # so many, amidst the others; or their names
 run = 1                       # which of them is run
-"""
-
-
-TEMPLATE = """\
-# A network as it was measured: everybody has something to tell the gateway.
-# Check it with `innervate check FILE`, run it with `innervate run FILE`.
-kind = "mesh"
-schema = 1
-name = {name}
-duration_s = 60.0             # simulated time
-seed = 1                      # same seed, same run
-{gateway}
-[import]
-{imported}
-
-[protocol]                    # as suits links that lose much
-{protocol}
-
-[[flow]]                      # messages
-from = "all"                  # a node, "all" or "random"
-to = "gateway"
-start_s = 20.0
-every_s = 10.0
-jitter_s = 10.0
-
-# [[event]]
-# at_s = 30.0
-# action = "kill"             # kill | revive | restart | cut | restore | jam | quiet
-# random = 5                  # so many bystanders; or node = "..."
 """
 
 
@@ -154,7 +126,7 @@ def _text(
     if "gateways" in chosen:
         gateway = CLUSTERS.format(gateways=chosen["gateways"])
     settings = [f"{key} = {inline(value)}" for key, value in (protocol or {}).items()]
-    return TEMPLATE.format(
+    return text_of(__package__, "measured.txt").format(
         name=inline(name),
         gateway=gateway,
         imported="\n".join(lines),

@@ -26,32 +26,21 @@ STEP_CDB = 10  # reception is tabulated in steps of 0.1 dB
 
 @dataclass(slots=True)
 class Network:
-    """A mesh before anything happens.
+    """A mesh before anything happens."""
 
-    Attributes:
-        nodes: their names.
-        points: per node (x, y) in cm; empty where none are known.
-        radio: who hears whom.
-        good: links (a < b) that are good both ways.
-        weakest_cdb: if qualities were given, rssi of the weakest good link, at most what is
-            reported anyway; else None.
-    """
-
-    nodes: Nodes
-    points: list[Point]
-    radio: MeshRadio
-    good: list[tuple[int, int]]
+    nodes: Nodes  # their names
+    points: list[Point]  # per node (x, y) in cm; empty where none are known
+    radio: MeshRadio  # who hears whom
+    good: list[tuple[int, int]]  # links (a < b) that are good both ways
+    # If qualities were given, rssi of the weakest good link, at most what is reported anyway; else
+    # None.
     weakest_cdb: int | None = None
 
 
 def reception_q15(over_cdb: int) -> int:
     """Chance of reception in 1/32768 at so much above the 50 % point (0.01 dB) [mesh 6]."""
     steps = (over_cdb + STEP_CDB // 2) // STEP_CDB
-    return _logistic(min(max(steps, -300), 300))
-
-
-def _logistic(steps: int) -> int:
-    return round(ONE / (1 + exp(-steps / 10)))
+    return round(ONE / (1 + exp(-min(max(steps, -300), 300) / 10)))
 
 
 def quality_cdb(quality: float) -> int:
@@ -90,11 +79,7 @@ def placed(
 ) -> Network:
     """The network of nodes in the plane, drawn anew until good links connect it.
 
-    Args:
-        model: the scenario.
-        nodes: with their points, or without if they are to be placed.
-        profile: the radio.
-        starts: where robots begin, cm; they need not be connected.
+    Nodes without points are placed. Robots, which begin at `starts`, cm, need not be connected.
 
     Raises:
         ScenarioError: no network that is asked for in this way is connected.
@@ -112,7 +97,7 @@ def placed(
             points[node] = start
         faded = placement.fading(count, shadowing, direction, draw)
         network = _heard(model, nodes, profile, points, faded)
-        if left > 1 and not _connected(count, network.good, robots):
+        if left > 1 and len(_parts(count, network.good, robots)) > 1:
             continue
         _check_connected(nodes, network.good, robots, _remedy(model))
         return network
@@ -225,10 +210,6 @@ def _parts(count: int, good: list[tuple[int, int]], robots: set[int]) -> list[li
     fixed = [link for link in good if not robots.intersection(link)]
     found = placement.components(placement.neighbours(count, fixed))
     return [part for part in found if len(part) > 1 or part[0] not in robots]
-
-
-def _connected(count: int, good: list[tuple[int, int]], robots: set[int]) -> bool:
-    return len(_parts(count, good, robots)) <= 1
 
 
 def _check_connected(

@@ -27,22 +27,17 @@ BUNDLED_IMPORTS = "freifunk/"
 
 @dataclass(slots=True)
 class Nodes:
-    """Who is there.
+    """Who is there, and what the scenario gives of them."""
 
-    Attributes:
-        source: for error messages.
-        names: per node, all different.
-        points: per node (x, y) in cm; empty where none are given.
-        links: (a, b) with a < b -> quality a to b and b to a, if links are given.
-        everybody: of one cluster of several: the names of all, by which numbers in the file go.
-        left_out: why a name that is none here is in an imported file all the same; "" if it is not.
-    """
-
-    source: Source
-    names: list[str]
+    source: Source  # for error messages
+    names: list[str]  # per node, all different
+    # Per node (x, y) in cm; empty where none are given.
     points: list[Point] = field(default_factory=list)
+    # (a, b) with a < b -> quality a to b and b to a, if links are given.
     links: dict[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
+    # Of one cluster of several: the names of all, by which numbers in the file go.
     everybody: list[str] = field(default_factory=list)
+    # Why a name that is none here is in an imported file all the same; "" if it is not.
     left_out: Callable[[str], str] = lambda _: ""
     _numbers: dict[str, int] = field(default_factory=dict)
 

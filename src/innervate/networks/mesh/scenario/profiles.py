@@ -17,32 +17,14 @@ TRANSMISSIONS_IN_CROWD = 5  # of a hop, two more: in a round hidden nodes meet a
 
 
 class Profile(NamedTuple):
-    """A radio and the timers that suit it; times in seconds where not said otherwise.
+    """A radio and the timers that suit it; times in seconds where not said otherwise."""
 
-    Attributes:
-        byte_ns: airtime of a byte, ns.
-        phy_bytes: preamble and the like.
-        turnaround_us: from deciding to send to being on the air.
-        backoff_us: unit of the random wait before a frame; 0 = no carrier sense.
-        rssi50_cdb: 0.01 dBm at which half the frames are received.
-        loss_1m_cdb: path loss at 1 m in free space, 0.01 dB.
-        ack_us: wait for a hop's ack.
-        dead_step: more for every standby behind the first.
-        guard: a standby waits so long for a sign of the gateway's life; 0 = for requests alone.
-        flood: floods are passed on within.
-        job_tries: of a table, after the first.
-        settled: messages start then if nothing is said: the first tables are there.
-        hop_acks: hops acknowledge; False where the medium access says what was received.
-        asks: who is named and did not respond is asked once more in a round.
-        ack_adapt: a hop's ack may take its neighbour's round trip longer.
-    """
-
-    byte_ns: int
-    phy_bytes: int
-    turnaround_us: int
-    backoff_us: int
-    rssi50_cdb: int
-    loss_1m_cdb: int
+    byte_ns: int  # airtime of a byte, ns
+    phy_bytes: int  # preamble and the like
+    turnaround_us: int  # from deciding to send to being on the air
+    backoff_us: int  # unit of the random wait before a frame; 0 = no carrier sense
+    rssi50_cdb: int  # 0.01 dBm at which half the frames are received
+    loss_1m_cdb: int  # path loss at 1 m in free space, 0.01 dB
     mtu: int
     collisions: bool
     period: float
@@ -53,7 +35,7 @@ class Profile(NamedTuple):
     spread: float
     collect: float
     transmissions: int
-    ack_us: int
+    ack_us: int  # wait for a hop's ack
     suspect: float
     e2e: float
     e2e_adapt: bool
@@ -61,14 +43,14 @@ class Profile(NamedTuple):
     jobs: int
     job: float
     beacon: float
-    dead_step: float
-    guard: float
-    settled: float
-    flood: float
-    hop_acks: bool = True
-    ack_adapt: bool = False
-    asks: bool = False
-    job_tries: int = 3
+    dead_step: float  # more for every standby behind the first
+    guard: float  # a standby waits so long for a sign of the gateway's life; 0 = for requests alone
+    settled: float  # messages start then if nothing is said: the first tables are there
+    flood: float  # floods are passed on within
+    hop_acks: bool = True  # hops acknowledge; False where the medium access says what was received
+    ack_adapt: bool = False  # a hop's ack may take its neighbour's round trip longer
+    asks: bool = False  # who is named and did not respond is asked once more in a round
+    job_tries: int = 3  # of a table, after the first
 
 
 def _ack_us(turnaround_us: int, phy_bytes: int, byte_ns: int, backoff_us: int) -> int:

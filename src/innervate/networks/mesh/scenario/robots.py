@@ -43,13 +43,7 @@ def starts(model: MeshScenario, nodes: Nodes) -> dict[int, Point]:
 
 
 def walks(model: MeshScenario, nodes: Nodes, points: list[Point], duration_us: int) -> list[Walk]:
-    """The walk of every robot, one that stands still too.
-
-    Args:
-        model: the scenario.
-        nodes: their names.
-        points: where nodes are, cm; empty if nobody knows.
-        duration_us: random walks end then.
+    """The walk of every robot, one that stands still too; points in cm, empty if nobody knows.
 
     Raises:
         ScenarioError: a robot without a position, or one that changes its way too often.

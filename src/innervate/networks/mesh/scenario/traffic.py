@@ -105,15 +105,9 @@ def offers(
     duration_us: int,
     mtu: int,
 ) -> list[Offer]:
-    """Every message, in order of time.
+    """Every message of flows, of which pairs() found who sends, in order of time.
 
-    Args:
-        model: the scenario.
-        nodes: their names.
-        flows: what pairs() found.
-        settled_s: flows that do not say when start then.
-        duration_us: the run's length; nothing is offered later.
-        mtu: of a frame, bytes.
+    Flows that do not say when start at `settled_s`; nothing is offered after the run.
 
     Raises:
         ScenarioError: longer than a frame, or more than can be kept.

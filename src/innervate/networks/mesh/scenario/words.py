@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from innervate.networks.mesh.protocol.constants import (
-    MONITOR,
-    PATH_MAX,
-    TABLE_FREE,
-    TABLES,
-    WHOLE_GRAPH,
-)
+from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.distribution import first_round, graph_nodes_max
 from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.fence import is_outside
@@ -39,7 +33,7 @@ def describe(made: MeshPlan) -> str:
     params, gateway = made.params, made.ranks.index(0)
     names = [made.names[made.ranks.index(rank)] for rank in range(1, max(made.ranks) + 1)]
     standby = f", standby {listed(names)}" if names else ""
-    monitor = "the gateway" if params["monitor"] == MONITOR else made.names[params["monitor"]]
+    monitor = "the gateway" if params["monitor"] == c.MONITOR else made.names[params["monitor"]]
     hops = [far for far in hops_from(made, gateway) if far >= 0]
     degree = 2 * len(made.good) / made.nodes
     far = f"at most {count_of(max(hops), 'hop')} from the gateway" if max(hops) else "all alone"
@@ -71,13 +65,13 @@ def forwarding(made: MeshPlan) -> str:
     """How packets find their way; of "auto" what that is here, and why."""
     failover, mode = made.scenario.model.protocol.failover, made.params["mode"]
     if failover != "auto":
-        return "graph" if mode == WHOLE_GRAPH else "table-free" if mode == TABLE_FREE else failover
+        return str({c.WHOLE_GRAPH: "graph", c.TABLE_FREE: "table-free"}.get(mode, failover))
     near = neighbours(made.nodes, made.good)
     tables_us, graph_us = first_round(made.radio, made.params, near, made.ranks.index(0))
     takes = f"{graph_us / 1e6:.2f} s on the air"
     if made.nodes > graph_nodes_max(made.params["mtu"]):
         takes = f"holds {graph_nodes_max(made.params['mtu'])} nodes"
-    chosen = "graph" if mode == WHOLE_GRAPH else "search"
+    chosen = "graph" if mode == c.WHOLE_GRAPH else "search"
     return f"{chosen} (auto: tables {tables_us / 1e6:.2f} s, the graph {takes})"
 
 
@@ -113,10 +107,10 @@ def warnings(made: MeshPlan) -> list[str]:
     else:
         found += _thin(made, near, gateway)
     hops = hops_from(made, gateway)
-    if max(hops) > PATH_MAX:
-        far = [made.names[node] for node, count in enumerate(hops) if count > PATH_MAX]
-        found.append(f"{listed(far)}: more than {PATH_MAX} hops over good links, the longest path, "
-                     "to the gateway")  # fmt: skip
+    if max(hops) > c.PATH_MAX:
+        far = [made.names[node] for node, count in enumerate(hops) if count > c.PATH_MAX]
+        found.append(f"{listed(far)}: more than {c.PATH_MAX} hops over good links, the longest "
+                     "path, to the gateway")  # fmt: skip
     elif max(hops) > SOURCE_ROUTE_MAX and made.params["mtu"] == 64:
         far = [made.names[node] for node, count in enumerate(hops) if count > SOURCE_ROUTE_MAX]
         found.append(f"{listed(far)}: over good links too far for tables at an MTU of 64; set "
@@ -153,10 +147,10 @@ def _outside(made: MeshPlan) -> list[str]:
 def _distribution(made: MeshPlan) -> list[str]:
     """Why nodes will be late with their tables, or never have any."""
     params, profile, found = made.params, made.scenario.model.radio.profile, []
-    if params["mode"] == TABLE_FREE:
+    if params["mode"] == c.TABLE_FREE:
         return []
     what, limits = "graph", GRAPH_MAX
-    if params["mode"] == TABLES:
+    if params["mode"] == c.TABLES:
         what, limits = "tables", TABLES_MAX_BEHIND_STANDBY if max(made.ranks) else TABLES_MAX
     period_us = params["period"] * params["tick_us"]
     if period_us < params["collect_us"]:

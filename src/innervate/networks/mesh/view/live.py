@@ -24,12 +24,9 @@ LATE_S = 5.0  # alarms that are older when they are seen are told with their age
 
 
 class MeshMap(Map):
-    """Nodes and who of them hears whom.
+    """Nodes and who of them hears whom."""
 
-    Attributes:
-        by_number: the places of nodes by the numbers that they know each other by.
-    """
-
+    # The places of nodes by the numbers that they know each other by.
     by_number: Mapping[int, Place]
 
     def key(self, what: Link | Place) -> tuple[Any, ...]:

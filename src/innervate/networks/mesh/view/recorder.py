@@ -17,12 +17,7 @@ from innervate.networks.mesh.protocol import constants as c
 from innervate.web.engine import Engine, Rows
 
 TABLES = ("rows", "sent", "delivered")
-CODES = (
-    c.REPORT_ACCEPTED,
-    c.REPORT_FULL,
-    c.REPORT_EXPIRED,
-    c.REPORT_ALARM,
-)
+CODES = (c.REPORT_ACCEPTED, c.REPORT_FULL, c.REPORT_EXPIRED, c.REPORT_ALARM)
 SHARE = 20  # of this share of the time messages are counted anew, at most
 AT = {"rows": "time", "sent": "end", "delivered": "time"}
 

@@ -17,7 +17,7 @@ from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
 from innervate.plot.words import number_of
-from innervate.scenario.actions.field import CUT, KILL, QUIET, RESTORE, REVIVE, TABLE
+from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE, TABLE
 from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
@@ -56,6 +56,7 @@ class MeshView(View):
     slow: ClassVar[float] = 0.2
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     actions = TABLE
+    fault_type = MeshFault
     check_us: ClassVar[int] = 10_000
 
     def __init__(self, engine: Engine, history: History) -> None:
@@ -243,10 +244,6 @@ class MeshView(View):
         """What a fault does, as "node 3 dies"."""
         return fault_words(self.plan, fault)
 
-    def takes(self, fault: Any) -> bool:
-        """True if a fault takes something away, false if it gives it back."""
-        return fault.action not in (RESTORE, REVIVE, QUIET)
-
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""
         a, b = self.field.pairs[number("link", link, len(self.field.pairs))]
@@ -262,10 +259,6 @@ class MeshView(View):
         if not revive and state != ALIVE:
             raise Refused("this node is not on")
         return {"action": REVIVE if revive else KILL, "node": node, "other": 0}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> MeshFault:
-        """A fault of the kind's own type."""
-        return MeshFault(at_us=at_us, value=0, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""

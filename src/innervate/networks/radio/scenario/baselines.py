@@ -29,19 +29,12 @@ ANSWER_SLOTS = 2  # DCF: a one-byte answer and the idle slot before it
 
 
 class Draws(NamedTuple):
-    """What a baseline draws from.
+    """What a baseline draws from."""
 
-    Attributes:
-        p: probability to send in a slot (ALOHA after a collision; CSMA).
-        cw_min: DCF draws its backoff from so many values.
-        cw_max: ... doubled at each collision up to this.
-        backoff_slots: length of a slot of the backoff.
-    """
-
-    p: float = 0.1
-    cw_min: int = 32
-    cw_max: int = 1024
-    backoff_slots: int = 1
+    p: float = 0.1  # probability to send in a slot (ALOHA after a collision; CSMA)
+    cw_min: int = 32  # DCF draws its backoff from so many values
+    cw_max: int = 1024  # ... doubled at each collision up to this
+    backoff_slots: int = 1  # length of a slot of the backoff
 
 
 DRAWS = Draws()
@@ -59,11 +52,7 @@ def baseline(
     packet as soon as all who hear it have heard its end. Everybody hears every packet to its end:
     slots are long enough, and between two packets there is a slot where there is no common clock.
 
-    Args:
-        mac: its name in a scenario, a key of NUMBERS.
-        stations: how many.
-        params: of `plan.parameters`.
-        draws: how it draws.
+    `mac` is its name in a scenario, a key of NUMBERS; `params` are those of `plan.parameters`.
     """
     number = NUMBERS[mac]
     slot, turn = params["slot_us"], 0 if number == D1 else params["ta_us"]

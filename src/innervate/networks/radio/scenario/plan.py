@@ -6,37 +6,22 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
 
 from innervate.networks.radio.scenario.baselines import NONE
+from innervate.scenario.declared.channel import Fault
 
 
-@dataclass(frozen=True, slots=True)
-class RadioFault:
-    """One event of a radio run.
+class RadioFault(Fault):
+    """One event of a radio run: what happens on any channel."""
 
-    Attributes:
-        at_us: when, true time, us.
-        action: JOIN, KILL, LEAVE, GARBLE or FADE.
-        node: the station it happens to.
-        value: for GARBLE and FADE how many of its next CR-Rs.
-        index: the event's place in the scenario file.
-    """
-
-    at_us: int
-    action: int
-    node: int
-    value: int
-    index: int
+    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """Who hears whom, and from how far.
+    """Who hears whom, and from how far."""
 
-    Attributes:
-        hidden: pairs that do not hear each other, the smaller number first.
-        delay_us: least and greatest delay between stations that hear each other; None = nobody.
-    """
-
+    # Pairs that do not hear each other, the smaller number first.
     hidden: tuple[tuple[int, int], ...]
+    # Least and greatest delay between stations that hear each other; None = nobody.
     delay_us: tuple[int, int] | None
 
     @classmethod
@@ -63,38 +48,27 @@ class Pairs:
 
 @dataclass(slots=True)
 class RadioPlan:
-    """Everything a radio run needs, as whole numbers.
-
-    Attributes:
-        protocol: the medium access protocol by its simulator name, like "csma-cd-r/practical".
-        stations: how many, 1 .. 1023.
-        params: the protocol's parameters (see `protocol/fields.py`, PARAMS).
-        delays_us: per sender and receiver, us; -1 = hidden from each other. Zero on the diagonal.
-        loss_q15: share of frames that a receiver cannot read, in 1/32768.
-        saturated: a new packet whenever one was delivered.
-        wanted: the run ends after so many delivered packets; 0 = runs its time.
-        arrivals: per station, ascending moments at which a packet is offered, us.
-        sizes: per station, lengths in slots of its packets in turn; at most 1,024, repeated.
-        absent: per station, 1 = switched off until it joins.
-        faults: events in order of time.
-        forced: packets go out when offered, whatever the carrier says (paper mode's tests).
-    """
+    """Everything a radio run needs, as whole numbers."""
 
     scenario: Any
     kind: str
     seed: int
     duration_us: int
-    protocol: str
-    stations: int
-    params: dict[str, int]
+    protocol: str  # the medium access protocol by its simulator name, like "csma-cd-r/practical"
+    stations: int  # how many, 1 .. 1023
+    params: dict[str, int]  # the protocol's parameters (see `protocol/fields.py`, PARAMS)
+    # Per sender and receiver, us; -1 = hidden from each other. Zero on the diagonal.
     delays_us: list[list[int]]
-    loss_q15: int = 0
-    saturated: bool = False
-    wanted: int = 0
+    loss_q15: int = 0  # share of frames that a receiver cannot read, in 1/32768
+    saturated: bool = False  # a new packet whenever one was delivered
+    wanted: int = 0  # the run ends after so many delivered packets; 0 = runs its time
+    # Per station, ascending moments at which a packet is offered, us.
     arrivals: list[list[int]] = field(default_factory=list)
+    # Per station, lengths in slots of its packets in turn; at most 1,024, repeated.
     sizes: list[list[int]] = field(default_factory=list)
-    absent: list[int] = field(default_factory=list)
-    faults: list[RadioFault] = field(default_factory=list)
+    absent: list[int] = field(default_factory=list)  # per station, 1 = switched off until it joins
+    faults: list[RadioFault] = field(default_factory=list)  # events in order of time
+    # Packets go out when offered, whatever the carrier says (paper mode's tests).
     forced: bool = False
     _pairs: Pairs | None = field(default=None, init=False, repr=False, compare=False)
 
@@ -107,25 +81,15 @@ class RadioPlan:
 
 
 class Rules(NamedTuple):
-    """What the stations of CSMA/CD-R have agreed on.
+    """What the stations of CSMA/CD-R have agreed on."""
 
-    Attributes:
-        turns: turns of a round between two open windows.
-        per_turn: most packets in one turn, 1 .. 7.
-        wait_us: W, bound of the random wait (paper); 0 = two packets.
-        tail_rule: T1, without which the last and the second to last both report (paper).
-        overlap_rule: T4, without which CR-Rs that overlap count as one (paper).
-        window_slots: window for CR-Rs in slots; 0 = T - Tc0 (paper).
-        dilate: factor on Tc, so that CR-Rs spread over the window; 2 T - 6 fills it (paper).
-    """
-
-    turns: int = 20
-    per_turn: int = 1
-    wait_us: int = 0
-    tail_rule: int = 1
-    overlap_rule: int = 1
-    window_slots: int = 0
-    dilate: int = 1
+    turns: int = 20  # turns of a round between two open windows
+    per_turn: int = 1  # most packets in one turn, 1 .. 7
+    wait_us: int = 0  # W, bound of the random wait (paper); 0 = two packets
+    tail_rule: int = 1  # T1, without which the last and the second to last both report (paper)
+    overlap_rule: int = 1  # T4, without which CR-Rs that overlap count as one (paper)
+    window_slots: int = 0  # window for CR-Rs in slots; 0 = T - Tc0 (paper)
+    dilate: int = 1  # factor on Tc, so that CR-Rs spread over the window; 2 T - 6 fills it (paper)
 
 
 def parameters(

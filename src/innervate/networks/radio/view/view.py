@@ -14,14 +14,7 @@ from innervate.networks.radio.analysis.air import CARRYING
 from innervate.networks.radio.analysis.headline import headline
 from innervate.networks.radio.analysis.state import facts
 from innervate.networks.radio.plot.words import fault_words, protocol_words
-from innervate.networks.radio.protocol.constants import (
-    CRR,
-    DATA,
-    OPEN,
-    REPORT,
-    REPORT_BOUNDS,
-    REPORT_STOPPED,
-)
+from innervate.networks.radio.protocol import constants as c
 from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.scenario.planning import duration_us
 from innervate.scenario.actions.channel import JOIN, KILL, TABLE
@@ -32,7 +25,7 @@ from innervate.web.history import TIMELINE, History
 from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
-KINDS = {DATA: "frame", OPEN: "voc", CRR: "cr", REPORT: "ack"}
+KINDS = {c.DATA: "frame", c.OPEN: "voc", c.CRR: "cr", c.REPORT: "ack"}
 IDLE, SENDING, RECEIVING, SEVERAL, WAITING, TURNING = range(6)
 PLACES = ("pos", "place")  # fields of a station that say when its turn is
 
@@ -57,6 +50,7 @@ class RadioView(View):
     slow: ClassVar[float] = 0.0
     can: tuple[str, ...] = ("kill", "revive")
     actions = TABLE
+    fault_type = RadioFault
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -94,10 +88,10 @@ class RadioView(View):
             if fault.action == KILL:
                 self._stop(fault.node, fault.at_us)
         told = rows["rows"]
-        memory.wrong.update(told["node"][told["code"] == REPORT_BOUNDS].tolist())
-        told = told[np.isin(told["code"], (REPORT_STOPPED, REPORT_LEFT))]
+        memory.wrong.update(told["node"][told["code"] == c.REPORT_BOUNDS].tolist())
+        told = told[np.isin(told["code"], (c.REPORT_STOPPED, REPORT_LEFT))]
         for at, node, code, _a, _b in told.tolist():
-            if code == REPORT_STOPPED:
+            if code == c.REPORT_STOPPED:
                 self._stop(node, at)
             else:
                 self.memory.taken.gone(node)
@@ -237,10 +231,6 @@ class RadioView(View):
         self.memory.recovery = None
         return changed
 
-    def takes(self, fault: Any) -> bool:
-        """True if a fault takes something away, false if it gives it back."""
-        return bool(fault.action != JOIN)
-
     def words(self, fault: Any) -> str:
         """What a fault does, as "station 3 dies"."""
         return fault_words(fault)
@@ -255,10 +245,6 @@ class RadioView(View):
         if bool(self._present()[0][node]) == revive:
             raise Refused("this station is on" if revive else "this station is off already")
         return {"action": JOIN if revive else KILL, "node": node}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> RadioFault:
-        """A fault of the kind's own type."""
-        return RadioFault(at_us=at_us, value=0, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""

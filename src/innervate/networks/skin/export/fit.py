@@ -12,34 +12,25 @@ from innervate.analysis.intervals import quantile
 from innervate.export import measure, pcapng
 from innervate.export.errors import ExportError
 from innervate.export.links import Place
-from innervate.export.measured import Measured, Way
+from innervate.export.measure import Measured, Way
 from innervate.export.reading import Capture, Packet
-from innervate.networks.skin.frames import KIND_BITS, SIZES, TOUCH
+from innervate.networks.skin.export.routes import CELL_AT, CELL_BITS
+from innervate.networks.skin.frames import KIND_BITS, SIZES
 from innervate.networks.skin.protocol.constants import BEACON, DATA
 from innervate.wire.bits import get
-from innervate.wire.layout import width
 
 LATENCY_US_MAX = 100_000  # as scenarios have it
 LOOSE_SIGMAS = 4.0  # a cable is loose if it loses more than the others by so many deviations
 SPREAD_US = 2.0  # delays of a cable that differ by more are drawn for every frame
-# Where a data frame says which cell measured it.
-_BEFORE = [name for name, *_ in TOUCH].index("cell")
-CELL_AT = KIND_BITS + width(TOUCH[:_BEFORE])
-CELL_BITS = TOUCH[_BEFORE][2]
 
 
 @dataclass
 class Skin(Measured):
-    """What is measured of a skin; its ways are between ends of cables like "c3.1" and "pc.0".
-
-    Attributes:
-        beacon_us: between beacons of a port; 0 unknown.
-        rate_hz: samples per cell and second.
-    """
+    """What is measured of a skin; its ways are between ends of cables like "c3.1" and "pc.0"."""
 
     kind: str = "skin"
-    beacon_us: float = 0.0
-    rate_hz: float = 0.0
+    beacon_us: float = 0.0  # between beacons of a port; 0 unknown
+    rate_hz: float = 0.0  # samples per cell and second
 
 
 class Reader(measure.Reader):
@@ -102,10 +93,7 @@ class Reader(measure.Reader):
 
     def end(self, last_ns: int) -> None:
         """Ends in the words of a scenario; rates."""
-        for key, waiting in self.left.items():
-            for packet in waiting:
-                if last_ns - packet.time_ns > measure.WAIT_NS:
-                    self.give_up(key, packet)
+        super().end(last_ns)
         ways = self.found.ways
         known = [(key, way) for key, way in ways.items() if all(end in self.ends for end in key)]
         if len(known) < len(ways):

@@ -16,10 +16,10 @@ from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.export.reading import Capture, Packet
 from innervate.networks.skin import frames as skin
+from innervate.networks.skin.export import routes
 from innervate.networks.skin.export.routes import PC, End, Network
 from innervate.networks.skin.protocol import constants as skin_const
 from innervate.wire.bits import get
-from innervate.wire.layout import width
 
 NOTHING = "nothing happened to this skin while it was captured"
 CUT = "cable cut"
@@ -28,16 +28,7 @@ RECENT_NS = 500_000_000  # a sample's number comes again after 256 periods
 ROUND_NS = 3_000_000  # beacons of one moment are told within that time
 
 
-def _bit_of(fields: tuple[tuple[str, int, int, int], ...], name: str) -> int:
-    """Where a field begins in a frame, in bits."""
-    return skin.KIND_BITS + width(fields[: [field[0] for field in fields].index(name)])
-
-
-PARENT_AT = _bit_of(skin.ROUTE, "parent")
-CELL_AT = _bit_of(skin.TOUCH, "cell")
-SEQ_AT = _bit_of(skin.TOUCH, "seq")
-CELL_BITS, SEQ_BITS = 16, 8
-SEQS = 1 << SEQ_BITS
+SEQS = 1 << routes.SEQ_BITS
 LATE_MAX = 16  # samples that one that comes late may be behind
 NAMED = 8  # cells that are cut off and are told one by one
 END_NS = 2_000_000_000  # nodes that went away so shortly before the end were ended
@@ -48,34 +39,25 @@ class Healing:
     """What became of a skin after something happened to it.
 
     Times are from then, ms; None = not while it was watched.
-
-    Attributes:
-        at_s: when, from the capture's first frame.
-        what: "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ...".
-        cells: cells whose way to the PC it cut, and that still have cables to it; or that it
-            brought back. Those that had none yet from what happened just before are among them.
-        apart: cells that it cut off: they run, and no cables lead from them to the PC any more, so
-            that they have a way again when somebody puts one back, and not before.
-        watched_ms: until something else happened, or the capture ended.
-        first_ms: the first of them said in a beacon that it has another parent, or none.
-        wrong_ms: the last one's last beacon whose parent did not lead to the PC.
-        routed_ms: all had said in beacons that their parents lead to the PC.
-        heard_ms: the PC had a sample of all of them by a way without what was hurt.
-        heard_median_ms: of half of them.
-        lost: samples of theirs that never came to the PC.
     """
 
-    at_s: float
-    what: str
+    at_s: float  # when, from the capture's first frame
+    what: str  # "cut c1.2 - pc.0", "c6 gone", "pc back", "restore ...", "loose ..."
+    # Cells whose way to the PC it cut, and that still have cables to it; or that it brought back.
+    # Those that had none yet from what happened just before are among them.
     cells: int = 0
+    # Cells that it cut off: they run, and no cables lead from them to the PC any more, so that they
+    # have a way again when somebody puts one back, and not before.
     apart: list[str] = field(default_factory=list)
-    watched_ms: float = 0.0
+    watched_ms: float = 0.0  # until something else happened, or the capture ended
+    # The first of them said in a beacon that it has another parent, or none.
     first_ms: float | None = None
-    wrong_ms: float | None = None
-    routed_ms: float | None = None
+    wrong_ms: float | None = None  # the last one's last beacon whose parent did not lead to the PC
+    routed_ms: float | None = None  # all had said in beacons that their parents lead to the PC
+    # The PC had a sample of all of them by a way without what was hurt.
     heard_ms: float | None = None
-    heard_median_ms: float | None = None
-    lost: int = 0
+    heard_median_ms: float | None = None  # of half of them
+    lost: int = 0  # samples of theirs that never came to the PC
 
 
 @dataclass
@@ -199,7 +181,7 @@ class Watcher:
                 del self._doubt[cell]
                 self._moved(cell, None, at_ns)
         before = self.net.parent[end.node]
-        if not get(packet.data, PARENT_AT, 1):
+        if not get(packet.data, routes.PARENT_AT, 1):
             if before == end.port:  # it says so of its new parent's port next, if it has one
                 self._doubt.setdefault(end.node, packet.time_ns)
             return
@@ -226,7 +208,10 @@ class Watcher:
             now.found.routed_ms = after_ms
 
     def _sample(self, packet: Packet, end: End, out: bool) -> None:
-        cell, seq = f"c{get(packet.data, CELL_AT, CELL_BITS)}", get(packet.data, SEQ_AT, SEQ_BITS)
+        cell, seq = (
+            f"c{get(packet.data, routes.CELL_AT, routes.CELL_BITS)}",
+            get(packet.data, routes.SEQ_AT, routes.SEQ_BITS),
+        )
         while self._order and packet.time_ns - self._order[0][0] > RECENT_NS:
             self._samples.pop(self._order.popleft()[1], None)
         if out:

@@ -4,7 +4,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from innervate.networks.skin import frames as skin
+from innervate.wire.layout import width
+
 PC = "pc"
+
+
+def _bit_of(fields: tuple[tuple[str, int, int, int], ...], name: str) -> int:
+    """Where a field begins in a frame, in bits."""
+    return skin.KIND_BITS + width(fields[: [field[0] for field in fields].index(name)])
+
+
+PARENT_AT = _bit_of(skin.ROUTE, "parent")
+CELL_AT = _bit_of(skin.TOUCH, "cell")
+SEQ_AT = _bit_of(skin.TOUCH, "seq")
+CELL_BITS, SEQ_BITS = 16, 8
 
 
 class End(NamedTuple):

@@ -17,19 +17,12 @@ CELLS_MAX = 65_535  # 65535 in a command means all
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """One command.
+    """One command of the PC to cells."""
 
-    Attributes:
-        at_us: when the PC is told to send it, true time, us.
-        cell: whom it is for; ALL = every cell.
-        code: what is to be done, 0..255.
-        value: its argument, 0..65535.
-    """
-
-    at_us: int
-    cell: int
-    code: int
-    value: int
+    at_us: int  # when the PC is told to send it, true time, us
+    cell: int  # whom it is for; ALL = every cell
+    code: int  # what is to be done, 0..255
+    value: int  # its argument, 0..65535
 
 
 def orders(source: Source, graph: Graph, model: SkinScenario) -> list[Order]:

@@ -32,20 +32,13 @@ UPDATES = ("periodic", "triggered", "wave")
 
 @dataclass(slots=True)
 class Plan(CablesPlan):
-    """Everything a run needs, as whole numbers.
+    """Everything a run needs, as whole numbers."""
 
-    Attributes:
-        lock_step: all nodes tick at the same moment, without drift.
-        touch: the touch, or None.
-        script: steps that replace the clock; empty = free running.
-        orders: commands of the PC, in order of time.
-        depths: hops of every cell to the PC over the whole graph.
-    """
-
-    lock_step: bool = False
-    touch: Touch | None = None
-    script: tuple[Step, ...] = ()
-    orders: list[Order] = field(default_factory=list)
+    lock_step: bool = False  # all nodes tick at the same moment, without drift
+    touch: Touch | None = None  # the touch, or None
+    script: tuple[Step, ...] = ()  # steps that replace the clock; empty = free running
+    orders: list[Order] = field(default_factory=list)  # commands of the PC, in order of time
+    # Hops of every cell to the PC over the whole graph.
     depths: list[int] = field(default_factory=list)
 
     @property

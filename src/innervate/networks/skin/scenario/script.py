@@ -34,21 +34,15 @@ DRAW_MAX = 2**30 - 1
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step.
+    """One step of a script, as read."""
 
-    Attributes:
-        action: TICK, SOON, DELIVER, STEP_LOSE, DETECT, DRAW, STEP_CUT, STEP_RESTORE or
-            STEP_RESTART.
-        node: who acts or receives; -1 for a draw.
-        end: where the frame was sent from (deliver, lose), one end of the cable (cut, restore) or
-            which is broken (detect); else -1.
-        value: what the draw returns, 0 .. 2^30-1.
-    """
-
+    # TICK, SOON, DELIVER, STEP_LOSE, DETECT, DRAW, STEP_CUT, STEP_RESTORE or STEP_RESTART.
     action: int
-    node: int = -1
+    node: int = -1  # who acts or receives; -1 for a draw
+    # Where the frame was sent from (deliver, lose), one end of the cable (cut, restore) or which is
+    # broken (detect); else -1.
     end: int = -1
-    value: int = 0
+    value: int = 0  # what the draw returns, 0 .. 2^30-1
 
 
 def steps(source: Source, graph: Graph, script: ScriptTable) -> tuple[Step, ...]:

@@ -17,15 +17,10 @@ NONE = -1
 
 @dataclass(slots=True)
 class Damage:
-    """What earlier events took away, so that random ones choose among what is left.
+    """What earlier events took away, so that random ones choose among what is left."""
 
-    Attributes:
-        cut: for every cut cable the lower of its two ends.
-        dead: cells killed and not revived.
-    """
-
-    cut: set[int] = field(default_factory=set)
-    dead: set[int] = field(default_factory=set)
+    cut: set[int] = field(default_factory=set)  # for every cut cable the lower of its two ends
+    dead: set[int] = field(default_factory=set)  # cells killed and not revived
 
     def note(self, graph: Graph, action: str, end: int, node: int) -> None:
         """Take down what an event does."""

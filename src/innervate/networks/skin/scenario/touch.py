@@ -15,20 +15,14 @@ SAMPLES_MAX = 50_000
 
 @dataclass(frozen=True, slots=True)
 class Touch:
-    """Where the touch is: sample i holds from i * step_us on.
+    """Where the touch is: sample i holds from i * step_us on."""
 
-    Attributes:
-        step_us: time between samples, us.
-        x_um, y_um: centre of the touch in the graph's layout, um.
-        radius_um: radius within which cells feel it, um.
-        force_mn: force at its centre, mN.
-    """
-
-    step_us: int
+    step_us: int  # time between samples, us
+    # Centre of the touch in the graph's layout, um.
     x_um: array[int]
     y_um: array[int]
-    radius_um: int
-    force_mn: int
+    radius_um: int  # radius within which cells feel it, um
+    force_mn: int  # force at its centre, mN
 
 
 def sample(table: TouchTable, graph: Graph, duration_s: float) -> Touch:

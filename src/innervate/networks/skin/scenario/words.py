@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from innervate.analysis.words import number_of
 from innervate.networks.skin.scenario.foreseen import foreseen
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings
@@ -13,7 +14,7 @@ def describe(made: Plan) -> str:
     """A plan in words, several lines, without a newline at the end."""
     graph, params = made.graph, made.params
     cables = sum(1 for _ in graph.links())
-    ports = _number(graph.interfaces, "interface port")
+    ports = number_of(graph.interfaces, "interface port")
     rate_hz = made.scenario.model.data.rate_hz
     data = "off"
     if made.data_period_us:
@@ -25,8 +26,8 @@ def describe(made: Plan) -> str:
         )
     lines = [
         opening(made),
-        f"  cells      {graph.cells:,}, {ports}, {_number(cables, 'cable')}, "
-        f"at most {_number(made.depth_max, 'hop')} deep",
+        f"  cells      {graph.cells:,}, {ports}, {number_of(cables, 'cable')}, "
+        f"at most {number_of(made.depth_max, 'hop')} deep",
         f"  protocol   {RULES[params['rule']]}, {UPDATES[params['updates']]}, "
         f"a beacon every {params['beacon_us'] / 1000:g} ms, k = {params['k']}",
         f"  data       {data}",
@@ -39,7 +40,3 @@ def describe(made: Plan) -> str:
     if made.script:
         lines.append(f"  script     {len(made.script)} steps")
     return "\n".join([*lines, *told(made, fault_words, [*warnings(made), *foreseen(made)])])
-
-
-def _number(count: int, thing: str) -> str:
-    return f"{count:,} {thing}{'' if count == 1 else 's'}"

@@ -22,10 +22,7 @@ Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
 
 class Finger:
-    """The touch of a plan and what a hand made of it.
-
-    Args:
-        plan: of a skin whose cells send data.
+    """The touch of a plan, whose cells send data, and what a hand made of it.
 
     Attributes:
         x_um, y_um: where the touch is, per step.

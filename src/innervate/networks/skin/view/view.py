@@ -15,12 +15,7 @@ from innervate.networks.skin.analysis.load import balance_factor
 from innervate.networks.skin.analysis.proved import sentence
 from innervate.networks.skin.analysis.reach import world_facts
 from innervate.networks.skin.plot.words import fault_words
-from innervate.networks.skin.protocol.constants import (
-    NONE,
-    REPORT_BALANCE,
-    REPORT_BROKEN,
-    REPORT_PARENT,
-)
+from innervate.networks.skin.protocol import constants as c
 from innervate.networks.skin.sim.counters import EARLY, LOOPED, NO_ROUTE
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNROUTED
 from innervate.networks.skin.sim.orders import ORDER_CAME, ORDER_GIVEN
@@ -70,6 +65,7 @@ class SkinView(View):
     slow: ClassVar[float] = 0.05
     can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     actions = TABLE
+    fault_type = Fault
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -122,8 +118,8 @@ class SkinView(View):
             memory.waited = (
                 memory.waited[0] + len(told), memory.waited[1] + int(told["latency"].sum())
             )  # fmt: skip
-        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, REPORT_BROKEN, REPORT_PARENT, REPORT_BALANCE,
-                 ORDER_GIVEN, ORDER_CAME, OUTSIDE)  # fmt: skip
+        codes = (APART, CUT_OFF, UNROUTED, LOOP_OPEN, ORDER_GIVEN, ORDER_CAME, OUTSIDE,
+                 c.REPORT_BROKEN, c.REPORT_PARENT, c.REPORT_BALANCE)  # fmt: skip
         found = rows["rows"]
         found = found[np.isin(found["code"], codes)]
         for at, node, code, a, b in found.tolist():
@@ -140,11 +136,11 @@ class SkinView(View):
             elif code == ORDER_CAME and a in memory.given:
                 memory.told[node] = a
                 giving.reached(self.log, self.plan.graph, memory.given[a], at, a, node)
-            elif code == REPORT_BROKEN:
+            elif code == c.REPORT_BROKEN:
                 self._broken(at, PORTS * node + a, b)
             elif code == LOOP_OPEN:
                 self.log.often("loop", at, f"a forwarding loop of {number_of(a, 'cell')}", "bad")
-            elif code == REPORT_PARENT and b == NONE and memory.settled:
+            elif code == c.REPORT_PARENT and b == c.NONE and memory.settled:
                 label = self.plan.graph.label(node)
                 self.log.often("lost", at, f"{label} lost its parent", "bad")
 
@@ -315,8 +311,7 @@ class SkinView(View):
 
     def takes(self, fault: Any) -> bool:
         """True if a fault takes something away, false if it gives it back."""
-        mends = fault.action in (RESTORE, REVIVE)
-        return not mends and not (fault.action == LOOSE and fault.loss_q15 == 0)
+        return super().takes(fault) and not (fault.action == LOOSE and fault.loss_q15 == 0)
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""
@@ -342,10 +337,6 @@ class SkinView(View):
         if self._is_dead(node) != revive:
             raise Refused("this cell is on" if revive else "this cell is off already")
         return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
-
-    def make(self, at_us: int, index: int, fields: dict[str, int]) -> Fault:
-        """A fault of the kind's own type."""
-        return Fault(at_us=at_us, loss_q15=0, frames=0, index=index, **fields)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""
