@@ -5,7 +5,6 @@ from innervate.dialect.outbox import report, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALARMS,
-    ALL,
     PRIORITY,
     REPORT_GRAPH,
     REPORT_ROUND,

@@ -161,7 +161,8 @@ def parameters(model: MeshModel) -> dict[str, Any]:
     except scenarios.ScenarioError as error:
         raise VerifyError(str(error)) from error
     n = model.nodes
-    own = {"width": n, "row": mesh_fields.row_bytes(n), "places": n, "reliable": int(model.reliable)}
+    own = {"width": n, "row": mesh_fields.row_bytes(n), "places": n}
+    own["reliable"] = int(model.reliable)
     fence = FENCE | {"watch": 0} if model.robot >= 0 else {}
     return {**plan.params, **own, **fence}
 
