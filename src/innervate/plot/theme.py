@@ -6,6 +6,8 @@ shown by a shape or a word as well.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 PORT_COLOURS = 8
 SHADES = 8
 
@@ -52,53 +54,7 @@ _HEAT_DARK = (
     "#2b2722", "#3d2f1f", "#573c1b", "#764d1b", "#98611f", "#bb7a2b", "#dc9845", "#ffbd70",
 )  # fmt: skip
 
-_SHAPES = """
-text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;fill:var(--ink)}
-.ground{fill:var(--ground)}
-.small{font-size:11px;fill:var(--soft)}
-.strong{font-weight:600}
-.alarm{fill:var(--alarm)}
-.cell{stroke:var(--ground);stroke-width:1}
-.none,.off{fill:var(--ground);stroke:var(--soft);stroke-width:1;stroke-dasharray:2 1.6}
-.off{fill:var(--faint);stroke-dasharray:none}
-.lack{fill:none;stroke:var(--ink);stroke-width:1.2}
-.tree{fill:none;stroke:var(--link);stroke-width:2;stroke-opacity:.62;stroke-linecap:round}
-.cable{fill:none;stroke:var(--faint);stroke-width:1.4}
-.plug{fill:none;stroke:var(--link);stroke-width:2.2;stroke-linecap:round}
-.port{fill:var(--ink)}
-.portname{fill:var(--ground);font-size:11px;font-weight:600}
-.cut{fill:none;stroke:var(--alarm);stroke-width:2.4;stroke-dasharray:4 3}
-.gap{fill:none;stroke:var(--alarm);stroke-width:3;stroke-linecap:round}
-.touch{fill:none;stroke:var(--accent);stroke-width:1.6;stroke-dasharray:5 3}
-.axis{fill:none;stroke:var(--soft);stroke-width:1}
-.grid{fill:none;stroke:var(--faint);stroke-width:1}
-.series{fill:none;stroke:var(--accent);stroke-width:2;stroke-linejoin:round}
-.area{fill:var(--accent);fill-opacity:.16;stroke:none}
-.bar{fill:var(--accent)}
-.mark{fill:none;stroke:var(--ink);stroke-width:1.2;stroke-dasharray:4 3}
-.even{fill:none;stroke:var(--ink);stroke-width:1.4;stroke-dasharray:5 3}
-.deaf{fill:var(--faint);fill-opacity:.5}
-.ones{fill:var(--soft)}
-.outlined{stroke:var(--ink);stroke-width:1.4}
-.struck{fill:none;stroke:var(--alarm);stroke-width:1.6}
-.warn{fill:var(--alarm)}
-.done{fill:none;stroke:var(--good);stroke-width:2.2;stroke-linecap:round;stroke-linejoin:round}
-.mesh{fill:none;stroke:var(--soft);stroke-opacity:.36;stroke-width:1.1}
-.gone{stroke-dasharray:2 4}
-.zone{fill:var(--panel);fill-rule:evenodd}
-.fence{fill:none;stroke:var(--ink);stroke-width:1.8;stroke-linejoin:round}
-.walk{fill:none;stroke:var(--accent);stroke-width:1.8;stroke-dasharray:.1 4.5;stroke-linecap:round}
-.way{fill:none;stroke:var(--accent);stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
-.flooder{fill:none;stroke:var(--alarm);stroke-width:1.4;stroke-dasharray:3 2}
-.relay{fill:var(--d5);stroke:var(--ground);stroke-width:1}
-.leader,.robot{fill:var(--ink);stroke:var(--ground);stroke-width:1}
-.ringed{fill:none;stroke:var(--ink);stroke-width:1.8}
-.other{fill:none;stroke:var(--soft);stroke-width:1.4}
-.wave{fill:none;stroke:var(--alarm);stroke-width:2}
-.failed{stroke-dasharray:3 6}
-.cursor{fill:none;stroke:var(--accent);stroke-width:2}
-.heavy{font-size:13px;font-weight:600}
-"""
+_SHAPES = "\n" + Path(__file__).with_name("shapes.css").read_text(encoding="utf-8")
 
 
 def _variables(names: dict[str, str], dark: bool) -> str:
