@@ -10,7 +10,7 @@ import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,9 +18,10 @@ from typing import Any
 from innervate.network import networks
 from innervate.papers import output
 from innervate.papers.errors import PapersError
-from innervate.papers.experiment import Claim, Experiment, Point, Sheet
+from innervate.papers.experiment import Claim, Experiment, Measured, Point, Sheet
 from innervate.papers.store import Store, stamp
 from innervate.plot import style
+from innervate.sweeping.engines import cores
 
 RESULTS = "results.jsonl"
 COMPARE = "compare"  # the book of comparisons, which is no network's
@@ -184,27 +185,22 @@ def _prepare(folder: Path) -> None:
         raise PapersError(f"{folder}: {error.strerror or error}; name another folder") from None
 
 
+@dataclass(slots=True)
 class _Book:
     """Runs what is missing, and draws each experiment as soon as it has all its results."""
 
-    def __init__(
-        self,
-        folder: Path,
-        store: Store,
-        quick: bool,
-        progress: Progress,
-        warm_up: Callable[[], None],
-    ) -> None:
-        self.folder = folder
-        self.store = store
-        self.quick = quick
-        self.progress = progress
-        self.warm_up = warm_up
-        self.claims: dict[str, list[Claim]] = {}
-        self.sheets: dict[str, list[Sheet]] = {}
-        self._started = time.perf_counter()
-        self._spent = self._whole = 0.0
-        self._done = self._total = 0
+    folder: Path
+    store: Store
+    quick: bool
+    progress: Progress
+    warm_up: Callable[[], None]
+    claims: dict[str, list[Claim]] = field(default_factory=dict)
+    sheets: dict[str, list[Sheet]] = field(default_factory=dict)
+    _started: float = field(default_factory=time.perf_counter)
+    _spent: float = 0.0
+    _whole: float = 0.0
+    _done: int = 0
+    _total: int = 0
 
     def work(self, experiments: Sequence[Experiment]) -> None:
         needs = {e.name: {p.key: p for p in e.points(self.quick)} for e in experiments}
@@ -223,8 +219,7 @@ class _Book:
             for warm_up in dict.fromkeys(one.warm_up or self.warm_up for one in experiments):
                 warm_up()
             self._started = time.perf_counter()
-        workers = _cores()
-        with ThreadPoolExecutor(workers) as pool:
+        with ThreadPoolExecutor(cores()) as pool:
             running = {pool.submit(self._run, point): point for point in missing.values()}
             try:
                 self._finish(waiting, needs)
@@ -254,10 +249,10 @@ class _Book:
                 continue
             waiting.remove(experiment)
             self._say(f"drawing {experiment.name}")
-            results = self.store.values
-            style.save(experiment.draw(results, self.quick), self.folder, experiment.name)
-            self.claims[experiment.name] = experiment.judge(results, self.quick)
-            self.sheets[experiment.name] = experiment.sheets(results, self.quick)
+            got = Measured(self.store.values, self.quick)
+            style.save(experiment.draw(got), self.folder, experiment.name)
+            self.claims[experiment.name] = list(experiment.judge(got))
+            self.sheets[experiment.name] = list(experiment.sheets(got))
 
     def _say(self, what: str) -> None:
         left = None
@@ -265,10 +260,3 @@ class _Book:
             took = time.perf_counter() - self._started
             left = took * (self._whole - self._spent) / self._spent
         self.progress(Step(self._done, self._total, what, left))
-
-
-def _cores() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
-        return os.cpu_count() or 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -152,37 +152,26 @@ class Sheet:
 class Experiment:
     """A figure: its points, its drawing, its rows of the table.
 
-    All take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
-    CAPTION, `points(quick)`, and `draw`, `judge` and perhaps `sheets`, tables of its own, which
-    take what was measured. Only what compares compiles what it runs by itself (`warm_up`).
+    As a module it is TITLE, CAPTION, `points(quick)`, and `draw`, `judge` and perhaps `sheets`,
+    tables of its own, which take what was measured. Quick is fewer seeds and settings, the same
+    code. Only what compares compiles what it runs by itself (`warm_up`).
     """
 
     name: str
     title: str
     caption: str
     points: Callable[[bool], list[Point]]
-    draw: Callable[[Results, bool], Figure]
-    judge: Callable[[Results, bool], list[Claim]]
-    sheets: Callable[[Results, bool], list[Sheet]] = lambda results, quick: []
+    draw: Callable[[Measured], Figure]
+    judge: Callable[[Measured], Iterable[Claim]]
+    sheets: Callable[[Measured], Iterable[Sheet]] = lambda got: ()
     warm_up: Callable[[], None] | None = None
 
     @classmethod
     def of(cls, book: str, name: str) -> Experiment:
         """The experiment that a module of a book is, loaded when it is asked for."""
-        module = import_module(f"{book}.{name}")
-
-        def draw(results: Results, quick: bool) -> Figure:
-            made: Figure = module.draw(Measured(results, quick))
-            return made
-
-        def judge(results: Results, quick: bool) -> list[Claim]:
-            return list(module.judge(Measured(results, quick)))
-
-        def sheets(results: Results, quick: bool) -> list[Sheet]:
-            return list(module.sheets(Measured(results, quick))) if has_sheets else []
-
-        has_sheets = hasattr(module, "sheets")
-        return cls(name, module.TITLE, module.CAPTION, module.points, draw, judge, sheets)
+        one = import_module(f"{book}.{name}")
+        more = {"sheets": one.sheets} if hasattr(one, "sheets") else {}
+        return cls(name, one.TITLE, one.CAPTION, one.points, one.draw, one.judge, **more)
 
 
 @dataclass(frozen=True, slots=True)

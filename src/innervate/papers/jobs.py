@@ -163,16 +163,15 @@ class Compared:
         return {seed: inf if one[name] is None else float(one[name])
                 for seed, one in found if name in one}  # fmt: skip
 
-    def cell(self, case: Case, entry: Entry, column: Column) -> str:
-        """A cell of a table."""
-        return cell(self.values(case, entry, column.name), column)
-
     def sheets(self) -> list[Sheet]:
         """The tables: one a case, a row an entry."""
         made = []
         for case in self.cases():
             rows = [
-                (entry.name, *(self.cell(case, entry, column) for column in case.columns))
+                (
+                    entry.name,
+                    *(cell(self.values(case, entry, one.name), one) for one in case.columns),
+                )
                 for entry in doing(self.job, case)
             ]
             head = ("who", *(column.head for column in case.columns))
@@ -199,7 +198,7 @@ class Compared:
             differences = [a - b if a != b else 0.0 for a, b in both]
             between = median_interval(differences)
             holds = holds and between.high < 0
-            fewer, more = (sum(map(is_so, differences)) for is_so in (_below_0, _above_0))
+            fewer, more = sum(d < 0 for d in differences), sum(d > 0 for d in differences)
             counts = f"less in {fewer} and more in {more} of {len(differences)}"
             label = f"{word}: " if word else ""
             said.append(f"{label}{shown(between, words.digits)}, {counts}")
@@ -214,14 +213,6 @@ class Words(NamedTuple):
     claim: str
     why: str = ""
     digits: int = 1
-
-
-def _below_0(value: float) -> bool:
-    return value < 0
-
-
-def _above_0(value: float) -> bool:
-    return value > 0
 
 
 def cell(values: list[float], column: Column) -> str:

@@ -5,7 +5,7 @@ import pytest
 
 from innervate.networks.skin.papers import experiment, fig8a, fig8b
 from innervate.networks.skin.papers.common import RULES
-from innervate.papers.experiment import FAILS
+from innervate.papers.experiment import FAILS, Measured
 from tests.networks.skin.papers.results import QUICK, of
 
 # Figure, words of its claims, what the runs left just inside, and just outside.
@@ -48,7 +48,7 @@ CLOSE = [
 
 
 def verdicts(figure, words, results):
-    judged = experiment(figure).judge(results, QUICK)
+    judged = list(experiment(figure).judge(Measured(results, QUICK)))
     found = {claim.verdict for claim in judged if words in claim.claim}
     assert found
     return found
@@ -126,7 +126,7 @@ def test_almost_linear_is_an_r2_of_four_fifths(fit, holds):
 
 @pytest.mark.parametrize(("off", "share"), [(2.9, 100), (-2.9, 100), (3.1, 0), (-3.1, 0)])
 def test_how_many_recoveries_are_within_a_period_more_is_said(off, share):
-    judged = experiment("fig8b").judge(of("fig8b", off=off), QUICK)
+    judged = list(experiment("fig8b").judge(Measured(of("fig8b", off=off), QUICK)))
     said = [claim.measurement for claim in judged if "(Eq. 6)" in claim.claim]
     assert len(said) == len(RULES)
     assert all(text.endswith(f"; within +-3 T at least {share} %") for text in said), said

@@ -73,7 +73,7 @@ EDGES = [
 
 
 def verdicts(figure, words, knobs):
-    judged = experiment(figure).judge(of(figure, **knobs), QUICK)
+    judged = list(experiment(figure).judge(Measured(of(figure, **knobs), QUICK)))
     return [claim.verdict for claim in judged if words in claim.claim]
 
 
@@ -91,7 +91,7 @@ def judged_with_one(figure, key, name, value, words, **knobs):
     """Verdicts where one value among all of the runs is another one."""
     made = of(figure, **knobs)
     made[key][name][-1] = value
-    judged = experiment(figure).judge(made, QUICK)
+    judged = list(experiment(figure).judge(Measured(made, QUICK)))
     return [claim.verdict != FAILS for claim in judged if words in claim.claim]
 
 
@@ -135,7 +135,7 @@ def judged_with_some(figure, cases, seeds, more, words):
         for i in range(count):
             one, place = points[i // len(seeds)], i % len(seeds)
             made[one.key]["converged_ms"][place] += more * cases[i // len(seeds)].period_ms
-        judged = experiment(figure).judge(made, QUICK)
+        judged = list(experiment(figure).judge(Measured(made, QUICK)))
         found.append([claim.verdict != FAILS for claim in judged if words in claim.claim])
     return found
 
@@ -161,7 +161,7 @@ def test_one_recovery_in_twenty_may_lie_outside_a_band(place):
 def test_one_recovery_with_a_loop_is_one_too_many(rule, words):
     made = of("loop")
     made[loop.loops(rule, QUICK).key]["episodes"][-1] = 1
-    failed = [claim.claim for claim in experiment("loop").judge(made, QUICK)
+    failed = [claim.claim for claim in experiment("loop").judge(Measured(made, QUICK))
               if claim.verdict == FAILS]  # fmt: skip
     assert len(failed) == 1
     assert words in failed[0]
@@ -171,7 +171,7 @@ def test_every_row_is_tried_on_both_sides():
     tried = {figure: [words for name, words, *_ in EDGES if name == figure] for figure in FIGURES}
     by_graph = ("only one node", "n_bal", "more deterministic")  # below
     for figure in FIGURES:
-        for claim in experiment(figure).judge(of(figure), QUICK):
+        for claim in experiment(figure).judge(Measured(of(figure), QUICK)):
             words = (*tried[figure], *by_graph)
             assert any(word in claim.claim for word in words), claim.claim
 
