@@ -189,7 +189,7 @@ def test_who_may_balance_is_counted(monkeypatch, tied, holds):
 
 
 def test_more_deterministic_means_a_third_of_the_spread():
-    from innervate.networks.skin.papers import fig10, fig10_gain
+    from innervate.networks.skin.papers import fig10
 
     got = Measured(of("fig10", worst=0.30), QUICK)
     losses = [fig10.values(got, "setup-7", fig10.STATIC, "loss")]
@@ -198,8 +198,8 @@ def test_more_deterministic_means_a_third_of_the_spread():
     for share, holds in ((0.33, True), (0.34, False)):
         values = {fig10.STATIC: losses[0], fig10.DYNAMIC: [0.0, share * spread]}
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(fig10_gain, "values", lambda got, s, mode, n, v=values: v[mode])
-            assert (fig10_gain._spread(got).verdict != FAILS) == holds
+            patch.setattr(fig10, "values", lambda got, s, mode, n, v=values: v[mode])
+            assert (fig10._spread(got).verdict != FAILS) == holds
 
 
 def test_a_span_has_its_ends_and_nothing_beyond():
