@@ -47,10 +47,8 @@ def alarms(run: Any) -> Figure:
             ax.plot(waits, [crossing.overrun_m for crossing in part], ls="none", marker=marker,
                     color=colour, label="flooded" if flooded else "routed")  # fmt: skip
     ax.legend(loc="best")
-    ax.set_xlim(left=0)
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("from the alarm to the monitor (ms)")
-    ax.set_ylabel("farthest outside (m)")
+    ax.set(xlim=(0, None), ylim=(0, None), xlabel="from the alarm to the monitor (ms)",
+           ylabel="farthest outside (m)")  # fmt: skip
     return made
 
 

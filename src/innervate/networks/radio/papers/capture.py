@@ -64,8 +64,7 @@ def draw(got: Measured) -> Figure:
         ax.set_ylim(0, 1.04)
     left.set(ylabel="Jain's index over one round", title="b  fairness, T = 5")
     left.legend(loc="center right", bbox_to_anchor=(1, 0.72))
-    right.set_ylabel("throughput S")
-    right.set_title("c  the winner draws a backoff, too: D2', T = 5")
+    right.set(ylabel="throughput S", title="c  the winner draws a backoff, too: D2', T = 5")
     right.legend(loc="upper right", ncols=3, columnspacing=1)
     return figure
 

@@ -99,8 +99,7 @@ def draw(got: Measured) -> Figure:
         above.set_title(f"{reading.name}  " + reading.words.replace(", ", ",\n"))
         below.set(xticks=NS, xlabel="robots n")
     axes[0].set(ylabel="throughput S (air time)", ylim=(0, 1.04))
-    axes[3].set_ylabel("$T_D$ (slots)")
-    axes[3].set_ylim(0)
+    axes[3].set(ylabel="$T_D$ (slots)", ylim=(0, None))
     axes[5].set_ylim(0)
     drawing.legend(figure, axes[0], "lower center", ncols=3)
     return figure

@@ -66,8 +66,7 @@ def _few(ax: Axes, got: Measured, size: int) -> None:
         common.line(ax, common.LOOKS[mac], one.ns[:9], one.mean(got)[:9], marks=range(2, 11))
         if mac in common.CONTENDING:
             common.band(ax, common.LOOKS[mac], one.ns[:9], one.all(got)[:9])
-    ax.set_ylim(0)
-    ax.set(xticks=range(2, 11), xlabel="stations n")
+    ax.set(ylim=(0, None), xticks=range(2, 11), xlabel="stations n")
     ax.legend(loc="upper left")
 
 

@@ -79,8 +79,7 @@ def _curves(ax: Axes, columns: Columns, name: str, scale: float, limit: float) -
         ax.fill_between(ports, low, high, color=color, alpha=0.18, lw=0)
     ax.axhline(scale * limit, color=style.INK, lw=0.9, ls="--")
     ax.set_xticks(sorted(set(columns["ports"])))
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("interface ports (dashed: limit)")
+    ax.set(ylim=(0, None), xlabel="interface ports (dashed: limit)")
     if len(rates) > 1:
         ax.legend()
 
@@ -106,5 +105,4 @@ def _map(ax: Axes, graph: Any) -> None:
         ax.annotate(str(port), flat[cell], fontsize=5.5, **look)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
-    ax.set_xlabel(f"{AXES[across]} (mm), slanted by {AXES[along]}")
-    ax.set_ylabel(f"{AXES[up]} (mm)")
+    ax.set(xlabel=f"{AXES[across]} (mm), slanted by {AXES[along]}", ylabel=f"{AXES[up]} (mm)")
