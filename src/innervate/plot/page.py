@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -81,6 +81,13 @@ def beginning(head: Sequence[str], rows: Sequence[Sequence[str]], rest: str = ""
     more = len(rows) - ROWS_MAX
     note = element("p", f"And {more:,} more{rest}.", "note") if more > 0 else ""
     return table(head, rows[:ROWS_MAX]) + note
+
+
+def events(result: Any, words: Callable[[Any], str]) -> str:
+    """The section on faults that the scenario has brought about; "" if there are none."""
+    rows = [(f"{fault.at_us / 1e6:.3f} s", clean(words(fault)))
+            for fault in result.plan.faults if fault.at_us <= result.ended_us]  # fmt: skip
+    return section("Events", beginning(("at", "what"), rows) if rows else "")
 
 
 def section(head: str, inside: str) -> str:

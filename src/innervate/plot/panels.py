@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 
 from innervate.plot.svg import Drawing, Point
 from innervate.plot.theme import drawing_style
@@ -14,7 +15,7 @@ COLUMNS = 4
 RADIUS = 15.0
 TOP = 34.0
 LINE = 15.0
-LETTERS = 118
+LETTERS = 119
 DISC_LETTERS, WORD = 4, 9.0  # of a node's disc: letters that fit side by side, a row of a word
 STYLE = """
 .node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
@@ -54,14 +55,8 @@ def save(drawing: Drawing, path: Path, more: str = "") -> None:
 
 def wrapped(text: str) -> list[str]:
     """A sentence as lines of at most LETTERS letters, all but the first indented."""
-    lines, line = [], ""
-    for word in text.split():
-        if len(line) + len(word) > LETTERS:
-            lines.append(line)
-            line = "    " + word
-        else:
-            line = f"{line} {word}".strip() if not line.startswith("    ") else f"{line} {word}"
-    return [*lines, line]
+    return wrap(" ".join(text.split()), LETTERS, subsequent_indent="    ", break_long_words=False,
+                break_on_hyphens=False)  # fmt: skip
 
 
 def disc(panel: Drawing, place: Point, label: str, is_end: bool, is_actor: bool) -> None:

@@ -11,16 +11,8 @@ AUTHORS = "The routing part of a design of a virtual fence for robots"
 READINGS = sentences(Path(__file__).with_name("readings.txt").read_text(encoding="utf-8"))
 # One module each: what was asked for, then the document's statements in its order.
 FIGURES = (
-    "bars",
-    "recall",
-    "stretch",
-    "failures",
-    "lossy",
-    "alarms",
-    "gateway",
-    "scale",
-    "versions",
-)
+    "bars", "recall", "stretch", "failures", "lossy", "alarms", "gateway", "scale", "versions",
+)  # fmt: skip
 experiment = partial(Experiment.of, __name__)
 
 

@@ -53,8 +53,5 @@ def alarms(run: Any) -> Figure:
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "field": field,
-    "latency": latency,
-    "delivery": delivery,
-    "alarms": alarms,
-}
+    "field": field, "latency": latency, "delivery": delivery, "alarms": alarms,
+}  # fmt: skip

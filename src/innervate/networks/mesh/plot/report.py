@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from innervate.networks.mesh.analysis.alarms import Crossing, all_crossings
@@ -37,7 +38,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
         _crossings(result, crossings),
         nodes_section(result),
         _flows(result, summary),
-        _events(result),
+        page.events(result, partial(fault_words, result.plan)),
         _reports(result),
     )
 
@@ -235,14 +236,6 @@ def _flows(result: Any, summary: Mapping[str, Any]) -> str:
         ))  # fmt: skip
     head = ("flow", "messages", "delivered", "half within", "99 % within")
     return section("Flows", table(head, rows))
-
-
-def _events(result: Any) -> str:
-    """The section on events that the scenario has brought about; "" if there are none."""
-    plan = result.plan
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, f)))
-            for f in plan.faults if f.at_us <= result.ended_us]  # fmt: skip
-    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 
 def _reports(result: Any) -> str:

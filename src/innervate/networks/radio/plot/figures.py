@@ -42,8 +42,5 @@ def throughput(run: Any, bins: int = charts.BINS) -> Figure:
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "timeline": timeline,
-    "delay": delay,
-    "fairness": fairness,
-    "throughput": throughput,
-}
+    "timeline": timeline, "delay": delay, "fairness": fairness, "throughput": throughput,
+}  # fmt: skip

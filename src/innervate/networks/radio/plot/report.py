@@ -27,7 +27,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
         top(result, summary),
         _timelines(result),
         _charts(result, summary),
-        _events(result),
+        page.events(result, told.fault_words),
         _reports(result, summary),
     )
 
@@ -224,13 +224,6 @@ def _charts(result: Any, summary: Mapping[str, Any]) -> str:
         radio_charts.waits(result) if disaster else radio_charts.shares(result, summary),
     ]
     return section("How well it went", pictures([page.panel(one) for one in shown if one], "two"))
-
-
-def _events(result: Any) -> str:
-    """The section on events that the scenario has brought about; "" if there are none."""
-    faults = [fault for fault in result.plan.faults if fault.at_us <= result.ended_us]
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(told.fault_words(f))) for f in faults]
-    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 
 def _reports(result: Any, summary: Mapping[str, Any]) -> str:

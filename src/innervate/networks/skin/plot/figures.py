@@ -78,8 +78,5 @@ def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) 
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "recovery": recovery,
-    "routes": routes,
-    "loads": loads,
-    "received": received,
-}
+    "recovery": recovery, "routes": routes, "loads": loads, "received": received,
+}  # fmt: skip
