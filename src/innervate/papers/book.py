@@ -134,11 +134,7 @@ def books() -> list[str]:
 
 
 def book_of(system: str) -> Any:
-    """What a book is made of: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up.
-
-    Raises:
-        PapersError: there is none of this name.
-    """
+    """What a book is made of: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up."""
     known = books()
     if system not in known:
         raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(known)}')
@@ -160,11 +156,7 @@ def _chosen(paper: ModuleType, only: Iterable[str]) -> list[str]:
 
 
 def _there(paper: Any, page: Path, store: Store, quick: bool, chosen: Sequence[str]) -> list[str]:
-    """Figures that a page has besides those that are made anew: they are to stay there.
-
-    Raises:
-        PapersError: they cannot, as they are of other settings or sources.
-    """
+    """Figures that a page has besides those that are made anew: to stay there, if they can."""
     was_quick, shown = output.shown_on(page, paper.FIGURES)
     others = [name for name in shown if name not in chosen]
     keys = [point.key for name in others for point in paper.experiment(name).points(quick)]

@@ -113,11 +113,7 @@ def _table_of(sheet: Sheet) -> str:
 
 
 def insert(page: Path, name: str, text: str) -> None:
-    """Put a text between a page's marks of this name.
-
-    Raises:
-        PapersError: there is no such page, or it has no such marks.
-    """
+    """Put a text between a page's marks of this name; see around()."""
     before, after = around(page, name)
     _put(page, f"{before}\n{text}\n{after}")
 

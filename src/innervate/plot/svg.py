@@ -21,11 +21,7 @@ _FORBIDDEN = {c: "\ufffd" for c in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0
 
 
 def number(value: float) -> str:
-    """A coordinate, to a hundredth.
-
-    Raises:
-        ValueError: it is not a finite number.
-    """
+    """A coordinate, to a hundredth; a ValueError if it is not finite."""
     if not math.isfinite(value):
         raise ValueError(f"a coordinate must be finite, not {value}")
     text = f"{value:.2f}".rstrip("0").rstrip(".")

@@ -46,11 +46,7 @@ class Base:
     name: str = ""
 
     def scenario(self, settings: Iterable[tuple[str, Any]] = (), seed: int | None = None) -> Any:
-        """The scenario with these settings besides.
-
-        Raises:
-            ScenarioError: it is not valid.
-        """
+        """The scenario with these settings besides; a ScenarioError if it is not valid."""
         changes = [*self.settings, *settings]
         return scenarios.loads(self.text, changes, seed, self.file, self.folder)
 
@@ -67,11 +63,7 @@ class Base:
         return shlex.join([*words, "--seed", str(seed)])
 
     def anywhere(self, settings: Settings) -> Base:
-        """The same, with relative paths made full, so that the copy can be run elsewhere.
-
-        Raises:
-            ScenarioError: it is not valid with these settings.
-        """
+        """The same, valid as it is, with full paths for relative ones: it can be run elsewhere."""
         made = self.scenario(settings)
         plain = msgspec.to_builtins(made.model)
         full = tomllib.loads(scenarios.dump(made))
@@ -96,9 +88,8 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
         text, label, folder = scenarios.read(source)
         name = ""
     file = Path(label).name
-    settings = tuple(_setting(c) for c in changes) if not isinstance(changes, Mapping) else ()
-    if isinstance(changes, Mapping):
-        settings = tuple(changes.items())
+    pairs = changes.items() if isinstance(changes, Mapping) else map(_setting, changes)
+    settings = tuple(pairs)
     if file in TAKEN:
         file, settings = "scenario.toml", (("name", Path(file).stem), *settings)
     kind = dict(settings).get("kind") or _kind(text)

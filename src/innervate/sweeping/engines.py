@@ -95,11 +95,7 @@ class Pool(Engine):
         self._pool = self._start()
 
     def _start(self) -> Executor:
-        """A pool that works; found out now, lest every run be taken for one that kills workers.
-
-        Raises:
-            SweepError: its workers die before they have done anything.
-        """
+        """A pool that works; found out now, lest every run be taken for one that kills workers."""
         for _ in range(_STARTS):
             pool = self._make()
             try:

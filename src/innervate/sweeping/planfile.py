@@ -112,11 +112,7 @@ def scenario_of(plan: PlanFile, folder: str) -> str:
 
 
 def axes_of(plan: PlanFile, path: str) -> tuple[Axis, ...]:
-    """What a plan file varies, [vary] first.
-
-    Raises:
-        SweepError: a list that is none, or lists of different lengths that go together.
-    """
+    """What a plan file varies, [vary] first; a SweepError where that is no list of values."""
     made = [
         axis((key,), [(value,) for value in listed(value, f"{path}: {key}")], f"{path}: {key}")
         for key, value in leaves(plan.vary)
@@ -146,11 +142,7 @@ def plots_of(plan: PlanFile, path: str) -> tuple[PlotTable, ...]:
 
 
 def together(lists: dict[str, list[Any]], where: str) -> Axis:
-    """The axis of lists that go together.
-
-    Raises:
-        SweepError: they are not of one length.
-    """
+    """The axis of lists that go together, all of one length, else a SweepError."""
     lengths = {key: len(values) for key, values in lists.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{key} has {count}" for key, count in lengths.items())

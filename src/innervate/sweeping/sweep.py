@@ -153,11 +153,7 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
 
 
 def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
-    """The plan that these describe (see sweep); what they say goes before a plan file's.
-
-    Raises:
-        SweepError, ScenarioError: see sweep().
-    """
+    """The plan that these describe, as in sweep(); what they say goes before a plan file's."""
     file, source = _plan_file(scenario)
     base = base_of(source, planned.get("overrides", ()))
     axes, derived = _axes(planned.get("vary", ())), dict(planned.get("derive") or {})
@@ -195,11 +191,7 @@ def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
 def _count(
     name: Literal["repeat", "batch"], planned: Planned, file: planfile.PlanFile | None, usual: int
 ) -> int:
-    """How often, as was asked for, or as the plan file says.
-
-    Raises:
-        SweepError: never, or too often.
-    """
+    """How often, as was asked for, or as the plan file says; not never, and not too often."""
     count = _first(planned.get(name), getattr(file, name, None), usual)
     if not 1 <= count <= REPEAT_MAX:
         raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
@@ -274,11 +266,7 @@ def _checked(plan: SweepPlan) -> tuple[SweepPlan, Scenario]:
 
 
 def _prepare(folder: Path) -> None:
-    """Make the folder, unless something else is in it.
-
-    Raises:
-        SweepError: it cannot be used.
-    """
+    """Make the folder, unless something else is in it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         names = {entry.name for entry in folder.iterdir()}

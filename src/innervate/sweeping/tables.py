@@ -199,22 +199,14 @@ def reasons(failed: polars.DataFrame) -> dict[str, int]:
 
 
 def write(table: polars.DataFrame, path: Path) -> None:
-    """Write a table as Parquet, whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Write a table as Parquet, whole or not at all (OSError)."""
     packed = io.BytesIO()  # written by ourselves, a full disk is an OSError that says so
     table.write_parquet(packed, compression="zstd", statistics=True, row_group_size=1 << 16)
     write_bytes(bytes(packed.getbuffer()), path)
 
 
 def write_bytes(content: bytes, path: Path) -> None:
-    """Put a file in the place of an older one, whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Put a file in the place of an older one, whole or not at all (OSError)."""
     fresh = path.with_name(f".{path.name}.part")
     try:
         fresh.write_bytes(content)

@@ -11,7 +11,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from innervate.analysis.intervals import Interval, mean_interval
+from innervate.analysis.intervals import mean_interval
 from innervate.sweeping.errors import SweepError
 
 _RULE = re.compile(r"\s*([\w.-]+)\.ci\s*=\s*([0-9.eE+-]+)\s*(%?)\s*")
@@ -35,10 +35,6 @@ class Until:
         value = f"{100 * self.half:g}%" if self.relative else f"{self.half:g}"
         return f"{self.measure}.ci={value}"
 
-    def interval(self, values: Sequence[float]) -> Interval | None:
-        """Mean and 95 % interval; None without values."""
-        return mean_interval(values) if values else None
-
     def met(self, values: Sequence[float]) -> bool:
         """Whether these values, of the first repeats in order, are enough."""
         if len(values) < 2:
@@ -59,11 +55,7 @@ class Until:
 
 
 def parse(text: str) -> Until:
-    """The rule of an `--until` text: "recoveries.routed_ms.ci=5%", "throughput.ci=0.01".
-
-    Raises:
-        SweepError: it is not written like that.
-    """
+    """The rule of an `--until` text: "recoveries.routed_ms.ci=5%", "throughput.ci=0.01"."""
     match = _RULE.fullmatch(text)
     try:
         half = float(match[2]) if match else math.nan

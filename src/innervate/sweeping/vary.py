@@ -71,11 +71,7 @@ def parse(text: str) -> Axis:
 
 
 def axis(keys: tuple[str, ...], steps: Iterable[tuple[Any, ...]], where: str) -> Axis:
-    """A checked axis; `where` begins the error messages.
-
-    Raises:
-        SweepError: a key that is none, no steps, or two equal ones.
-    """
+    """An axis of keys that are some, and of steps, no two equal; `where` begins a SweepError."""
     for key in keys:
         check_key(key, where)
     if len(set(keys)) < len(keys):
@@ -96,11 +92,7 @@ def axis(keys: tuple[str, ...], steps: Iterable[tuple[Any, ...]], where: str) ->
 
 
 def check_key(key: str, where: str) -> None:
-    """That a key can be varied or derived.
-
-    Raises:
-        SweepError: it is none, or has the name of another column of the results.
-    """
+    """Raise a SweepError if a key is none, or called as another column of the results."""
     if not _KEY.fullmatch(key):
         raise SweepError(f'{where}: "{key}" is no key; keys are names with dots between')
     if key == "seed":
@@ -116,11 +108,7 @@ def check_key(key: str, where: str) -> None:
 
 
 def values_of(text: str, where: str) -> list[Any]:
-    """The values of one part of a list: those of a range, or the one it is.
-
-    Raises:
-        SweepError: a range that leads nowhere.
-    """
+    """The values of one part of a list: of a range, which has to lead somewhere, or the one."""
     match = _RANGE.fullmatch(text)
     if match is None:
         return [parse_value(text)]

@@ -77,11 +77,7 @@ _loaded: set[frozenset[str]] = set()
 
 
 def run_batch(base: Base, jobs: list[Job]) -> Done:
-    """Run these; what fails is an outcome as well.
-
-    Raises:
-        KeyboardInterrupt: Ctrl-C; nothing of the run in progress counts.
-    """
+    """Run these; what fails is an outcome as well, Ctrl-C is none."""
     mark = base.mark()
     return Done([_run(base, mark, job) for job in jobs], place(), sources_of(base.kind))
 
