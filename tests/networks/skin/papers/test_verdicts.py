@@ -99,7 +99,7 @@ def judged_with_one(figure, key, name, value, words, **knobs):
 def test_a_bound_on_convergence_has_no_exception(place):
     rule, k_ms = RULES[place], 1000 / eq7.HZ
     for setup, cut in ((eq7.SETUPS[0], "random link"), (eq7.SETUPS[-1], "interface 1")):
-        one = eq7.case(setup, rule, cut)
+        one = rule.case(setup, eq7.HZ, eq7.K, cut)
         key, bound = one.point(eq7.seeds(QUICK, cut)).key, eq7.depth(setup) + eq7.K + 3
         for more, holds in ((0.0, True), (0.1, False)):
             found = judged_with_one("eq7", key, "converged_ms", (bound + more) * k_ms, "+ 3 T")
@@ -108,7 +108,7 @@ def test_a_bound_on_convergence_has_no_exception(place):
 
 def test_nor_has_the_one_with_half_the_height():
     setup, half = next(iter(eq7.HALF.items()))
-    one = eq7.case(setup, RULES[0], "interface 1")
+    one = RULES[0].case(setup, eq7.HZ, eq7.K)
     key = one.point(eq7.seeds(QUICK, "interface 1")).key
     for more, holds in ((0.0, True), (0.1, False)):
         ms = (half + eq7.K + more) * one.period_ms
@@ -119,7 +119,7 @@ def test_nor_has_the_one_with_half_the_height():
 @pytest.mark.parametrize("k", at_most.KS)
 def test_at_most_so_many_ms_has_no_exception(place, k):
     for setup, _ in at_most.SKINS:
-        key = at_most.case(setup, RULES[place], k).point(at_most.seeds(QUICK)).key
+        key = RULES[place].case(setup, at_most.HZ, k).point(at_most.seeds(QUICK)).key
         for ms, holds in ((50.0, True), (50.1, False)):
             found = judged_with_one("at_most", key, "converged_ms", ms, "at most 50 ms", ms=40.0)
             # The paper gives no k: judged is the least that tolerates a lost beacon.
@@ -144,11 +144,11 @@ def judged_with_some(figure, cases, seeds, more, words):
 def test_one_recovery_in_twenty_may_lie_outside_a_band(place):
     but_one = [i != place for i in range(3)]
     sweep = fig8a.grid(QUICK)
-    cases = [fig8a.case(*one) for one in fig8a._cells(sweep, RULES[place])]
+    cases = fig8a.cells(sweep, RULES[place])
     found = judged_with_some("fig8a", cases, sweep.seeds, 3.1, "convergence of setup 1")
     assert found == [[True] * 3, but_one]
     for setup in ("setup-1", "setup-4"):  # of every setup by itself
-        cases = [fig8b.case(setup, k, RULES[place]) for k in fig8b.KS]
+        cases = [RULES[place].case(setup, fig8b.HZ, k) for k in fig8b.KS]
         found = judged_with_some("fig8b", cases, fig8b.seeds(QUICK), 2.1, "(Eq. 6)")
         assert found == [[True] * 3, but_one]
 

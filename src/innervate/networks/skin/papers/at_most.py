@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate.networks.skin.papers.common import RULES, Case, Rule, rule_panels, seeds_of
+from innervate.networks.skin.papers.common import RULES, Rule, rule_panels, seeds_of
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
 from innervate.papers.words import joined, percent
@@ -32,20 +32,15 @@ def seeds(quick: bool) -> range:
     return seeds_of(6 if quick else 40)
 
 
-def case(setup: str, rule: Rule, k: int) -> Case:
-    """The case of one setting, with periodic beacons."""
-    return Case(setup, HZ, k, rule.name, "periodic", rule.m)
-
-
 def points(quick: bool) -> list[Point]:
     """Both skins, all rules and k."""
-    found = [case(setup, rule, k) for rule in RULES for setup, _ in SKINS for k in KS]
+    found = [rule.case(setup, HZ, k) for rule in RULES for setup, _ in SKINS for k in KS]
     return [one.point(seeds(quick)) for one in found]
 
 
 def converged_ms(got: Measured, setup: str, rule: Rule, k: int) -> Any:
     """Time from the failure to the last change of a parent, ms, one value a seed."""
-    one = case(setup, rule, k)
+    one = rule.case(setup, HZ, k)
     return one.periods(got, seeds(got.quick), "converged_ms") * one.period_ms
 
 

@@ -35,6 +35,10 @@ class Rule(NamedTuple):
     m: int
     words: str = ""
 
+    def case(self, setup: str, hz: float, k: int, cut: str = f"interface {INTERFACE}") -> Case:
+        """Recoveries under it, with periodic beacons."""
+        return Case(setup, hz, k, self.name, "periodic", self.m, cut)
+
 
 # Those of which several figures show the recoveries.
 RULES = (

@@ -35,11 +35,6 @@ SLOPE = Span(0.4, 0.6)  # periods a cell
 FIT = Span(0.8, 1.0)  # R2 of the line
 
 
-def case(setup: str, k: int, rule: Rule) -> Case:
-    """The case of one setting, with periodic beacons."""
-    return Case(setup, HZ, k, rule.name, "periodic", rule.m)
-
-
 def seeds(quick: bool) -> range:
     """How many recoveries a setting."""
     return seeds_of(8 if quick else 40)
@@ -52,7 +47,7 @@ def last(quick: bool) -> Point:
 
 def points(quick: bool) -> list[Point]:
     """Four setups, three k, all rules."""
-    made = [case(setup, k, rule) for rule in RULES for setup in SETUPS for k in KS]
+    made = [rule.case(setup, HZ, k) for rule in RULES for setup in SETUPS for k in KS]
     return [*(one.point(seeds(quick)) for one in made), last(quick)]
 
 
@@ -74,7 +69,7 @@ def last_cells(seed: int) -> dict[str, Any]:
 
 def converged(got: Measured, setup: str, k: int, rule: Rule) -> Any:
     """Convergence of every seed, in periods."""
-    return case(setup, k, rule).periods(got, seeds(got.quick), "converged_ms")
+    return rule.case(setup, HZ, k).periods(got, seeds(got.quick), "converged_ms")
 
 
 def draw(got: Measured) -> Figure:

@@ -41,7 +41,7 @@ MAP_IN = 2.3
 
 def loops(rule: Rule, quick: bool) -> Point:
     """Recoveries of a rule; E25 counts twenty."""
-    case = Case("setup-1", 250, 5, rule.name, "periodic", rule.m)
+    case = rule.case("setup-1", 250, 5)
     return Point.each(f"loops of {case}", 0.02, seeds_of(5 if quick else 20), count, case)
 
 
