@@ -167,13 +167,10 @@ class Compared:
         """The tables: one a case, a row an entry."""
         made = []
         for case in self.cases():
-            rows = [
-                (
-                    entry.name,
-                    *(cell(self.values(case, entry, one.name), one) for one in case.columns),
-                )
-                for entry in doing(self.job, case)
-            ]
+            rows = []
+            for entry in doing(self.job, case):
+                cells = (cell(self.values(case, entry, one.name), one) for one in case.columns)
+                rows.append((entry.name, *cells))
             head = ("who", *(column.head for column in case.columns))
             made.append(Sheet(f"{case.title}; {len(case.seeds)} runs each", head, rows))
         return made

@@ -112,11 +112,9 @@ def _over_time(result: Any) -> str:
     text = "So many so far; dashed: the events below." if marks else "So many so far."
     figures = []
     for name, times in _series(result)[:CHARTS_MAX]:
-        shown = charts.Steps(
-            np.sort(times) / 1e6, np.arange(1, len(times) + 1), charts.Axis(0, end_s, "s"),
-            charts.Axis(0, max(1, len(times))), f"{name} over time",
-            marks=marks[: charts.BARS_MAX],
-        )  # fmt: skip
+        x, y = charts.Axis(0, end_s, "s"), charts.Axis(0, max(1, len(times)))
+        shown = charts.Steps(np.sort(times) / 1e6, np.arange(1, len(times) + 1), x, y,
+                             f"{name} over time", marks=marks[: charts.BARS_MAX])  # fmt: skip
         figures.append(figure(shown.drawing, name, text))
     return section("Over time", pictures(figures, "two"))
 

@@ -143,14 +143,9 @@ class Jobs:
                 outcomes = list(outcomes)
                 again = [(o.point, o.repeat) for o in outcomes if (o.point, o.repeat) in self.torn]
                 self._db.executemany(_DELETE, again)
-                self._db.executemany(
-                    _INSERT,
-                    [
-                        (o.point, o.repeat, o.seed, "failed" if o.row is None else "done", o.row,
-                         o.reason, o.wall_s, o.began_s, number)
-                        for o in outcomes
-                    ],
-                )  # fmt: skip
+                rows = [(o.point, o.repeat, o.seed, "failed" if o.row is None else "done", o.row,
+                         o.reason, o.wall_s, o.began_s, number) for o in outcomes]  # fmt: skip
+                self._db.executemany(_INSERT, rows)
                 self._db.execute("COMMIT")
             except BaseException:
                 if self._db.in_transaction:

@@ -117,11 +117,8 @@ class SweepPlan:
         )
 
     def _point(self, index: int, steps: tuple[Any, ...], tables: dict[str, Any]) -> Point:
-        varied = [
-            pair
-            for axis, step in zip(self.axes, steps, strict=True)
-            for pair in zip(axis.keys, step, strict=True)
-        ]
+        varied = [(key, value) for axis, step in zip(self.axes, steps, strict=True)
+                  for key, value in zip(axis.keys, step, strict=True)]  # fmt: skip
         values = {key: plain(value) for key, value in varied}
         free = {k: v for k, v in values.items() if k not in self.paired and ALL not in self.paired}
         columns = {key: column(value) for key, value in varied}

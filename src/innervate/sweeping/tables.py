@@ -144,11 +144,8 @@ def measures(table: polars.DataFrame, keys: Iterable[str]) -> list[str]:
     import polars
 
     aside = {*FIRST, *AFTER, *keys}
-    return [
-        name
-        for name, kind in table.schema.items()
-        if name not in aside and kind in (polars.Int64, polars.Float64)
-    ]
+    numbers = (polars.Int64, polars.Float64)
+    return [name for name, kind in table.schema.items() if kind in numbers and name not in aside]
 
 
 def points(

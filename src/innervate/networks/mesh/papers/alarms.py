@@ -21,7 +21,7 @@ from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
 from innervate.sim.status import ON_FRAME
-from innervate.topology.placement import distance_cm, path_loss_cdb
+from innervate.topology.placement import distance_cm, neighbours, path_loss_cdb
 from innervate.trace.streams import stream
 
 TITLE = "2.1, 2.2: a robot crosses the fence"
@@ -123,7 +123,6 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
     (way,) = plan.walks
     x, y = position_cm(way, at_us)
     here = (round(x), round(y))
-    near: list[list[int]] = [[] for _ in range(count)]
     links = [link for link in plan.good if way.node not in link]
     for node, place in enumerate(plan.positions_cm):
         if node != way.node:
@@ -132,10 +131,7 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
             least = min(radio.base_cdb[there], radio.base_cdb[back])
             if least >= radio.rssi50_cdb + GOOD_CDB + loss:
                 links.append((node, way.node))
-    for a, b in links:
-        if a not in gone and b not in gone:
-            near[a].append(b)
-            near[b].append(a)
+    near = neighbours(count, [(a, b) for a, b in links if a not in gone and b not in gone])
     return bool(distances(near, beds.GATEWAY)[way.node] != UNREACHABLE)
 
 

@@ -12,6 +12,7 @@ from innervate.analysis.spread import scaled
 from innervate.networks.mesh.analysis.fence import edges_of
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
+from innervate.topology.placement import neighbours
 
 WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
 LONELY_CM = 500.0, 100.0  # around a node that is alone
@@ -95,10 +96,7 @@ def shortened(start: Point, end: Point, gap: float) -> tuple[Point, Point]:
 
 def laid_out(plan: Any) -> Floats:
     """Places for nodes that have none: far apart as they are in hops (classical scaling)."""
-    near: list[list[int]] = [[] for _ in range(plan.nodes)]
-    for a, b in plan.good:
-        near[a].append(b)
-        near[b].append(a)
+    near = neighbours(plan.nodes, plan.good)
     far = np.array([distances(near, node) for node in range(plan.nodes)], np.float64)
     far[far == UNREACHABLE] = far.max() + 2
     if plan.nodes < 3:

@@ -11,6 +11,7 @@ mode's windows and pulses, DCF's two slots (its receivers would have to switch, 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -131,13 +132,7 @@ def loads(quick: bool) -> tuple[float, ...]:
 
 def points(quick: bool, of: tuple[tuple[str, int], ...] = tuple(LOOKS)) -> list[Point]:
     """A point for each protocol, packet length, number of stations and load."""
-    return [
-        point(who, size, n, load, quick)
-        for who in of
-        for size in SIZES
-        for n in STATIONS
-        for load in loads(quick)
-    ]
+    return [point(*one, quick) for one in product(of, SIZES, STATIONS, loads(quick))]
 
 
 def delay(

@@ -100,12 +100,9 @@ def _event_waits(got: Measured, mode: str) -> list[float]:
 def draw(got: Measured) -> Figure:
     """Delay percentiles in saturation; 95th percentile over the load."""
     figure, (left, right) = style.panels(style.WIDE_IN, 3.3, 1, 2, width_ratios=(1.25, 1))
-    rows = {
-        "CSMA/CD-R, slotted" if mac == RESERVED else LOOKS[mac].name: got[
-            level(mac, None, got.quick)
-        ]["delay"]
-        for mac in (*(mac for mac in MACS if mac != RESERVED), RESERVED)
-    }
+    slotted_level = {mac: got[level(mac, None, got.quick)]["delay"] for mac in MACS}
+    rows = {LOOKS[mac].name: slotted_level[mac] for mac in MACS if mac != RESERVED}
+    rows["CSMA/CD-R, slotted"] = slotted_level[RESERVED]
     rows |= {name: _event_waits(got, mode) for mode, name in EVENT.items()}
     for place, values in enumerate(rows.values()):
         left.plot([values[0], values[-1]], [place, place], color=style.SOFT, lw=0.8)

@@ -143,12 +143,11 @@ def _formula(got: Measured) -> Claims:
 def _peers(got: Measured) -> Claim:
     off = {}
     for mac in ALLOWED:
-        parts = [
-            abs(s / _closed(mac, n, size) - 1)
-            for size in SIZES
-            for one in (curve(mac, size, got.quick),)
-            for n, s in zip(one.ns, one.mean(got), strict=True)
-        ]
+        parts: list[float] = []
+        for size in SIZES:
+            one = curve(mac, size, got.quick)
+            closed = [_closed(mac, n, size) for n in one.ns]
+            parts += np.abs(one.mean(got) / closed - 1).tolist()
         off[mac] = float(np.mean(parts))
     return Claim(
         "beyond",

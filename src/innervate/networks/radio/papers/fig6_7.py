@@ -42,13 +42,8 @@ def points(quick: bool) -> list[Point]:
 def draw(got: Measured) -> Figure:
     """Above all protocols, logarithmic; below small n, T_D a station."""
     figure, axes = style.panels(style.WIDE_IN, 5.4, 2, 2, height_ratios=(1.25, 1))
-    macs = (
-        "tdma",
-        *reversed(common.PEERS[:-1]),
-        *reversed(common.CONTENDING),
-        common.READING_B,
-        RESERVED,
-    )
+    macs = ("tdma", *reversed(common.PEERS[:-1]), *reversed(common.CONTENDING),
+            common.READING_B, RESERVED)  # fmt: skip
     for above, below, number, size in zip(axes[:2], axes[2:], (6, 7), SIZES, strict=True):
         common.stations_axis(above)
         above.set(yscale="log", xlim=(1.9, 105), title=f"Fig. {number}  T = {size}")
@@ -84,13 +79,11 @@ def judge(got: Measured) -> Claims:
     yield _small(got)
     for size in SIZES:
         yield _crossing(got, size)
-    gains = {
-        size: [
-            curve(mac, size, got.quick).mean(got)[-1] / forms.reserved_duration_slots(100, size)
-            for mac in common.CONTENDING
-        ]
-        for size in SIZES
-    }
+    gains = {}
+    for size in SIZES:
+        ours = forms.reserved_duration_slots(100, size)
+        theirs = [curve(mac, size, got.quick).mean(got)[-1] for mac in common.CONTENDING]
+        gains[size] = [duration / ours for duration in theirs]
     words = (f"T = {s}: " + joined(f"{gain:.2f}" for gain in some) for s, some in gains.items())
     yield Claim(
         "6, 7",

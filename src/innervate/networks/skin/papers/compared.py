@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any
 
 import numpy as np
 
-from innervate import scenario
 from innervate.networks.skin.analysis.rows import broken_changes, parent_changes
 from innervate.networks.skin.papers import warm_up
-from innervate.networks.skin.papers.common import plan_of, seeds_of
-from innervate.networks.skin.sim.simulate import simulate
+from innervate.networks.skin.papers.common import plan_of, seeds_of, simulated
 from innervate.papers import cabled
 from innervate.papers.experiment import Claim, verdict
 from innervate.papers.jobs import (
@@ -73,12 +71,8 @@ def cables(setup: str) -> list[list[str]]:
 
 def cases(quick: bool) -> list[Case]:
     """Every setup, with and without loss, everything that can happen."""
-    return [
-        case(setup, loss, harm, quick)
-        for setup in list(SETUPS)[: 1 if quick else None]
-        for loss in LOSSES
-        for harm in HARMS
-    ]
+    setups = list(SETUPS)[: 1 if quick else None]
+    return [case(*one, quick) for one in product(setups, LOSSES, HARMS)]
 
 
 def case(setup: str, loss: float, harm: str, quick: bool) -> Case:
@@ -112,7 +106,7 @@ def measure(given: Given, seed: int, **protocol: Any) -> dict[str, Any]:
         "timing": {"loss": given["loss"]},
         "event": events,
     }
-    result = simulate(scenario.plan(scenario.from_dict(tables, seed=seed)), checks=False)
+    result = simulated(tables, seed, checks=False)
     number = made.number
     whose = [*(number[name] for name in result.plan.graph.names), 0]
     changes = parent_changes(result)

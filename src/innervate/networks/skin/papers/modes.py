@@ -165,11 +165,8 @@ def _floor(got: Measured, setup: str, cells: int, depth: int) -> Claim:
 
 
 def _sooner(got: Measured) -> Claim:
-    gains = [
-        after_detection(got, setup, k, WAVE) - after_detection(got, setup, k, OFTEN)
-        for setup, *_ in SKINS
-        for k in KS
-    ]
+    gains = [after_detection(got, setup, k, WAVE) - after_detection(got, setup, k, OFTEN)
+             for setup, *_ in SKINS for k in KS]  # fmt: skip
     return Claim(
         "beyond",
         f"wave with M = 1 recovers sooner than with M = min(k, 5) (at least {SOONER_MS.low:g} ms)",

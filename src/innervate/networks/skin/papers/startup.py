@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -42,12 +43,8 @@ def point(setup: str, rule: Rule, lock_step: bool, quick: bool) -> Point:
 
 def points(quick: bool) -> list[Point]:
     """All setups, all rules; in lock-step and free running."""
-    return [
-        point(setup, rule, lock_step, quick)
-        for rule in RULES
-        for setup in SETUPS
-        for lock_step in CLOCKS
-    ]
+    cases = product(RULES, SETUPS, CLOCKS)
+    return [point(setup, rule, lock_step, quick) for rule, setup, lock_step in cases]
 
 
 def measure(setup: str, rule: Rule, lock_step: bool, seed: int) -> dict[str, Any]:

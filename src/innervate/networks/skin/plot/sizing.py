@@ -63,13 +63,9 @@ def _curves(ax: Axes, columns: Columns, name: str, scale: float, limit: float) -
     rates = list(dict.fromkeys(columns["rate_hz"]))
     parts = [columns[f"{name}_{part}"] for part in ("mean", "low", "high")]
     for i, rate in enumerate(rates):
-        rows = [
-            (ports, *(scale * value for value in values))
-            for ports, other, *values in zip(
-                columns["ports"], columns["rate_hz"], *parts, strict=True
-            )
-            if other == rate and None not in values
-        ]
+        some = zip(columns["ports"], columns["rate_hz"], *parts, strict=True)
+        rows = [(ports, *(scale * value for value in values))
+                for ports, of, *values in some if of == rate and None not in values]  # fmt: skip
         if not rows:
             continue
         ports, mean, low, high = zip(*rows, strict=True)
