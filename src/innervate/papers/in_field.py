@@ -168,14 +168,10 @@ def _counted(world: World) -> list[bool]:
 def run_declared(
     kind: str, protocol: Mapping[str, int], inputs: Mapping[bool, Any], world: World
 ) -> dict[str, float | None]:
-    """Run a network that only declares its protocol in a world.
+    """Run a kind of network that only declares its protocol in a world.
 
-    Args:
-        kind: of network.
-        protocol: its parameters.
-        inputs: (kind, item) of what a node is given for a message (False: the item gets `dest`),
-            and for an alarm (True).
-        world: the world.
+    `inputs` are (kind, item) of what a node is given for a message (False: the item gets `dest`),
+    and for an alarm (True).
     """
     network = networks()[kind]
     plan = plan_in(kind, protocol, world)

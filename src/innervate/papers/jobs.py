@@ -180,13 +180,8 @@ class Compared:
     ) -> Claim:
         """The claim that, seed by seed, the first of a pair gives less than the second.
 
-        It holds if in all cases the 95 % interval of the median difference lies below 0.
-
-        Args:
-            where: cases by a word for each.
-            name: of what is measured.
-            pair: ours, the other.
-            words: what is claimed, and why it does not hold where it does not.
+        It holds if in all cases, `where` by a word for each, the 95 % interval of the median
+        difference lies below 0.
         """
         holds, said = True, []
         for word, case in where.items():

@@ -32,13 +32,9 @@ class Film(Drawing):
     def seen(
         self, tag: str, steps: Sequence[Step], content: str | None = None, **attributes: Value
     ) -> None:
-        """An element whose opacity is that of the last step behind, 0 before the first.
+        """An element, as for `add`, whose opacity is that of the last step behind, 0 before.
 
-        Args:
-            tag: of the element.
-            steps: (time, opacity), in order of time.
-            content: text inside.
-            attributes: as for `add`.
+        Steps are (time, opacity), in order of time.
         """
         inner = self._changes("opacity", [(self.low, 0.0), *steps], "discrete")
         last = steps[-1][1] if steps else 0.0

@@ -92,11 +92,7 @@ class SweepPlan:
 
     @cached_property
     def points(self) -> tuple[Point, ...]:
-        """All points in order.
-
-        Raises:
-            SweepError: too many, a key varied twice, or a derived value that cannot be told.
-        """
+        """All points in order; a SweepError if there are too many, or a key is varied twice."""
         keys = self.keys
         twice = [key for key in dict.fromkeys(keys) if keys.count(key) > 1]
         if twice:

@@ -91,11 +91,7 @@ def is_plan(text: str) -> bool:
 
 
 def read(text: str, path: str) -> PlanFile:
-    """The plan in a TOML text; `path` is what errors call it.
-
-    Raises:
-        ScenarioError: an unknown key, a value of the wrong kind, with its line.
-    """
+    """The plan in a TOML text; `path` is what a ScenarioError calls it, with the line."""
     try:
         raw = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -125,11 +121,7 @@ def axes_of(plan: PlanFile, path: str) -> tuple[Axis, ...]:
 
 
 def plots_of(plan: PlanFile, path: str) -> tuple[PlotTable, ...]:
-    """The figures that a plan file asks for, each with a name.
-
-    Raises:
-        SweepError: a heat map without its second axis, or two that would be one file.
-    """
+    """The figures that a plan file asks for, each with a name of its own, or a SweepError."""
     made: dict[str, PlotTable] = {}
     for number, plot in enumerate(plan.plot):
         name = plot.name or f"plot-{number}"
@@ -151,12 +143,9 @@ def together(lists: dict[str, list[Any]], where: str) -> Axis:
 
 
 def listed(value: Any, where: str) -> list[Any]:
-    """The values of a list, or of a text like "2..8" or "a,b".
+    """The values of a list, or of a text like "2..8" or "a,b"; a SweepError if it is neither.
 
     An element { name = "...", value = ... } goes by its name in tables and figures.
-
-    Raises:
-        SweepError: it is neither.
     """
     if isinstance(value, str):
         return [v for part in split(value, ",") for v in values_of(part.strip(), where)]

@@ -56,9 +56,7 @@ class Scheduler:
     """Brings a sweep from where it is to its end.
 
     Args:
-        plan: what is wanted.
-        jobs: what is there.
-        engine: who runs the rest.
+        plan, jobs, engine: what is wanted, what is there, who runs the rest.
         show: measures that somebody wants to see: runs have to have them.
         follow: measures whose values are kept at hand for a display, besides those of `until`.
         progress: called after every batch, with this.

@@ -43,10 +43,7 @@ def _mark(folder: Path, edition: Any) -> str:
 def files_named(made: Scenario, folder: str, varied: Mapping[str, Any]) -> dict[str, str]:
     """The files that a scenario names, and those that it is given in turn: (in words, hash).
 
-    Args:
-        made: the scenario.
-        folder: where relative paths start.
-        varied: the values that it is given, by key.
+    Relative paths start in `folder`; `varied` are the values that it is given, by key.
     """
     whole = texts(tomllib.loads(scenarios.dump(made)))  # with full paths
     paths = [text for text in whole if os.path.isabs(text)]

@@ -33,10 +33,7 @@ Columns = dict[str, list[Any]]
 def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataFrame:
     """One row for every run, by point and repeat.
 
-    Args:
-        plan: of the sweep.
-        jobs: the runs.
-        repeats: how many runs of every point belong to it; those that are missing are left out.
+    `repeats`: how many runs of every point belong to it; those that are missing are left out.
     """
     aside = (*FIRST, *plan.keys, *AFTER)
     columns = _columns(_rows(plan, jobs, repeats), aside)
@@ -151,13 +148,8 @@ def measures(table: polars.DataFrame, keys: Iterable[str]) -> list[str]:
 def points(
     table: polars.DataFrame, plan_points: Sequence[Point], wanted: Sequence[str], level: float
 ) -> polars.DataFrame:
-    """For every point and measure: runs with a value, mean, interval, median, extremes.
-
-    Args:
-        table: the results.
-        plan_points: of the sweep.
-        wanted: which measures.
-        level: of the confidence interval, as a share.
+    """For every point and measure of the results: runs with a value, mean, interval of a level,
+    quantiles, extremes.
     """
     keys = plan_points[0].columns if plan_points else ()
     rows = _of_points(table, plan_points, wanted, level)

@@ -51,9 +51,6 @@ def parse(text: str) -> Axis:
 
     Values are separated by commas, a range is FIRST..LAST or FIRST..LAST..STEP with both ends
     included. Several keys before the "=" take as many values, joined by ":", in every step.
-
-    Raises:
-        SweepError: it cannot be read as that.
     """
     name, equals, rest = text.partition("=")
     where = f"--vary {text[:80]}"

@@ -8,12 +8,7 @@ from innervate.papers.experiment import OURS, Claim, quoted
 
 
 class Sentence(NamedTuple):
-    """A sentence of the document, or a part of one.
-
-    Attributes:
-        section: where it stands.
-        words: as they stand there.
-    """
+    """A sentence of the document, or a part of one: where it stands, and word by word."""
 
     section: str
     words: str

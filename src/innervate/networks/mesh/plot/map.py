@@ -83,15 +83,7 @@ def field_map(
     result: Any, sheet: Sheet, title: str, crossings: Sequence[Crossing] = (),
     alarm: Alarmed = NO_ALARM,
 ) -> Drawing:  # fmt: skip
-    """The field, with the crossings of a run and the way of one alarm.
-
-    Args:
-        result: of `sim.mesh.simulate`.
-        sheet: where nodes lie.
-        title: what a screen reader says of it.
-        crossings: marked and numbered.
-        alarm: whose way is drawn.
-    """
+    """The field, with the crossings of a run, numbered, and the way of one alarm."""
     plan, way, at_us = result.plan, alarm.way, alarm.at_us
     drawing = Drawing(sheet.width, sheet.height, title)
     places = robot_places(plan, sheet, way[0].start_us if way else None)

@@ -85,15 +85,9 @@ def _strips(ax: Axes, found: dict[str, list[int]]) -> None:
 def kept_without_capture(
     ours: Sequence[float], whole: Sequence[float], drawn: Sequence[float]
 ) -> list[bool]:
-    """Where CSMA/CD leads: whether it still does when its winner draws a backoff, too.
+    """At each n at which D2 leads: whether D2', whose winner draws a backoff, too, still does.
 
-    Args:
-        ours: S of CSMA/CD-R, over n.
-        whole: S of D2.
-        drawn: S of D2'.
-
-    Returns:
-        One entry for each n at which D2 leads.
+    Given S over n: of CSMA/CD-R, D2 and D2'.
     """
     return [d > o for o, w, d in zip(ours, whole, drawn, strict=True) if w > o]
 

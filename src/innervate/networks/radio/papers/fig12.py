@@ -139,11 +139,7 @@ def judge(got: Measured) -> Claims:
 def is_similar_but_poorer(found: Any, plain: Any, longer: Any, shorter: Any) -> bool:
     """Poorer at every n, and similar: S above half, rising, and T_D less than twice.
 
-    Args:
-        found: S over n, of the reading.
-        plain: S over n, of the simulation.
-        longer: T_D over n, of the reading.
-        shorter: T_D over n, of the simulation.
+    S over n of the reading and of the simulation, then T_D of both.
     """
     found, plain, longer, shorter = map(np.asarray, (found, plain, longer, shorter))
     poorer = bool((found < plain - 1e-9).all() and (longer > shorter + 1e-9).all())

@@ -145,10 +145,9 @@ def beginning(result: Any, whole: Window) -> Window | None:
 def scene(
     result: Any, from_us: int | None = None, to_us: int | None = None, origin_us: int | None = None
 ) -> Scene:
-    """What is drawn of a run between two moments; by default of its first resolution.
+    """What is drawn of a run between two moments (us of true time); else of its first resolution.
 
-    Raises:
-        ValueError: the window ends before it begins.
+    Slots count from `origin_us`, or the first collision; a window has to end after it begins.
     """
     window = _window(result, from_us, to_us, origin_us)
     on_air = air(result)

@@ -27,17 +27,7 @@ ROW_PX = 22.0
 def timeline(
     result: Any, from_us: int | None = None, to_us: int | None = None, origin_us: int | None = None
 ) -> svg.Drawing:
-    """A run between two moments (us of true time); by default its first resolution.
-
-    Args:
-        result: of `sim.radio.simulate`, with its rows kept.
-        from_us: where it begins.
-        to_us: where it ends.
-        origin_us: the moment that slots are counted from; by default the first collision.
-
-    Raises:
-        ValueError: the window ends before it begins.
-    """
+    """A run between two moments, or its first resolution; see scene()."""
     return draw(scene(result, from_us, to_us, origin_us))
 
 

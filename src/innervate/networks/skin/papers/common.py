@@ -53,12 +53,7 @@ def loaded(
 ) -> Scenario:
     """A bundled skin without its events.
 
-    Args:
-        setup: its name.
-        seed: of the run.
-        duration_s: of the run.
-        more: other keys of the scenario, dotted.
-        protocol: keys of [protocol]; None leaves one as it is.
+    `more` are other keys of the scenario, dotted; of those of [protocol] None leaves one as it is.
     """
     set_ = {f"protocol.{name}": value for name, value in protocol.items() if value is not None}
     changes = {**set_, "event": [], "duration_s": duration_s, **(more or {})}

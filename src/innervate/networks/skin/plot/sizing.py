@@ -38,14 +38,9 @@ def write(answer: Answer, folder: Path) -> Path:
 def draw(
     columns: Columns, graph: Any, limits: tuple[float, float], title: str, what: str = MEANS
 ) -> Figure:
-    """Three panels.
+    """Loss and recovery of the answer's table, and a map of the graph of one number of ports.
 
-    Args:
-        columns: of the answer's table.
-        graph: the cells and cables of the number of ports that is shown.
-        limits: (share lost, ms) that are allowed.
-        title: above the map.
-        what: the curves are.
+    `limits` are the share lost and the ms that are allowed; `what` the curves are.
     """
     with style.house():
         made, (loss, back, cells) = style.panels(style.WIDE_IN, 2.6, 1, 3)
