@@ -121,6 +121,11 @@ def quoted(section: str, words: str) -> str:
     return f'the document, {section}: "{words}"'
 
 
+def beyond(claim: str, measurement: str, verdict: str, reason: str = "") -> Claim:
+    """A claim that the paper does not make."""
+    return Claim("beyond", claim, measurement, verdict, reason)
+
+
 def summary(claims: Sequence[Claim]) -> str:
     """How many claims came out how, the document's and ours apart where they are told apart."""
     mine = [claim for claim in claims if claim.source == OURS]

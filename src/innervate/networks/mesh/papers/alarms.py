@@ -12,7 +12,7 @@ from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.networks.mesh.papers import testbed as beds
-from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, ours, said
+from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
 from innervate.networks.mesh.scenario.profiles import FAST, GOOD_CDB
@@ -231,7 +231,7 @@ def _within(
     )
     why = "" if good else _late(runs["ms"])
     if sentence is None:
-        return ours("beyond", claim, measured, verdict(good), why)
+        return beyond(claim, measured, verdict(good), why)
     readings = ["A3", "A4"] if scheme is ROUTED else []
     return said(sentence, claim, measured, verdict(good, *readings), why)
 
@@ -256,8 +256,7 @@ def _flood(got: Measured) -> Claim:
     (half, late), (half_alone, late_alone) = (
         np.percentile(ms, (50, 99)) for ms in (runs["ms"], alone)
     )
-    return ours(
-        "beyond",
+    return beyond(
         "a flood beside the routed alarm shortens the tail and costs nothing in the median",
         f"{WORST} dead, median / 99 %: {half_alone:.1f} / {late_alone:.1f} ms routed alone, "
         f"{half:.1f} / {late:.1f} ms both; flooded copies "
@@ -274,8 +273,7 @@ def _floor(got: Measured) -> Claim:
     hops, over = runs["hops"][came], runs["overrun_m"][came]
     each = runs["ms"][came] / hops
     sample = 0.02  # m, at 1 m/s and 50 Hz
-    return ours(
-        "beyond",
+    return beyond(
         "what is left is the air: a sample, then a frame and its backoff for every hop (1.5 times)",
         f"{np.median(each):.1f} ms a hop in the median, {hops.mean():.1f} hops, at most "
         f"{hops.max():.0f}; a frame with its turnaround and mean backoff is {air_ms():.1f} ms; of "

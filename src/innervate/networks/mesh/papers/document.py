@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 from innervate.papers.experiment import OURS, Claim, quoted
@@ -55,3 +56,6 @@ def said(sentence: Sentence, claim: str, measurement: str, verdict: str, reason:
 def ours(figure: str, claim: str, measurement: str, verdict: str, reason: str = "") -> Claim:
     """A claim of ours, which the document does not make; beside a section, "beyond" or "asked"."""
     return Claim(figure, claim, measurement, verdict, reason, OURS)
+
+
+beyond = partial(ours, "beyond")

@@ -13,7 +13,7 @@ from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary import connected, looped
 from innervate.networks.mesh.papers import losses
 from innervate.networks.mesh.papers import testbed as beds
-from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, ours, said
+from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, beyond, ours, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options, seeds_of
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
@@ -224,8 +224,7 @@ def _ours(got: Measured, rule: Rule) -> Claim:
     dead = dead_of(got.quick)
     worst = max(lost(got, rule, which, k) for k in dead for which in ("first", "later"))
     what = "alternates, then a search along the path trace" if rule is SEARCH else "the whole graph"
-    return ours(
-        "beyond",
+    return beyond(
         f"{what}: every packet arrives (0.995) while its recipient is connected, without "
         "end-to-end acks",
         f"{dead[0]}..{dead[-1]} dead, at worst {percent(1 - worst, 2)}; {WORST} dead: "
@@ -243,8 +242,7 @@ def _again(got: Measured) -> Claim:
         worse.append(with_ > without + 0.01)
         if worse[-1]:
             why.append(f"{rule.name}: {_how(got, rule, 'later', end=True)}")
-    return ours(
-        "beyond",
+    return beyond(
         "end-to-end acks with up to five retries help every rule, or do no harm (0.01)",
         f"{WORST} dead, later packets without and with: {joined(words)}",
         verdict(not any(worse)),

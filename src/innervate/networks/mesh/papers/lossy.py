@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground, distances
-from innervate.networks.mesh.papers.document import RELIABLE, ours, said
+from innervate.networks.mesh.papers.document import RELIABLE, beyond, ours, said
 from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_TABLE
@@ -166,8 +166,7 @@ def judge(got: Measured) -> Claims:
             yield ours("2.2", "the same after three transmissions without an ack", *row)
     for rule in (PLAIN_SEARCH, PLAIN_GRAPH):
         shares = {k: delivered(got, rule, k) for k in losses(got.quick)}
-        yield ours(
-            "beyond",
+        yield beyond(
             f"{rule.name}: suspicion for 10 s instead, the table stays as it is; all "
             f"messages come at {FIVE} % (0.99), without end-to-end acks",
             joined(f"{k} %: {percent(s, 2)}" for k, s in shares.items()),

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.document import SMALL, ours, said
+from innervate.networks.mesh.papers.document import SMALL, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import TABLES
@@ -239,8 +239,7 @@ def _others(got: Measured, radio: Radio) -> Claim:
     fine = all(one.share < tables.share and one.is_whole for one in others)
     words = [f"{scheme} {percent(size.share, 1)}" + ("" if size.is_whole else f" ({size.short})")
              for scheme, size in at.items()]  # fmt: skip
-    return ours(
-        "beyond",
+    return beyond(
         f"at {radio.profile} the flooded graph and the table-free mode take less of the channel "
         "than tables, at the largest size that has a graph",
         f"N = {n}, all new each round: {joined(words)}",
@@ -258,8 +257,7 @@ def _complete(got: Measured) -> Claim:
                        for size in tried if not size.is_whole]  # fmt: skip
             words += [f"{name}, N = {tried[-1].nodes}: {tried[-1].took}"] * tried[-1].is_whole
             lost += sum(size.unknown for size in tried)
-    return ours(
-        "beyond",
+    return beyond(
         "at every size that was tried everyone gets its table in the end",
         joined([*failed, *words], "; "),
         verdict(not failed),

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
-from innervate.networks.mesh.papers.document import SHORTEST, ours, said
+from innervate.networks.mesh.papers.document import SHORTEST, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.papers import drawing
@@ -165,8 +165,7 @@ def judge(got: Measured) -> Claims:
         )
     found = {degree: shares(got, "list", degree) for degree in some}
     tree = shares(got, "tree", 8)
-    yield ours(
-        "beyond",
+    yield beyond(
         "nearly every entry has an alternate that cannot loop (0.9 at degree 8)",
         joined(
             f"degree {d}: {percent(v[0] + v[1], 1)}, {percent(v[0], 1)} around the next hop, too"

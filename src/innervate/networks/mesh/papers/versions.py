@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, counted, messages
 from innervate.networks.mesh.analysis.summary import looped
-from innervate.networks.mesh.papers.document import ours
+from innervate.networks.mesh.papers.document import beyond, ours
 from innervate.networks.mesh.papers.testbed import MeshTestbed, Options, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_ROUND, REPORT_TABLE
 from innervate.networks.mesh.sim.simulate import simulate
@@ -132,8 +132,7 @@ def judge(got: Measured) -> Claims:
         "nothing to who is in the path, make none to speak of in either",
     )
     best = shares(got, "search, at once", "came")
-    yield ours(
-        "beyond",
+    yield beyond(
         "with the search it hardly matters: 0.99 of all messages come at any of these speeds",
         joined(f"{at}: {percent(one, 2)}" for at, one in zip(places, best, strict=True)),
         verdict(min(best) >= 0.99),

@@ -11,7 +11,7 @@ from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers import common
 from innervate.networks.radio.papers.common import CONTENDING, LOOKS, RESERVED, SIZES, Curve
 from innervate.networks.radio.slotted.model import slotted
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -125,8 +125,7 @@ def judge(got: Measured) -> Claims:
         yield _small(got, size)
     jain = {mac: curve(mac, 5, got.quick).mean(got, "jain_round") for mac in CONTENDING}
     ours = [curve(RESERVED, size, got.quick).mean(got, "jain_round") for size in SIZES]
-    yield Claim(
-        "beyond",
+    yield beyond(
         "CSMA/CD-R serves everybody once a round; capture does not come back",
         "Jain's index over one round at n = 5: CSMA/CD-R 1.00, "
         + joined(f"{common.SHORT[mac]} {of[NS.index(5)]:.2f}" for mac, of in jain.items()),

@@ -27,7 +27,7 @@ from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.plan import RadioPlan
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 from innervate.sim.tables import uniform
@@ -212,8 +212,7 @@ def judge(got: Measured) -> Claims:
     """At each load: below what it has to be below?"""
     runs = [got[one] for one in points(got.quick, ((PRACTICAL, 1), (PRACTICAL, 4)))]
     silent, left = (round(sum(sum(run[name]) for run in runs)) for name in ("silent", "open"))
-    yield Claim(
-        "beyond",
+    yield beyond(
         "with 2 ms the practical mode loses nothing silently at any load",
         f"{sum(len(run['open']) for run in runs)} runs: {silent} lost silently, {left} left over",
         verdict(silent == left == 0),
@@ -249,8 +248,7 @@ def _light(got: Measured, n: int) -> Claim:
             f"floor {perfect_queue(size, 0.1):.1f} for anybody, {at_once(size, n, 0.1):.1f} for "
             f"who sends at once; {spent(got, size, n, 0.1)}"
         )
-    return Claim(
-        "beyond",
+    return beyond(
         f"at 10 % load and {n} stations the mean delay is at most 1.3 times DCF's",
         joined(words, "; "),
         verdict(fine),
@@ -272,8 +270,7 @@ def _below(got: Measured, n: int, load: float, rivals: tuple[str, ...], per_turn
         words.append(f"T = {size}: {ours:.0f} +- {half:.0f} slots, {beside}, "
                      f"floor {floor:.0f}{where}")  # fmt: skip
     turn = "" if per_turn == 1 else f", up to {per_turn} packets a turn and a token,"
-    return Claim(
-        "beyond",
+    return beyond(
         f"at {100 * load:.0f} % load and {n} stations{turn} the mean delay is below "
         + " and ".join(names),
         joined(words, "; "),

@@ -12,7 +12,7 @@ from innervate.networks.radio.papers.common import CONTENDING, LOOKS, MACS, RESE
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.model import slotted
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -157,8 +157,7 @@ def judge(got: Measured) -> Claims:
     )
     paper, practical = (np.mean(got[event(mode, 0, got.quick)]["jain_round"]) for mode in EVENT)
     jains = joined(f"{LOOKS[mac].name} {found[mac]['jain_round']:.2f}" for mac in MACS)
-    yield Claim(
-        "beyond",
+    yield beyond(
         "over one round CSMA/CD-R is fair where contention is not",
         f"Jain's index over one round, n = {N}, T = {SIZE}: {jains}; event level: as "
         f"published {paper:.2f}, practical {practical:.3f}",
@@ -174,8 +173,7 @@ def _tails(got: Measured, delays: dict[str, list[float]]) -> Claim:
     practical = _event_waits(got, "practical")
     tails = {"CSMA/CD-R, slotted": delays[RESERVED], **theirs, "practical": practical}
     words = (f"{name} {' / '.join(f'{x:,.0f}' for x in some)}" for name, some in tails.items())
-    return Claim(
-        "beyond",
+    return beyond(
         "in saturation nobody waits long under CSMA/CD-R",
         f"slots, 50 / 95 / 99 % / longest, of {len(seeds(got.quick))} runs: " + joined(words, "; "),
         verdict(max(delays[RESERVED][3], practical[3]) < min(some[3] for some in theirs.values())),

@@ -17,7 +17,7 @@ from innervate.networks.radio.papers.common import LOOKS, RESERVED, TURNAROUND_U
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -202,8 +202,7 @@ def _medium(got: Measured) -> Claim:
             f"{reading.name} {np.mean(practical['throughput']):.3f} (practical), as "
             f"published {percent(lost)} of the packets lost silently"
         )
-    return Claim(
-        "beyond",
+    return beyond(
         "five robots on the event level: the practical mode loses nothing in any reading",
         f"S, n = 5, saturation: {joined(words, '; ')}",
         verdict(ours == 0),

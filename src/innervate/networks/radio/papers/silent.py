@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from innervate.networks.radio.papers import lanes
 from innervate.networks.radio.papers.common import TAU_US, TURNAROUND_US
 from innervate.networks.radio.papers.medium import START_US, Channel
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -103,8 +103,7 @@ def judge(got: Measured) -> Claims:
     )
     practical = [lost(got, "practical", n, ta) for n in NS for ta in TURNAROUNDS]
     hits, of = map(sum, zip(*practical, strict=True))
-    yield Claim(
-        "beyond",
+    yield beyond(
         "the practical mode loses no packet silently at any turnaround up to 2 ms",
         f"{hits} of {of} packets, n = {joined(NS)}, turnaround 0 to 2 ms",
         verdict(hits == 0),

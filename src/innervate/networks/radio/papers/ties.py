@@ -11,7 +11,7 @@ from innervate.networks.radio.papers import lanes
 from innervate.networks.radio.papers.common import TAU_US, Options
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.drive import SLOT
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -165,8 +165,7 @@ def _apart(got: Measured) -> Claims:
     )
     two, short, ten, dilated = (got[one]["throughput"][0] for one in variants(got.quick))
     five, of = ordered(got, STRETCHED, 5)
-    yield Claim(
-        "beyond",
+    yield beyond(
         "two small changes help: a window of 2 slots for two stations, T_c stretched over the "
         "window for ten",
         f"S at T = 25, n = 2: {two:.3f}, short window {short:.3f}; n = 10: "

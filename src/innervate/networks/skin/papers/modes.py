@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from innervate.analysis.intervals import mean_interval
 from innervate.networks.skin.papers import steady
 from innervate.networks.skin.papers.common import Case, number, seeds_of
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -121,8 +121,7 @@ def judge(got: Measured) -> Claims:
     for setup, cells, _, bar in SKINS:
         found = time_ms(got, setup, 3, WAVE)
         mean = mean_interval(found.tolist())
-        yield Claim(
-            "beyond",
+        yield beyond(
             f"wave, 250 Hz, k = 3, {cells} cells: all routed again in {bar:g} ms on the mean "
             "(asked for)",
             f"{mean.value:.2f} ms (95 % interval {mean.low:.2f} to {mean.high:.2f}, worst "
@@ -134,8 +133,7 @@ def judge(got: Measured) -> Claims:
         yield _floor(got, setup, cells, depth)
     for setup, cells, *_ in SKINS:
         means = {mode: float(time_ms(got, setup, 3, mode).mean()) for mode in MODES}
-        yield Claim(
-            "beyond",
+        yield beyond(
             f"{cells} cells, k = 3: triggered is faster than periodic, wave faster than both",
             joined(f"{mode.name} {ms:.1f} ms" for mode, ms in means.items()),
             verdict(means[PERIODIC] > means[TRIGGERED] > means[WAVE]),
@@ -151,8 +149,7 @@ def _floor(got: Measured, setup: str, cells: int, depth: int) -> Claim:
     words = joined(
         f"{mode.name}: detection + {min(ms):.2f} to {max(ms):.2f} ms" for mode, ms in above.items()
     )
-    return Claim(
-        "beyond",
+    return beyond(
         f"wave, {cells} cells: within 2 ms of the floor, which is detection (k periods) and "
         f"{least:.1f} ms of latency out and back",
         f"{words}, k {joined(KS)}",
@@ -167,8 +164,7 @@ def _floor(got: Measured, setup: str, cells: int, depth: int) -> Claim:
 def _sooner(got: Measured) -> Claim:
     gains = [after_detection(got, setup, k, WAVE) - after_detection(got, setup, k, OFTEN)
              for setup, *_ in SKINS for k in KS]  # fmt: skip
-    return Claim(
-        "beyond",
+    return beyond(
         f"wave with M = 1 recovers sooner than with M = min(k, 5) (at least {SOONER_MS.low:g} ms)",
         f"{min(gains):+.2f} to {max(gains):+.2f} ms sooner, k {joined(KS)}, 99 and 204 cells",
         verdict(SOONER_MS.has(min(gains))),

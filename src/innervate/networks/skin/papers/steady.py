@@ -10,7 +10,7 @@ from innervate import scenario
 from innervate.networks.skin.papers.common import SILENT, loaded, seeds_of
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import NONE
-from innervate.papers.experiment import Claim, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Measured, Point, Span, beyond, verdict
 from innervate.papers.words import joined
 
 HZ = 250
@@ -88,8 +88,7 @@ def judge(setup: str, cells: int, got: Measured) -> Claim:
         number = f"M = {variant.m}" if variant.m else "M = 3"
         words.append(f"{variant.rule} {variant.updates} {number}: {after_start}, {after_cut}")
     wave = np.array(got[point(setup, WAVE, got.quick)])
-    return Claim(
-        "beyond",
+    return beyond(
         f"wave with M = 1 leaves no cell on a longer way, {cells} cells (E26)",
         f"skins of {len(wave)} with a longer way {LOOKS[0]} periods after start-up, after the cut: "
         + joined(words),
