@@ -17,13 +17,7 @@ TOP = 34.0
 LINE = 15.0
 LETTERS = 119
 DISC_LETTERS, WORD = 4, 9.0  # of a node's disc: letters that fit side by side, a row of a word
-STYLE = """
-.node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
-.actor{stroke:var(--accent);stroke-width:2.6}
-.pc{fill:var(--ink)}
-.way{stroke:var(--link);stroke-width:2.4;fill:none;stroke-linecap:round}
-.ring{stroke:var(--alarm);stroke-width:3.2;fill:none;stroke-linecap:round}
-"""
+STYLE = "\n" + Path(__file__).with_name("panels.css").read_text(encoding="utf-8")
 
 
 def page(title: str, panels: Sequence[Drawing], sentences: Sequence[str]) -> Drawing:

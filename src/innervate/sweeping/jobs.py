@@ -21,17 +21,7 @@ from innervate.sweeping.work import Outcome
 
 SCHEMA = 1
 FILE = "jobs.sqlite"
-_TABLES = """
-CREATE TABLE IF NOT EXISTS meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS places (id INTEGER PRIMARY KEY, facts TEXT UNIQUE NOT NULL);
-CREATE TABLE IF NOT EXISTS runs (
-    point TEXT NOT NULL, repeat INTEGER NOT NULL, seed INTEGER NOT NULL,
-    state TEXT NOT NULL CHECK (state IN ('done', 'failed')),
-    figures TEXT, reason TEXT NOT NULL,
-    wall_s REAL NOT NULL, began_s REAL NOT NULL, place INTEGER NOT NULL REFERENCES places (id),
-    PRIMARY KEY (point, repeat)
-) WITHOUT ROWID;
-"""
+_TABLES = Path(__file__).with_name("jobs.sql").read_text(encoding="utf-8")
 _INSERT = "INSERT OR IGNORE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"
 _DELETE = "DELETE FROM runs WHERE point = ? AND repeat = ?"
 
