@@ -99,6 +99,14 @@ def kill(plan: MeshPlan, nodes: Sequence[int], at_us: int) -> None:
     plan.faults.sort(key=lambda fault: fault.at_us)
 
 
+def correspondents(seed: int, nodes: Sequence[int]) -> dict[int, int]:
+    """Whom every node writes to, always the same one; they write in the order of the keys."""
+    draw = stream(seed, "papers/senders")
+    left = list(nodes)
+    order = [left.pop(draw.draw(len(left))) for _ in nodes]
+    return {node: [n for n in nodes if n != node][draw.draw(len(nodes) - 1)] for node in order}
+
+
 def send_rounds(
     plan: MeshPlan, nodes: Sequence[int], rounds: int, since_us: int, every_us: int
 ) -> None:
@@ -106,15 +114,11 @@ def send_rounds(
 
     Sources follow each other in an order that is drawn, over three quarters of a round.
     """
-    draw = stream(plan.seed, "papers/senders")
-    left = list(nodes)
-    order = [left.pop(draw.draw(len(left))) for _ in nodes]
-    to = {node: [one for one in nodes if one != node][draw.draw(len(nodes) - 1)] for node in order}
-    gap_us = every_us * 3 // (4 * len(order))
+    to, gap_us = correspondents(plan.seed, nodes), every_us * 3 // (4 * len(nodes))
     plan.offers += [
         Offer(since_us + k * every_us + i * gap_us, node, to[node], _flags(plan), BYTES, k)
         for k in range(rounds)
-        for i, node in enumerate(order)
+        for i, node in enumerate(to)
     ]
     plan.offers.sort(key=lambda offer: offer.at_us)
 
