@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from math import inf
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 HOLDS = "holds"
 FAILS = "does not hold"
 OURS = "ours"
+T = TypeVar("T")
 
 # Results of points by their keys: whatever JSON can hold.
 Results = Mapping[str, Any]
@@ -64,6 +65,11 @@ def columns(measure: Callable[..., Any], case: Sequence[Any], seeds: Sequence[in
     if not isinstance(rows[0], dict):
         return rows
     return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def sized(quick: T, full: T) -> Callable[[bool], T]:
+    """What figures take in their small and their full size, as a function of `quick`."""
+    return lambda is_quick: quick if is_quick else full
 
 
 @dataclass(frozen=True, slots=True)

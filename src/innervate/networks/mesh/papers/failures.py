@@ -17,7 +17,7 @@ from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, bey
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options, seeds_of
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -34,6 +34,7 @@ EVERY_US = 2_000_000
 QUIET: Options = (("period_s", 60.0), ("period_max_s", 60.0))
 DURATION_S = (DEATHS_US + ROUNDS * EVERY_US) / 1e6 + 2.5
 WORST = 8
+dead_of = sized((0, 4, 8), tuple(range(9)))  # numbers of nodes that die, one point each
 
 
 class Rule(NamedTuple):
@@ -85,11 +86,6 @@ def share(runs: dict[str, Any], which: str) -> tuple[int, int]:
 
 ORIGIN = Rule("random, not the origin", (("failover", "random"), ("avoid", "origin")))
 NAMES = {"document": "the document to the letter"}
-
-
-def dead_of(quick: bool) -> tuple[int, ...]:
-    """Numbers of nodes that die, one point each."""
-    return (0, 4, 8) if quick else tuple(range(9))
 
 
 def point(rule: Rule, dead: int, quick: bool, end: bool = False) -> Point:

@@ -16,7 +16,7 @@ from innervate.networks.mesh.protocol.constants import REPORT_TABLE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.sim.tables import get
@@ -31,15 +31,11 @@ FIVE = 5
 FROM_S, UNTIL_S, BIN_S = 8, 68, 5
 EVERY_S = 2  # one message from everyone, to somebody drawn anew
 NONE = 255
+losses = sized((0, 5), (0, 1, 2, 5, 10, 20))  # shares of frames lost, in percent
 THREE = Rule("document, three transmissions", (*DOCUMENT.protocol[:-1], ("transmissions", 3)))
 PLAIN_SEARCH = Rule("search", (*SEARCH.protocol, ("reliable", False)))
 PLAIN_GRAPH = Rule("graph", (*GRAPH.protocol, ("reliable", False)))
 RULES = (DOCUMENT, THREE, PLAIN_SEARCH, PLAIN_GRAPH)
-
-
-def losses(quick: bool) -> tuple[int, ...]:
-    """Shares of frames lost, in percent."""
-    return (0, 5) if quick else (0, 1, 2, 5, 10, 20)
 
 
 def point(rule: Rule, loss: int, quick: bool) -> Point:

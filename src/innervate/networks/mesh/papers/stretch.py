@@ -13,7 +13,7 @@ from innervate.networks.mesh.papers.document import SHORTEST, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.topology.placement import good_links, neighbours
@@ -27,11 +27,7 @@ CAPTION = (
 READINGS = ("tree", "each", "list")
 KINDS = ("around the next hop, too", "free of loops", "last resort", "none")
 FILLS = (style.BLUE, style.SKY, style.ORANGE, style.FAINT)
-
-
-def degrees(quick: bool) -> tuple[int, ...]:
-    """Mean degrees of the networks tried."""
-    return (6, 8) if quick else (5, 6, 8, 10, 12)
+degrees = sized((6, 8), (5, 6, 8, 10, 12))  # mean degrees of the networks
 
 
 def point(reading: str, degree: int, quick: bool) -> Point:

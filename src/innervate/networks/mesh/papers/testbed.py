@@ -10,23 +10,19 @@ from innervate import scenario as scenarios
 from innervate.networks.mesh.protocol.constants import END_TO_END
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan, Offer
 from innervate.networks.mesh.sim.simulate import MeshResult, simulate
-from innervate.papers.experiment import Point
+from innervate.papers.experiment import Point, sized
 from innervate.scenario.actions.field import KILL
 from innervate.trace.streams import stream
 
 Options = tuple[tuple[str, Any], ...]
 GATEWAY = 0
 BYTES = 16  # of a message
+seeds_of = sized(range(1, 5), range(1, 31))  # each of one network
 # The document to the letter: one transmission, another neighbour for the next packet, no second
 # try from end to end.
 LITERAL: Options = (
     ("failover", "random"), ("retry", False), ("reliable", False), ("transmissions", 1),
 )  # fmt: skip
-
-
-def seeds_of(quick: bool) -> range:
-    """Seeds, each of one network."""
-    return range(1, 5 if quick else 31)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from innervate.networks.mesh.papers.testbed import MeshTestbed, Options, send_an
 from innervate.networks.mesh.protocol.constants import REPORT_ROUND, REPORT_TABLE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -26,6 +26,7 @@ CAPTION = (
 )
 ROBOTS = 15
 FROM_S, UNTIL_S, EVERY_S = 8, 108, 1
+speeds = sized((0.5, 2.0), (0.1, 0.5, 1.0, 2.0))  # of robots, metres a second
 TWO: Options = (("activation", True),)
 # Alternates alone, and the document's rule with three transmissions, which takes no notice of
 # where a packet has been: a search would find its way by any table.
@@ -39,11 +40,6 @@ SCHEMES: dict[str, Options] = {
     "random, two phases": (*RANDOM, *TWO),
     "search, at once": SEARCH,
 }
-
-
-def speeds(quick: bool) -> tuple[float, ...]:
-    """Speeds of robots, metres a second."""
-    return (0.5, 2.0) if quick else (0.1, 0.5, 1.0, 2.0)
 
 
 def point(scheme: str, speed: float, quick: bool) -> Point:

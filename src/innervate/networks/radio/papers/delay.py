@@ -27,7 +27,7 @@ from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.plan import RadioPlan
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 from innervate.sim.tables import uniform
@@ -42,6 +42,7 @@ CAPTION = (
 STATIONS = (5, 20)
 BARS = (0.1, 0.3, 0.6, 0.9)  # loads that are judged
 LOADS = (0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9)
+loads = sized(BARS, LOADS)  # shares of the channel
 PRACTICAL, DCF, TDMA, RING, POLLING = "practical", "dcf", "tdma", "token-ring", "polling"
 DCF_ANSWERS = "dcf, answering"  # the answer takes the turnaround, there and back
 NEAR_DCF = 1.3  # times DCF's delay at a tenth of the load
@@ -123,11 +124,6 @@ def point(who: tuple[str, int], size: int, n: int, load: float, quick: bool) -> 
     packets, seeds = (600, range(1, 3)) if quick else (3000, range(1, 6))
     offered = Offered(*who, size, n, load, packets)
     return Point.each(str(offered), 3e-4 * packets, seeds, offered.measure)
-
-
-def loads(quick: bool) -> tuple[float, ...]:
-    """Offered loads, as shares of the channel."""
-    return BARS if quick else LOADS
 
 
 def points(quick: bool, of: tuple[tuple[str, int], ...] = tuple(LOOKS)) -> list[Point]:

@@ -12,7 +12,7 @@ from innervate.networks.radio.papers.common import CONTENDING, LOOKS, MACS, RESE
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.model import slotted
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -22,22 +22,14 @@ CAPTION = (
     "arrivals, from the offer to the end of the packet. Event level: means of the runs."
 )
 N, SIZE = 10, 25
+seeds = sized(range(1, 4), range(1, 11))  # of the runs of each protocol
+packets = sized(300, 1000)  # of a station in a run
 LOADS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 LIGHT = ("csma-cd-d1", "csma-cd-d2", RESERVED)
 SHARES = (50, 95, 99)
 FILLS = (style.INK, style.SOFT, style.FAINT, style.INK)
 WAITS = ("50 %", "95 %", "99 %", "longest")
 EVENT = {"paper": "CSMA/CD-R, event level", "practical": "practical mode, event level"}
-
-
-def seeds(quick: bool) -> range:
-    """Seeds of the runs of each protocol: 10, or 3 if `quick`."""
-    return range(1, 4 if quick else 11)
-
-
-def packets(quick: bool) -> int:
-    """Packets of a station in a run."""
-    return 300 if quick else 1000
 
 
 def points(quick: bool) -> list[Point]:

@@ -18,7 +18,7 @@ from innervate.networks.radio.papers.common import LOOKS, RESERVED, SIZES, TAU_U
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Measured, Point, beyond, verdict
+from innervate.papers.experiment import Claim, Measured, Point, beyond, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -28,6 +28,7 @@ RETURNS = (("", None), (", back at once", 0.0))
 WITH_RETURN = ("csma-cd-d2", "csma-cd-d2p")
 QUICK = (2, 3, 4, 5, 10, 20, 50, 100)
 FULL = (2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 70, 80, 90, 100)
+ns = sized(QUICK, FULL)  # numbers of stations, ascending, one place of a curve each
 TRAFFIC = ("saturated", "disaster")
 
 
@@ -41,11 +42,6 @@ class Setting(NamedTuple):
     def slots(self) -> float:
         """The turnaround in slots, not always a whole number."""
         return self.ta_us / SLOT
-
-
-def ns(quick: bool) -> tuple[int, ...]:
-    """Numbers of stations, ascending, one place of a curve each."""
-    return QUICK if quick else FULL
 
 
 def saturated(setting: Setting, size: int, quick: bool) -> list[Point]:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.skin.papers.common import RULES, Rule, rule_panels, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -25,11 +25,7 @@ KS = (2, 3, 5)
 K = 2  # the paper gives none; the least that tolerates one lost beacon
 PRINTED = (("Abstract", 50.0), ("IV", 40.0))
 ALL = Span(1.0, 1.0)  # share of the recoveries
-
-
-def seeds(quick: bool) -> range:
-    """Seeds of the recoveries of each setting: 40, or 6 if `quick`."""
-    return seeds_of(6 if quick else 40)
+seeds = sized(seeds_of(6), seeds_of(40))  # of the recoveries of each setting
 
 
 def points(quick: bool) -> list[Point]:

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import parent_changes
 from innervate.networks.skin.papers.common import seeds_of, simulated
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -65,11 +65,7 @@ CASES: dict[str, tuple[int, bool, bool]] = {
     "free running, M = 1": (1, False, False),
     "line of depth 4, free running": (1, False, True),
 }
-
-
-def ks(quick: bool) -> tuple[int, ...]:
-    """The k of the sweep."""
-    return (2, 5, 8) if quick else tuple(range(2, 9))
+ks = sized((2, 5, 8), tuple(range(2, 9)))  # the k of the sweep
 
 
 def runs(name: str, k: int, quick: bool) -> Point:

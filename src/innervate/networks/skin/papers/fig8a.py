@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.papers.common import RULES, Case, Rule, mean_of, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -40,11 +40,10 @@ class Grid:
     seeds: range
 
 
-def grid(quick: bool) -> Grid:
-    """The sweep of the paper, or a thin one."""
-    if quick:
-        return Grid((10, 250), BAR_K, seeds_of(6))
-    return Grid((10, 20, 50, 100, 150, 200, 250), tuple(range(2, 9)), seeds_of(40))
+grid = sized(
+    Grid((10, 250), BAR_K, seeds_of(6)),
+    Grid((10, 20, 50, 100, 150, 200, 250), tuple(range(2, 9)), seeds_of(40)),
+)
 
 
 def points(quick: bool) -> list[Point]:

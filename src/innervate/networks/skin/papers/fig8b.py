@@ -14,7 +14,7 @@ from innervate.networks.skin.papers import common
 from innervate.networks.skin.papers.common import RULES, Case, Rule, number, seeds_of
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -33,11 +33,7 @@ WIDE = Case("setup-2", HZ, 3)
 INSIDE = Span(0.95, 1.0)  # share of the recoveries in the band
 SLOPE = Span(0.4, 0.6)  # periods a cell
 FIT = Span(0.8, 1.0)  # R2 of the line
-
-
-def seeds(quick: bool) -> range:
-    """How many recoveries a setting."""
-    return seeds_of(8 if quick else 40)
+seeds = sized(seeds_of(8), seeds_of(40))  # of the recoveries of each setting
 
 
 def last(quick: bool) -> Point:
