@@ -4,8 +4,6 @@ Results are stored one by one in `results.jsonl` of the output folder. A second 
 is missing: after an interrupt, for other figures, or when the sources have changed.
 """
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Callable, Iterable, Sequence

@@ -6,8 +6,6 @@ Whoever does the job builds its own scenario of it, runs it with the moment and 
 `drawn`, and hands `measured` what its nodes said.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """The comparison as a book: a figure, tables and claims for every job that a network sets."""
 
-from __future__ import annotations
-
 from functools import partial
 from textwrap import fill
 from typing import Any

@@ -1,7 +1,5 @@
 """What figures are drawn with: looks of series, bands, logarithmic axes, legends outside."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 

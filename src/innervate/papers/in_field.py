@@ -5,8 +5,6 @@ hears whom, who dies when, who sends what to whom. Networks that only declare th
 it by `run_declared`; one of its own loop runs as it likes, and says what came when.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module

@@ -1,7 +1,5 @@
 """A paper's outputs besides its figures: the table as CSV and Markdown, one page with all of it."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import io

@@ -1,7 +1,5 @@
 """The report of a run of any network: headline, figures to know, graph, reports over time."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Collection, Mapping
 from html import escape

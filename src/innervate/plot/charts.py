@@ -1,7 +1,5 @@
 """Line charts with marked moments, and bars: what is shown, and as what drawing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

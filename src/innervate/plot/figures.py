@@ -1,7 +1,5 @@
 """Figures of a run of any network, for `Run.plot`: delivered, latency."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from textwrap import wrap
 from typing import Any

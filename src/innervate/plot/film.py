@@ -3,8 +3,6 @@
 Where nothing can move, on paper for example, a film shows its last moment.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from innervate.plot.svg import Drawing, Value, clean, number, opening

@@ -1,7 +1,5 @@
 """What a scenario did to a network that has no words of its own for it, in words."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.network import networks

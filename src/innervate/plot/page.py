@@ -1,7 +1,5 @@
 """The HTML of a report: skeleton, style sheet and small parts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path

@@ -4,8 +4,6 @@ It knows what `svg.Drawing` writes: paths of straight lines and half circles, li
 rectangles, texts and drawings inside; their classes look as in the light style sheet.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """A counterexample as a page of panels: the network after each event, the sentences below."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

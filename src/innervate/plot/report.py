@@ -1,7 +1,5 @@
 """A run's report: one HTML file that needs nothing else, for a browser, a phone or paper."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from html import escape
 from typing import Any

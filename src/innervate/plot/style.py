@@ -4,8 +4,6 @@ Figures are made without pyplot, so that they may be drawn in any thread and lea
 Series differ by marker or dash as well as by colour.
 """
 
-from __future__ import annotations
-
 import io
 import os
 from collections.abc import Iterator

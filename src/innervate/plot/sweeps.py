@@ -1,7 +1,5 @@
 """Figures of a sweep: means over a setting with bands, runs as dots, heat maps."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence

@@ -4,8 +4,6 @@ Categories are the hues of Okabe and Ito, which stay apart for colour-blind read
 shown by a shape or a word as well.
 """
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Values that follow from others: arithmetic over scenario keys, `2 + 100 / protocol.beacon_hz`."""
 
-from __future__ import annotations
-
 import ast
 import math
 import operator

@@ -3,8 +3,6 @@
 All are executors of the standard library's kind, behind one function, `engine()`.
 """
 
-from __future__ import annotations
-
 import logging
 import math
 import multiprocessing

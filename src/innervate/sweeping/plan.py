@@ -4,8 +4,6 @@ A point is known by its settings, not by its number, and so are its seeds: point
 are added later change nothing for those that were there.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

@@ -27,8 +27,6 @@ by = "protocol.beacon_hz"
 ```
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What runs of a sweep come from besides its plan: innervate, a network's folder, files named."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import tomllib

@@ -1,7 +1,5 @@
 """sweep(scenario, vary=...) -> Sweep: plan, run what is missing, write the tables."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -4,8 +4,6 @@ Decided on the first 1, 2, 3, ... batches of repeats in order of repeat, never o
 be ready first, so that it is the same on any number of processes.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

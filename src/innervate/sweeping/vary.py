@@ -4,8 +4,6 @@
 which both keys change together.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable

@@ -3,8 +3,6 @@
 Nothing here loads polars, whose threads do not outlive the fork that worker processes come from.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 """Sections 2.1 and 2.2: how soon the monitor knows of a crossing, and how far the robot got."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What was asked for, in one table: thirty nodes, eight neighbours in the mean, 250 kbit/s."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The mesh's job beside other protocols: messages between any two, deaths, alarms, a dead root."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """The document's sentences that claims quote, word by word; every other claim is one of ours."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import NamedTuple
 

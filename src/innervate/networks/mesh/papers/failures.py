@@ -1,7 +1,5 @@
 """Section 2.2: nodes die, and their neighbours replace them; every rule of replacing."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The gateway dies: what is lost without a standby, and how soon all have tables of one."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Section 2.2: frames get lost, nobody dies; what a rule that takes loss for death does."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Section 1.1: how much of the network a discovery round finds, by reading and by jitter."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Section 1: "not scalable, but sufficient for small networks": up to how many nodes?"""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Section 2.1: are the tables' ways the shortest, and how often is there another next hop?"""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The testbed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

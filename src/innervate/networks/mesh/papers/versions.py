@@ -1,7 +1,5 @@
 """Section 1.1: tables of two versions at the same time; robots move meanwhile."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Charts of a mesh: latency, delivery over time, alarms, airtime."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

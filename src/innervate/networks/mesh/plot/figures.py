@@ -1,7 +1,5 @@
 """Figures of a mesh run, for `Run.plot`: field, latency, delivery, alarms."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

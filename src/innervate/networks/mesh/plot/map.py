@@ -1,7 +1,5 @@
 """The field of a mesh as SVG: nodes, links, fence, robots, and the way an alarm took."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple
 

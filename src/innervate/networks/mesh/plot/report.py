@@ -1,7 +1,5 @@
 """The part of a report that is about meshes."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from functools import partial

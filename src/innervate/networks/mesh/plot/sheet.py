@@ -1,7 +1,5 @@
 """Where the nodes of a mesh lie on a drawing, and where there is room for their names."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """F3: CSMA/CD's advantage with few stations is capture: one station has the channel."""
 
-from __future__ import annotations
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """What the figures of the radio paper share: runs of the slotted level, looks of curves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple

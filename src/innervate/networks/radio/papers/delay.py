@@ -8,8 +8,6 @@ mode's windows and pulses, DCF's two slots (its receivers would have to switch, 
 `DCF_ANSWERS` keeps that free), nothing with TDMA, a token ring and polling, whose senders are told.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import product
 

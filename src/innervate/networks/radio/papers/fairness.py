@@ -1,7 +1,5 @@
 """Fairness and delay: who has to wait how long, in saturation and under light load."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Whatever T contains, a radio that sends a CR-R switches for it, too: X2, in whic
 packet hold its switching, therefore gives the CR-Rs the paper's 20 slots as well.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figs. 4 and 5: throughput S in saturation over n, T = 5 and 25; all protocols beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

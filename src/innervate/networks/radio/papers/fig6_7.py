@@ -1,7 +1,5 @@
 """Figs. 6 and 7: how long a disaster takes, T_D over n, T = 5 and 25; all protocols beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

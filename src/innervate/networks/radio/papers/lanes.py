@@ -1,7 +1,5 @@
 """Stretches of event-level runs as plain numbers, and their drawing: a lane a station."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Runs of CSMA/CD-R on the event level: frames of microseconds, half-duplex radios [radio 3]."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

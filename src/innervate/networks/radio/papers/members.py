@@ -1,7 +1,5 @@
 """Robots that come and go at any moment of a resolution, and whether it matters who they are."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Beyond the paper: the practical mode on the event level against the paper's slotted level."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -4,8 +4,6 @@ CSMA/CD stays on the slotted level, where everybody knows of every collision for
 turnaround it is given the better of two lengths of a backoff slot.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

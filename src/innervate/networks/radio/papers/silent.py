@@ -1,7 +1,5 @@
 """F2: with 2 ms to switch, stations do not hear the collision that they are part of."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes

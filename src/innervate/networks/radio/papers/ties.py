@@ -1,7 +1,5 @@
 """F1: with carrier sense and packets of one length the ends are a tie: who can be put in order?"""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes

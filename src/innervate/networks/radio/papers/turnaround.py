@@ -1,7 +1,5 @@
 """Beyond the paper: the same with 2 ms to switch, against CSMA/CD with the same turnaround."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from innervate.networks.radio.analysis import formulas as forms

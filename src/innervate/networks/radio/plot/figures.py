@@ -1,7 +1,5 @@
 """Figures of a radio run, for `Run.plot`: timeline, delay, fairness, throughput."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """A stretch of a radio run as it is drawn, by SVG or matplotlib: boxes, what was heard, marks."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 

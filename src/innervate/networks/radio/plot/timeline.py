@@ -4,8 +4,6 @@ One lane a station, as in Fig. 1 of the paper: boxes for frames, below them CD a
 station hears them, grey where its radio cannot listen. With many stations boxes alone.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.radio.plot.scene import DONE, FAILED, NOTICED, Box, Note, Scene, scene

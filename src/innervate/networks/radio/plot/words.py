@@ -3,8 +3,6 @@
 A protocol whose frames or reports mean something else than the others' adds an entry to a table.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

@@ -6,8 +6,6 @@ damper (admittance). A cell that is not heard any more keeps its last value, as 
 knows nothing of the network.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Abstract and conclusion: a recovery takes at most 50 ms, or 40 ms, at 250 Hz."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The skin's job, and the skin at it: cells that want to reach the PC while cables fail."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from itertools import groupby, product

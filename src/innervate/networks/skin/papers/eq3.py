@@ -1,7 +1,5 @@
 """II-B.4, Eq. 3: how often cells may balance; and Algorithm 3 as printed."""
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import chain
 from typing import Any, NamedTuple

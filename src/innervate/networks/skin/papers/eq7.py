@@ -1,7 +1,5 @@
 """Eq. 7: convergence of any single failure, random cables and all interface cables, setups 1-8."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

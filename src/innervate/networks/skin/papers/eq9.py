@@ -1,7 +1,5 @@
 """Eq. 9: bandwidth of beacons. The printed numbers are ten times too high (E28)."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Fig. 10: balance factor and data loss of setups 5-7, static tree against the dynamic protocol."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

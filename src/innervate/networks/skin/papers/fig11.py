@@ -1,7 +1,5 @@
 """Fig. 11: a controlled arm whose skin loses a cable; 20 Hz beacons, k = 8."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

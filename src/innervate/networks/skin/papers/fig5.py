@@ -5,8 +5,6 @@ that shows them is this: n1 carries an interface; n2 and n3 hang on n1, n4 on n3
 longer ways to the second interface.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes

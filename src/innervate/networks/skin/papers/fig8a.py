@@ -1,7 +1,5 @@
 """Fig. 8a: convergence of setup 1 over beacon frequency and k, against Eq. 4 and its band Eq. 5."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

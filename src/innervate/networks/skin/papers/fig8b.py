@@ -1,7 +1,5 @@
 """Fig. 8b: convergence over the distance between the interface ports, setups 1-4, against Eq. 6."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any
 

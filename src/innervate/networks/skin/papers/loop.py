@@ -1,7 +1,5 @@
 """Erratum E25: the printed rule closes forwarding loops: one as a picture, and how many."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ A cell cannot act before the cut is detected, k periods on the mean. What comes 
 to the border of the cut-off part and a route back; its floor is the hops' latency alone.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

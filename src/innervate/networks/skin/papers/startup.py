@@ -1,7 +1,5 @@
 """II-B.1: after switching on, all cells know a way to the PC within max(H) periods."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Do routes settle on shortest ways? Which rule and M leave cells on longer ones (E26)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Maps of skins too large to draw cell by cell: squares that stand for many cells."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

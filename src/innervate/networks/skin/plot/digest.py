@@ -1,7 +1,5 @@
 """Which moments of a run are worth a picture, and the pictures."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Figures of one run, for `Run.plot`: recovery, routes, loads, received."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A skin at any moment of a run, put together again from the run's rows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Maps of a skin: cells as hexagons, links to parents, interface ports, cut cables, touch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The part of a report that is about skins."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Where the cells and interface ports of a skin lie on a drawing."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

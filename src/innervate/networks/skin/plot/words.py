@@ -1,7 +1,5 @@
 """Events of a skin and what came of them, in plain words."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 
