@@ -132,7 +132,7 @@ def books() -> list[str]:
 
 
 def book_of(system: str) -> Any:
-    """What a book is made of: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up."""
+    """TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up of a book; a PapersError if none."""
     known = books()
     if system not in known:
         raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(known)}')
