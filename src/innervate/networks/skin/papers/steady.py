@@ -26,10 +26,9 @@ class Variant(NamedTuple):
     m: int
 
 
-PAPER = Variant("paper", "periodic", 1)
 WAVE = Variant("feasible", "wave", 1)
 VARIANTS = (
-    PAPER,
+    Variant("paper", "periodic", 1),
     Variant("paper-lax", "periodic", 1),
     Variant("feasible", "periodic", 1),
     Variant("feasible", "periodic", 0),
