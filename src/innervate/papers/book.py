@@ -27,18 +27,13 @@ COMPARE = "compare"  # the book of comparisons, which is no network's
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """How far the work is.
+    """How far the work is."""
 
-    Attributes:
-        done, total: pieces of work; `total` counts only those that had to be run.
-        what: what is being done, in words.
-        left_s: about how long it will take from here; None while nobody can know.
-    """
-
+    # done, total: pieces of work; `total` counts only those that had to be run
     done: int
     total: int
-    what: str
-    left_s: float | None
+    what: str  # what is being done, in words
+    left_s: float | None  # about how long it will take from here; None while nobody can know
 
 
 Progress = Callable[[Step], None]

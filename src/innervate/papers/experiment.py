@@ -23,17 +23,11 @@ Results = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One piece of work whose result is kept.
+    """One piece of work whose result is kept."""
 
-    Attributes:
-        key: says everything that decides the result; equal keys are run once.
-        work: runs it; what it returns is plain numbers, texts, lists and dicts.
-        cost_s: about how long that takes, for the time left.
-    """
-
-    key: str
-    work: Callable[[], Any]
-    cost_s: float = 0.5
+    key: str  # says everything that decides the result; equal keys are run once
+    work: Callable[[], Any]  # runs it; what it returns is plain numbers, texts, lists and dicts
+    cost_s: float = 0.5  # about how long that takes, for the time left
 
     @classmethod
     def of(cls, key: str, cost_s: float, work: Callable[..., Any], *args: Any) -> Point:
@@ -90,25 +84,17 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One row of the table: what the paper (or an issue) says, and what came out.
+    """One row of the table: what the paper (or an issue) says, and what came out."""
 
-    Attributes:
-        figure: of the paper; "beyond" where the paper has none.
-        claim: as the paper means it.
-        measurement: with its unit and how many runs it is of.
-        verdict: "holds", "holds with reading E..", "does not hold". Readings are
-            those of the skin's errata (E), of the radio's questions and findings (Q, F), of the
-            mesh's ambiguities (A).
-        reason: why; empty where it simply holds.
-        source: whose sentence it is: OURS, or the document's words (`quoted`); empty in a book
-            that does not tell them apart.
-    """
-
-    figure: str
-    claim: str
-    measurement: str
+    figure: str  # of the paper; "beyond" where the paper has none
+    claim: str  # as the paper means it
+    measurement: str  # with its unit and how many runs it is of
+    # "holds", "holds with reading E..", "does not hold". Readings are those of the skin's errata
+    # (E), of the radio's questions and findings (Q, F), of the mesh's ambiguities (A)
     verdict: str
-    reason: str = ""
+    reason: str = ""  # why; empty where it simply holds
+    # whose sentence it is: OURS, or the document's words (`quoted`); empty in a book that does not
+    # tell them apart
     source: str = ""
 
     @property

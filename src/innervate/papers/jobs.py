@@ -30,82 +30,53 @@ Given = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a job's tables.
+    """One column of a job's tables."""
 
-    Attributes:
-        head: with its unit.
-        name: of the number in what entries measure; None there = it never happened.
-        show: of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, PERCENT (a mean of 0 to 100),
-            each with its 95 % interval;
-            TOTAL, MOST; SHARE: how many are above 0, with Wilson's interval.
-        digits: behind the point.
-    """
-
-    head: str
-    name: str
+    head: str  # with its unit
+    name: str  # of the number in what entries measure; None there = it never happened
+    # of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, PERCENT (a mean of 0 to 100), each with
+    # its 95 % interval; TOTAL, MOST; SHARE: how many are above 0, with Wilson's interval
     show: str = MEDIAN
-    digits: int = 1
+    digits: int = 1  # behind the point
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One setting of a job, a table of its own.
+    """One setting of a job, a table of its own."""
 
-    Attributes:
-        name: says all that decides its runs but the entry and the seed.
-        title: of its table.
-        given: what entries are given: plain numbers, texts, lists, dicts.
-        seeds: of its runs, the same for every entry.
-        columns: of its table.
-    """
-
-    name: str
-    title: str
-    given: Given
-    seeds: range
-    columns: tuple[Column, ...]
+    name: str  # says all that decides its runs but the entry and the seed
+    title: str  # of its table
+    given: Given  # what entries are given: plain numbers, texts, lists, dicts
+    seeds: range  # of its runs, the same for every entry
+    columns: tuple[Column, ...]  # of its table
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A protocol, as it is set, that does a job.
+    """A protocol, as it is set, that does a job."""
 
-    Attributes:
-        job: which.
-        name: a few words, as the tables call it.
-        what: a sentence: which protocol, which settings.
-        measure: (what a case gives, seed) -> numbers by the columns' names; None = never happened.
-        warm_up: compiles what it runs.
-        cost_s: about how long a run takes.
-        does: (what a case gives) -> True if it can be measured there.
-    """
-
-    job: str
-    name: str
-    what: str
+    job: str  # which
+    name: str  # a few words, as the tables call it
+    what: str  # a sentence: which protocol, which settings
+    # (what a case gives, seed) -> numbers by the columns' names; None = never happened
     measure: Callable[[Given, int], dict[str, Any]]
-    warm_up: Callable[[], None]
-    cost_s: float = 0.2
+    warm_up: Callable[[], None]  # compiles what it runs
+    cost_s: float = 0.2  # about how long a run takes
+    # (what a case gives) -> True if it can be measured there
     does: Callable[[Given], bool] = field(default=lambda given: True)
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What all have to do.
+    """What all have to do."""
 
-    Attributes:
-        name: "skin"; what `--only` takes.
-        title, caption: of its figure.
-        cases: (quick) -> all cases, in order.
-        judge: what is claimed of it: (compared) -> claims.
-        drawn: column name that the figure shows, of all cases that have it, and its axis in words.
-    """
-
-    name: str
+    name: str  # "skin"; what `--only` takes
+    # title, caption: of its figure
     title: str
     caption: str
-    cases: Callable[[bool], list[Case]]
-    judge: Callable[[Compared], Iterator[Claim]]
+    cases: Callable[[bool], list[Case]]  # (quick) -> all cases, in order
+    judge: Callable[[Compared], Iterator[Claim]]  # what is claimed of it: (compared) -> claims
+    # column name that the figure shows, of all cases that have it, and its axis in words
     drawn: tuple[str, str]
 
 

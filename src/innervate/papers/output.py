@@ -27,22 +27,16 @@ NARROW_PT = 400  # a figure of one column is not blown up
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """What the outputs are of.
-
-    Attributes:
-        stamp: hash of the sources the results depend on.
-        redraw: results of other sources were allowed.
-        command: the line that does it again.
-        readings: what the labels in claims and reasons mean, a sentence each.
-    """
+    """What the outputs are of."""
 
     system: str
     title: str
     authors: str
     quick: bool
-    stamp: str
-    redraw: bool
-    command: str
+    stamp: str  # hash of the sources the results depend on
+    redraw: bool  # results of other sources were allowed
+    command: str  # the line that does it again
+    # what the labels in claims and reasons mean, a sentence each
     readings: Mapping[str, str] = field(default_factory=dict)
 
 

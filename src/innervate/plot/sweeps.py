@@ -33,21 +33,13 @@ UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": 
 
 
 class Shown(NamedTuple):
-    """What a figure shows.
+    """What a figure of a sweep shows."""
 
-    Attributes:
-        x: what goes to the right: a setting, or a measure.
-        y: what goes up, or the shade of a heat map.
-        by: what tells lines apart, or what goes up in a heat map; "" = one line.
-        kind: "band" or "heat".
-        title: above it.
-    """
-
-    x: str
-    y: str
-    by: str = ""
-    kind: str = "band"
-    title: str = ""
+    x: str  # what goes to the right: a setting, or a measure
+    y: str  # what goes up, or the shade of a heat map
+    by: str = ""  # what tells lines apart, or what goes up in a heat map; "" = one line
+    kind: str = "band"  # "band" or "heat"
+    title: str = ""  # above it
 
 
 def draw(columns: Columns, shown: Shown, over: Mapping[str, int] | None) -> Figure:

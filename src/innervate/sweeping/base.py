@@ -27,23 +27,14 @@ TAKEN = (PLAN_FILE, "jobs.sqlite", "results.parquet", "points.parquet", "timings
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """A scenario that is run many times.
+    """A scenario that is run many times."""
 
-    Attributes:
-        text: its TOML.
-        file: what its copy in the results is called.
-        folder: where relative paths in it start.
-        settings: (dotted key, value) that hold for every run.
-        kind: of network.
-        name: of a scenario that is no file, which the copy's name says nothing of.
-    """
-
-    text: str
-    file: str
-    folder: str
-    settings: Settings = ()
-    kind: str = ""
-    name: str = ""
+    text: str  # its TOML
+    file: str  # what its copy in the results is called
+    folder: str  # where relative paths in it start
+    settings: Settings = ()  # (dotted key, value) that hold for every run
+    kind: str = ""  # of network
+    name: str = ""  # of a scenario that is no file, which the copy's name says nothing of
 
     def scenario(self, settings: Iterable[tuple[str, Any]] = (), seed: int | None = None) -> Any:
         """The scenario with these settings besides; a ScenarioError if it is not valid."""

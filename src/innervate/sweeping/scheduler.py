@@ -29,22 +29,16 @@ NAMED_MAX = 8  # figures that an error names
 
 @dataclass(slots=True)
 class State:
-    """How far a point is.
+    """How far a point is."""
 
-    Attributes:
-        point: which.
-        goal: repeats that it gets as far as is decided.
-        done, failed: how many of these there are, and failed ones among them.
-        values: for each measure followed, its value by repeat; None where it has none.
-        finished: nothing more will be run.
-    """
-
-    point: Point
-    goal: int = 0
+    point: Point  # which
+    goal: int = 0  # repeats that it gets as far as is decided
+    # done, failed: how many of these there are, and failed ones among them
     done: int = 0
     failed: int = 0
+    # for each measure followed, its value by repeat; None where it has none
     values: dict[str, dict[int, float]] = field(default_factory=dict)
-    finished: bool = False
+    finished: bool = False  # nothing more will be run
 
     def series(self, measure: str) -> list[float]:
         """A measure's values in order of repeat."""

@@ -17,17 +17,11 @@ _RULE = re.compile(r"\s*([\w.-]+)\.ci\s*=\s*([0-9.eE+-]+)\s*(%?)\s*")
 
 @dataclass(frozen=True, slots=True)
 class Until:
-    """A point is finished when the mean of a measure is known well enough.
+    """A point is finished when the mean of a measure is known well enough."""
 
-    Attributes:
-        measure: a column of the results.
-        half: greatest half width of its 95 % interval, in the measure's unit or as a share.
-        relative: `half` is a share of the mean.
-    """
-
-    measure: str
-    half: float
-    relative: bool
+    measure: str  # a column of the results
+    half: float  # greatest half width of its 95 % interval, in the measure's unit or as a share
+    relative: bool  # `half` is a share of the mean
 
     def __str__(self) -> str:
         value = f"{100 * self.half:g}%" if self.relative else f"{self.half:g}"

@@ -33,14 +33,10 @@ class Named:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One direction of a sweep.
+    """One direction of a sweep."""
 
-    Attributes:
-        keys: dotted scenario keys that change together.
-        steps: for every step a value of each key; Named where it goes by a name.
-    """
-
-    keys: tuple[str, ...]
+    keys: tuple[str, ...]  # dotted scenario keys that change together
+    # for every step a value of each key; Named where it goes by a name
     steps: tuple[tuple[Any, ...], ...]
 
 

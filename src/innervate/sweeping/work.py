@@ -41,23 +41,15 @@ class Job(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """One run done.
-
-    Attributes:
-        point, repeat, seed: which.
-        row: its figures as JSON; None if it failed.
-        reason: why it failed; "" if it did not.
-        wall_s: how long it took, s.
-        began_s: when it began, s since 1970.
-    """
+    """What came of one run."""
 
     point: str
     repeat: int
     seed: int
-    row: str | None
-    reason: str
-    wall_s: float
-    began_s: float
+    row: str | None  # its figures as JSON; None if it failed
+    reason: str  # why it failed; "" if it did not
+    wall_s: float  # how long it took, s
+    began_s: float  # when it began, s since 1970
 
 
 class Done(NamedTuple):

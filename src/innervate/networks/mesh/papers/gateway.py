@@ -37,15 +37,12 @@ SOONEST = 30.0  # seconds until all have tables of the new gateway, at most
 
 
 class Setting(NamedTuple):
-    """Who could take over, who dies, and how much is sent.
-
-    Attributes:
-        every_s: everyone sends a message to the gateway and one to another node so often; 0 never.
-    """
+    """Who could take over, who dies, and how much is sent."""
 
     name: str
     standbys: tuple[int, ...]
     dead: tuple[int, ...]
+    # everyone sends a message to the gateway and one to another node so often; 0 never
     every_s: int
 
 

@@ -28,20 +28,13 @@ SMALL_MOST = 70  # nodes: more than that, we would not call small
 
 
 class Radio(NamedTuple):
-    """A profile and what is tried with it.
-
-    Attributes:
-        period_s: between discovery rounds.
-        nodes: how many, up to what is reasonable.
-        graph_max: nodes that a flooded graph has room for.
-        per_node_s: a round and its tables take less than this for every node.
-    """
+    """A profile and what is tried with it."""
 
     profile: str
-    period_s: float
-    nodes: tuple[int, ...]
-    graph_max: int
-    per_node_s: float
+    period_s: float  # between discovery rounds
+    nodes: tuple[int, ...]  # how many, up to what is reasonable
+    graph_max: int  # nodes that a flooded graph has room for
+    per_node_s: float  # a round and its tables take less than this for every node
 
 
 RADIOS = (
@@ -99,21 +92,13 @@ def _ns(radio: Radio, scheme: str, quick: bool) -> list[int]:
 
 
 class Size(NamedTuple):
-    """What came of a scheme at one size.
+    """What came of a scheme at one size."""
 
-    Attributes:
-        nodes: how many.
-        share: of the period that the busiest channel is busy, all tables new each round.
-        without: how many nodes got no table, in each network.
-        unknown: to how many nodes the gateway knows no way, in all networks.
-        took_s: until the last node had its table, mean of the networks where all got theirs.
-    """
-
-    nodes: int
-    share: float
-    without: list[int]
-    unknown: int
-    took_s: float
+    nodes: int  # how many
+    share: float  # of the period that the busiest channel is busy, all tables new each round
+    without: list[int]  # how many nodes got no table, in each network
+    unknown: int  # to how many nodes the gateway knows no way, in all networks
+    took_s: float  # until the last node had its table, mean of the networks where all got theirs
 
     @property
     def is_whole(self) -> bool:

@@ -25,22 +25,15 @@ LITERAL: Options = (
 
 @dataclass(frozen=True, slots=True)
 class MeshTestbed:
-    """Networks of nodes anywhere in a square of 100 m, node 0 the gateway.
+    """Networks of nodes anywhere in a square of 100 m, node 0 the gateway."""
 
-    Attributes:
-        nodes, degree: how many, and good links of a node in the mean.
-        profile: of the radio.
-        protocol: keys of [protocol].
-        duration_s: of a run.
-        more: other tables of the scenario, as (name, content).
-    """
-
+    # nodes, degree: how many, and good links of a node in the mean
     nodes: int = 30
     degree: float = 8
-    profile: str = "250k"
-    protocol: Options = ()
-    duration_s: float = 6.0
-    more: Options = ()
+    profile: str = "250k"  # of the radio
+    protocol: Options = ()  # keys of [protocol]
+    duration_s: float = 6.0  # of a run
+    more: Options = ()  # other tables of the scenario, as (name, content)
 
     def __str__(self) -> str:
         """All of it in words."""

@@ -45,36 +45,24 @@ def monitor_of(plan: Any) -> int:
 
 
 class Alarmed(NamedTuple):
-    """The way of one alarm.
+    """The way of one alarm."""
 
-    Attributes:
-        sent: all its transmissions; who flooded it gets a ring.
-        way: the hops that brought it to the monitor.
-        at_us: who was off then is crossed out; None = at the end.
-    """
-
-    sent: Sequence[Hop] = ()
-    way: Sequence[Hop] = ()
-    at_us: int | None = None
+    sent: Sequence[Hop] = ()  # all its transmissions; who flooded it gets a ring
+    way: Sequence[Hop] = ()  # the hops that brought it to the monitor
+    at_us: int | None = None  # who was off then is crossed out; None = at the end
 
 
 NO_ALARM = Alarmed()
 
 
 class Field(NamedTuple):
-    """A field that is being drawn.
-
-    Attributes:
-        sheet: where nodes lie.
-        names: where there is room for names.
-        on: which nodes are.
-    """
+    """A field that is being drawn."""
 
     drawing: Drawing
     plan: Any
-    sheet: Sheet
-    names: Labels
-    on: Sequence[bool]
+    sheet: Sheet  # where nodes lie
+    names: Labels  # where there is room for names
+    on: Sequence[bool]  # which nodes are
 
 
 def field_map(

@@ -61,23 +61,14 @@ LOOKS = {
 
 @dataclass(frozen=True, slots=True)
 class Offered:
-    """Poisson packets at a load, by one protocol.
+    """Poisson packets at a load, by one protocol."""
 
-    Attributes:
-        mac: "practical" or a baseline's name.
-        per_turn: most packets in a turn.
-        size: T, slots.
-        n: stations.
-        load: share of the hand-over bound, 0 .. 1.
-        packets: about, of all stations.
-    """
-
-    mac: str
-    per_turn: int
-    size: int
-    n: int
-    load: float
-    packets: int
+    mac: str  # "practical" or a baseline's name
+    per_turn: int  # most packets in a turn
+    size: int  # T, slots
+    n: int  # stations
+    load: float  # share of the hand-over bound, 0 .. 1
+    packets: int  # about, of all stations
 
     def __str__(self) -> str:
         """All of it in words."""

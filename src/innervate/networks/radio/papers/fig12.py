@@ -32,20 +32,14 @@ SWITCHING = 20  # slots, "20 slots for transitions" (section 4)
 
 
 class Reading(NamedTuple):
-    """What T = 25 is [radio Q16].
+    """What T = 25 is [radio Q16]."""
 
-    Attributes:
-        name, words: as in the table.
-        size: slots on the air.
-        turnaround: a hand-over costs 2 ms besides.
-        report: slots of switching that the CR-Rs cost, where no turnaround does.
-    """
-
+    # name, words: as in the table
     name: str
     words: str
-    size: int
-    turnaround: bool
-    report: int = 0
+    size: int  # slots on the air
+    turnaround: bool  # a hand-over costs 2 ms besides
+    report: int = 0  # slots of switching that the CR-Rs cost, where no turnaround does
 
 
 SIMULATED = Reading("simulation", "T = 25, no turnaround (Fig. 5)", 25, False)

@@ -71,25 +71,17 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """All that is drawn of a stretch of a run.
+    """All that is drawn of a stretch of a run."""
 
-    Attributes:
-        window: what is shown.
-        stations: those that have a lane, in order.
-        boxes, notes: in order of time.
-        heard: by station; intervals cut to the window.
-        cut: there was more between the moments that were asked for than can be shown.
-        off: why stations are off: "switched off", "not in the team", both; "" if none is.
-    """
-
-    window: Window
+    window: Window  # what is shown
     slot_us: int
-    stations: tuple[int, ...]
+    stations: tuple[int, ...]  # those that have a lane, in order
+    # boxes, notes: in order of time
     boxes: tuple[Box, ...]
     notes: tuple[Note, ...]
-    heard: dict[int, Heard]
-    cut: bool
-    off: str = ""
+    heard: dict[int, Heard]  # by station; intervals cut to the window
+    cut: bool  # there was more between the moments that were asked for than can be shown
+    off: str = ""  # why stations are off: "switched off", "not in the team", both; "" if none is
 
     @property
     def frames(self) -> list[FrameWords]:

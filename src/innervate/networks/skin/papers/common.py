@@ -73,23 +73,16 @@ def plan_of(setup: str) -> Plan:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A skin whose cable is cut once it has settled.
+    """A skin whose cable is cut once it has settled."""
 
-    Attributes:
-        setup: a bundled scenario.
-        cut: "interface 1", or "random link".
-        m: periods between sequence numbers; 0 = the default, min(k, 5).
-        gap_us: least time between two triggered beacons of a cell; -1 = the default, 500.
-    """
-
-    setup: str
+    setup: str  # a bundled scenario
     beacon_hz: float
     k: int
     rule: str = "feasible"
     updates: str = "periodic"
-    m: int = 0
-    cut: str = f"interface {INTERFACE}"
-    gap_us: int = -1
+    m: int = 0  # periods between sequence numbers; 0 = the default, min(k, 5)
+    cut: str = f"interface {INTERFACE}"  # "interface 1", or "random link"
+    gap_us: int = -1  # least time between two triggered beacons of a cell; -1 = the default, 500
 
     @property
     def period_ms(self) -> float:

@@ -26,17 +26,11 @@ MARKS_MAX = 8
 
 @dataclass(frozen=True, slots=True)
 class Incident:
-    """An event of the scenario with what came of it.
+    """An event of the scenario with what came of it."""
 
-    Attributes:
-        fault: what happened.
-        recovery: its entry in the summary.
-        until_us: when the next later event came, or the run ended.
-    """
-
-    fault: Fault
-    recovery: Mapping[str, Any]
-    until_us: int
+    fault: Fault  # what happened
+    recovery: Mapping[str, Any]  # its entry in the summary
+    until_us: int  # when the next later event came, or the run ended
 
     @property
     def at_us(self) -> int:
