@@ -11,17 +11,12 @@ Step = tuple[float, float]
 
 
 class Film(Drawing):
-    """A drawing whose parts appear, go and move in a cycle.
-
-    Attributes:
-        cycle_s: length of the cycle, s of the viewer's time.
-        low, high: the times that it shows, in any unit; all times given to it are of these.
-    """
+    """A drawing whose parts appear, go and move in a cycle."""
 
     def __init__(self, size: Step, label: str, window: tuple[float, float], cycle_s: float) -> None:
         super().__init__(*size, label)
-        self.low, self.high = window
-        self.cycle_s = cycle_s
+        self.low, self.high = window  # the times that it shows; all times given are of their unit
+        self.cycle_s = cycle_s  # of the viewer's time
 
     def share(self, time: float) -> float:
         """Where in the cycle a time is, 0 .. 1."""

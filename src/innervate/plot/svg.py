@@ -90,17 +90,12 @@ def opening(tag: str, attributes: Mapping[str, Value]) -> str:
 
 
 class Drawing:
-    """An SVG drawing that is filled piece by piece.
-
-    Attributes:
-        width, height: natural size in px, > 0.
-        label: what a screen reader says of it.
-    """
+    """An SVG drawing that is filled piece by piece, of a natural size in px, > 0."""
 
     def __init__(self, width: float, height: float, label: str) -> None:
         self.width = width
         self.height = height
-        self.label = label
+        self.label = label  # what a screen reader says of it
         self._parts: list[str] = []
 
     def add(self, tag: str, content: str | None = None, **attributes: Value) -> None:

@@ -46,17 +46,13 @@ class Jobs:
     Args:
         folder: where it lies, made if it is not there; None keeps it in memory.
 
-    Attributes:
-        torn: the runs whose rows were found torn, (point, repeat).
-        torn_places: numbers of the places of which nothing is known any more.
-
     Raises:
         SweepError: it cannot be written, is damaged, or somebody else is at work on it.
     """
 
     def __init__(self, folder: Path | None) -> None:
-        self.torn: set[tuple[str, int]] = set()
-        self.torn_places: set[int] = set()
+        self.torn: set[tuple[str, int]] = set()  # runs whose rows were found torn, (point, repeat)
+        self.torn_places: set[int] = set()  # numbers of those of which nothing is known any more
         self._name = ":memory:" if folder is None else str(folder / FILE)
         with self._errors():
             self._db = sqlite3.connect(self._name, timeout=0.2, isolation_level=None)

@@ -54,11 +54,6 @@ class Scheduler:
         show: measures that somebody wants to see: runs have to have them.
         follow: measures whose values are kept at hand for a display, besides those of `until`.
         progress: called after every batch, with this.
-
-    Attributes:
-        states: how far every point is.
-        ran: runs done by this process.
-        lacks: what nothing goes on without, in words; "" = it goes on.
     """
 
     def __init__(
@@ -72,8 +67,8 @@ class Scheduler:
     ) -> None:
         self.plan = plan
         self.states = [State(point) for point in plan.points]
-        self.ran = 0
-        self.lacks = ""
+        self.ran = 0  # runs done by this process
+        self.lacks = ""  # what nothing goes on without, in words; "" = it goes on
         self._jobs = jobs
         self._engine = engine
         self._progress = progress or (lambda scheduler: None)

@@ -23,18 +23,11 @@ Box = tuple[float, float, float, float]
 
 
 class Sheet:
-    """Places of a plan's nodes on a drawing, in px.
-
-    Attributes:
-        width, height: of the drawing.
-        points: (nodes, 2), where they are at the start.
-        metres: True if places are true ones; False if they only show who hears whom, because
-            nobody knows them or they lie on top of each other.
-        scale: px per cm.
-        dot: radius of a node, px.
-    """
+    """Places of a plan's nodes on a drawing, in px."""
 
     def __init__(self, plan: Any, width: float = WIDTH, height_max: float = HEIGHT_MAX) -> None:
+        # Places are true ones, or only show who hears whom, as nobody knows them or they lie on
+        # top of each other.
         self.metres = is_to_scale(plan, width)
         places = np.array(plan.positions_cm if self.metres else laid_out(plan), np.float64)
         around = [places]
@@ -47,12 +40,13 @@ class Sheet:
         if not (self._high - self._low).any():
             self._low, self._high = self._low - LONELY_CM, self._high + LONELY_CM
         wide, high = (float(value) for value in np.maximum(self._high - self._low, 1.0))
-        self.scale = min((width - 2 * MARGIN) / wide, (height_max - 2 * MARGIN) / high)
+        self.scale = min((width - 2 * MARGIN) / wide, (height_max - 2 * MARGIN) / high)  # px per cm
         self.width = width
         self._left = (width - wide * self.scale) / 2
         self.height = high * self.scale + 2 * MARGIN + (SCALE_PX if self.metres else 0)
+        # (nodes, 2), where they are at the start.
         self.points: Floats = np.array([self.of_cm((x, y)) for x, y in places.tolist()])
-        self.dot = DOT_PX if plan.nodes <= 100 else 3.5
+        self.dot = DOT_PX if plan.nodes <= 100 else 3.5  # radius of a node, px
 
     def of_cm(self, place: Point) -> Point:
         """A place of the world on the drawing; north is up."""
