@@ -272,6 +272,14 @@ STOOD_BY: Options = (("standby", [STANDBY]),)
 HOPS: Options = (("reliable", False),)
 
 
+def _fits(given: Given) -> bool:
+    return bool(given["nodes"] <= GRAPH_NODES)
+
+
+def _has_outage(given: Given) -> bool:
+    return "root" in given
+
+
 def _shows_why(given: Given) -> bool:
     return given["nodes"] == 30 and not {"root", "alarms", "silent"} & set(given)
 
@@ -288,10 +296,9 @@ ENTRIES = (
           "messages are acknowledged from end to end; an alarm is such a message with priority",
           partial(measure, SEARCH, ()), warm_up, 0.3),
     Entry("mesh", "mesh, graph", 'the same with failover = "graph": every node has the whole graph',
-          partial(measure, GRAPH, ()), warm_up, 0.3,
-          lambda given: given["nodes"] <= GRAPH_NODES),
+          partial(measure, GRAPH, ()), warm_up, 0.3, _fits),
     Entry("mesh", STOOD, "the first with node 1 standing by for the gateway",
-          partial(measure, SEARCH, STOOD_BY), warm_up, 0.3, lambda given: "root" in given),
+          partial(measure, SEARCH, STOOD_BY), warm_up, 0.3, _has_outage),
     Entry("mesh", "mesh, hops only", "the first without acknowledgements from end to end",
           partial(measure, HOPS, ()), warm_up, 0.3, _shows_why),
     Entry("mesh", "the document", "the mesh's document to the letter: one transmission, a random "
