@@ -15,17 +15,17 @@ from msgspec import structs
 
 from innervate.networks import models
 from innervate.networks.mesh import frames as mesh
+from innervate.networks.mesh import papers as mesh_papers
 from innervate.networks.mesh import payloads as mesh_payloads
 from innervate.networks.mesh import tables as mesh_tables
 from innervate.networks.mesh.meanings import MEANINGS
-from innervate.networks.mesh.papers import readings as mesh_readings
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.radio import frames as radio
+from innervate.networks.radio import papers as radio_papers
 from innervate.networks.radio import tables as radio_tables
-from innervate.networks.radio.papers import readings as radio_readings
 from innervate.networks.radio.protocol import fields as radio_fields
 from innervate.networks.skin import frames as skin
-from innervate.networks.skin.papers import readings as skin_readings
+from innervate.networks.skin import papers as skin_papers
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.tables import TABLES
 from innervate.scenario.keys import Table
@@ -155,9 +155,9 @@ PARTS = (
     ("wire.md", "wire-radio", lambda: layout_tables(radio.LAYOUTS, meanings(radio_fields.FRAME))),
     ("reading-a-report.md", "tables", lambda: run_tables(TABLES)),
     ("reading-a-report.md", "radio-tables", lambda: run_tables(radio_tables.TABLES)),
-    ("readings.md", "skin-readings", lambda: reading_table(skin_readings.READINGS)),
-    ("readings.md", "radio-readings", lambda: reading_table(radio_readings.READINGS)),
-    ("readings.md", "mesh-readings", lambda: reading_table(mesh_readings.READINGS)),
+    ("readings.md", "skin-readings", lambda: reading_table(skin_papers.READINGS)),
+    ("readings.md", "radio-readings", lambda: reading_table(radio_papers.READINGS)),
+    ("readings.md", "mesh-readings", lambda: reading_table(mesh_papers.READINGS)),
     ("reading-a-report.md", "mesh-tables", lambda: run_tables(mesh_tables.TABLES)),
 )
 

@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from innervate.scenario.given import load as load
     from innervate.sim.driver import InvariantBroken as InvariantBroken
     from innervate.sweeping.errors import SweepError as SweepError
-    from innervate.sweeping.loading import load_sweep as load_sweep
     from innervate.sweeping.result import Sweep as Sweep
+    from innervate.sweeping.sweep import load_sweep as load_sweep
     from innervate.sweeping.sweep import sweep as sweep
     from innervate.verify.cases import Case as Case
     from innervate.verify.errors import VerifyError as VerifyError
@@ -78,7 +78,7 @@ _PLACES = {
     "explore": "running.exploring",
     "live_up": "live.in_code",
     "load": "scenario.given",
-    "load_sweep": "sweeping.loading",
+    "load_sweep": "sweeping.sweep",
     "run": "running.run",
     "size": "networks.typed",
     "sweep": "sweeping.sweep",

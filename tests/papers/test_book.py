@@ -30,14 +30,14 @@ class Toy:
         def points(quick):
             return [Point.of(key, 1.0, self.work, key) for key in keys[: 2 if quick else 3]]
 
-        def draw(results, quick):
+        def draw(got):
             figure, (ax,) = style.panels(2, 2)
-            ax.plot([results[keys[0]], results[keys[1]]])
+            ax.plot([got.values[keys[0]], got.values[keys[1]]])
             return figure
 
-        def judge(results, quick):
+        def judge(got):
             said = f"the claim | of {name}"
-            return [Claim(name, said, str(results[keys[0]]), HOLDS, "<why>, Q1 and Q2")]
+            return [Claim(name, said, str(got.values[keys[0]]), HOLDS, "<why>, Q1 and Q2")]
 
         return Experiment(name, f"Figure {name}", "A caption & more", points, draw, judge)
 
@@ -145,7 +145,7 @@ def test_quick_asks_for_less(toy, tmp_path):
 
 
 def test_an_interrupt_loses_nothing(toy, tmp_path, monkeypatch):
-    monkeypatch.setattr(book, "_cores", lambda: 1)
+    monkeypatch.setattr(book, "cores", lambda: 1)
 
     def stop(step):
         if step.done == 3:

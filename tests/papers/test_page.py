@@ -5,9 +5,9 @@ from html import unescape
 
 import pytest
 
-from innervate.networks.mesh.papers.readings import READINGS as MESH
-from innervate.networks.radio.papers.readings import READINGS as RADIO
-from innervate.networks.skin.papers.readings import READINGS as SKIN
+from innervate.networks.mesh.papers import READINGS as MESH
+from innervate.networks.radio.papers import READINGS as RADIO
+from innervate.networks.skin.papers import READINGS as SKIN
 from innervate.papers import output
 from innervate.papers.experiment import FAILS, HOLDS, Claim, reading
 

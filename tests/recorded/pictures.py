@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.papers import book, output
-from innervate.papers.experiment import Point
+from innervate.papers.experiment import Measured, Point
 from innervate.plot import style
 from tests.recorded import record, scenes
 from tests.recorded.looks import Picture, digest
@@ -55,13 +55,13 @@ def of_paper(system: str) -> Iterator[tuple[str, Drawn]]:
 def drawn(experiment: Any, system: str) -> Any:
     """A figure, of the rows kept."""
     with style.house():
-        return experiment.draw(rows(system), True)
+        return experiment.draw(Measured(rows(system), True))
 
 
 @cache
 def judged(system: str, quick: bool = True) -> dict[str, Any]:
     """What each figure's claims come to, of the rows kept."""
-    return {one.name: one.judge(rows(system), quick) for one in experiments(system)}
+    return {one.name: list(one.judge(Measured(rows(system), quick))) for one in experiments(system)}
 
 
 def page(system: str, quick: bool = True) -> str:
@@ -70,7 +70,7 @@ def page(system: str, quick: bool = True) -> str:
     chosen = experiments(system)
     made = output.Made(
         judged(system, quick),
-        {one.name: one.sheets(rows(system), quick) for one in chosen},
+        {one.name: list(one.sheets(Measured(rows(system), quick))) for one in chosen},
     )
     heading = output.Heading(
         system, paper.TITLE, paper.AUTHORS, quick, "stamp", False, "again", paper.READINGS

@@ -41,12 +41,6 @@ def test_how_many_it_will_take(half, relative, values, needed):
     assert found == pytest.approx(needed, abs=1 if needed == 8 else 0)
 
 
-def test_the_interval_is_that_of_the_mean():
-    assert Until("x", 1.0, relative=False).interval([]) is None
-    found = Until("x", 1.0, relative=False).interval([9.0, 11.0])
-    assert found == pytest.approx((10, 10 - HALF, 10 + HALF), abs=1e-4)
-
-
 @pytest.mark.parametrize(
     ("text", "rule"),
     [

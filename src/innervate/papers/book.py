@@ -4,13 +4,11 @@ Results are stored one by one in `results.jsonl` of the output folder. A second 
 is missing: after an interrupt, for other figures, or when the sources have changed.
 """
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,9 +16,10 @@ from typing import Any
 from innervate.network import networks
 from innervate.papers import output
 from innervate.papers.errors import PapersError
-from innervate.papers.experiment import Claim, Experiment, Point, Sheet
+from innervate.papers.experiment import Claim, Experiment, Measured, Point, Sheet
 from innervate.papers.store import Store, stamp
 from innervate.plot import style
+from innervate.sweeping.engines import cores
 
 RESULTS = "results.jsonl"
 COMPARE = "compare"  # the book of comparisons, which is no network's
@@ -28,18 +27,13 @@ COMPARE = "compare"  # the book of comparisons, which is no network's
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """How far the work is.
+    """How far the work is."""
 
-    Attributes:
-        done, total: pieces of work; `total` counts only those that had to be run.
-        what: what is being done, in words.
-        left_s: about how long it will take from here; None while nobody can know.
-    """
-
+    # done, total: pieces of work; `total` counts only those that had to be run
     done: int
     total: int
-    what: str
-    left_s: float | None
+    what: str  # what is being done, in words
+    left_s: float | None  # about how long it will take from here; None while nobody can know
 
 
 Progress = Callable[[Step], None]
@@ -133,11 +127,7 @@ def books() -> list[str]:
 
 
 def book_of(system: str) -> Any:
-    """What a book is made of: TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up.
-
-    Raises:
-        PapersError: there is none of this name.
-    """
+    """TITLE, AUTHORS, FIGURES, READINGS, experiment, warm_up of a book; a PapersError if none."""
     known = books()
     if system not in known:
         raise PapersError(f'there is no paper "{system}"; choose from: {", ".join(known)}')
@@ -159,11 +149,7 @@ def _chosen(paper: ModuleType, only: Iterable[str]) -> list[str]:
 
 
 def _there(paper: Any, page: Path, store: Store, quick: bool, chosen: Sequence[str]) -> list[str]:
-    """Figures that a page has besides those that are made anew: they are to stay there.
-
-    Raises:
-        PapersError: they cannot, as they are of other settings or sources.
-    """
+    """Figures that a page has besides those that are made anew: to stay there, if they can."""
     was_quick, shown = output.shown_on(page, paper.FIGURES)
     others = [name for name in shown if name not in chosen]
     keys = [point.key for name in others for point in paper.experiment(name).points(quick)]
@@ -184,27 +170,22 @@ def _prepare(folder: Path) -> None:
         raise PapersError(f"{folder}: {error.strerror or error}; name another folder") from None
 
 
+@dataclass(slots=True)
 class _Book:
     """Runs what is missing, and draws each experiment as soon as it has all its results."""
 
-    def __init__(
-        self,
-        folder: Path,
-        store: Store,
-        quick: bool,
-        progress: Progress,
-        warm_up: Callable[[], None],
-    ) -> None:
-        self.folder = folder
-        self.store = store
-        self.quick = quick
-        self.progress = progress
-        self.warm_up = warm_up
-        self.claims: dict[str, list[Claim]] = {}
-        self.sheets: dict[str, list[Sheet]] = {}
-        self._started = time.perf_counter()
-        self._spent = self._whole = 0.0
-        self._done = self._total = 0
+    folder: Path
+    store: Store
+    quick: bool
+    progress: Progress
+    warm_up: Callable[[], None]
+    claims: dict[str, list[Claim]] = field(default_factory=dict)
+    sheets: dict[str, list[Sheet]] = field(default_factory=dict)
+    _started: float = field(default_factory=time.perf_counter)
+    _spent: float = 0.0
+    _whole: float = 0.0
+    _done: int = 0
+    _total: int = 0
 
     def work(self, experiments: Sequence[Experiment]) -> None:
         needs = {e.name: {p.key: p for p in e.points(self.quick)} for e in experiments}
@@ -223,8 +204,7 @@ class _Book:
             for warm_up in dict.fromkeys(one.warm_up or self.warm_up for one in experiments):
                 warm_up()
             self._started = time.perf_counter()
-        workers = _cores()
-        with ThreadPoolExecutor(workers) as pool:
+        with ThreadPoolExecutor(cores()) as pool:
             running = {pool.submit(self._run, point): point for point in missing.values()}
             try:
                 self._finish(waiting, needs)
@@ -254,10 +234,10 @@ class _Book:
                 continue
             waiting.remove(experiment)
             self._say(f"drawing {experiment.name}")
-            results = self.store.values
-            style.save(experiment.draw(results, self.quick), self.folder, experiment.name)
-            self.claims[experiment.name] = experiment.judge(results, self.quick)
-            self.sheets[experiment.name] = experiment.sheets(results, self.quick)
+            got = Measured(self.store.values, self.quick)
+            style.save(experiment.draw(got), self.folder, experiment.name)
+            self.claims[experiment.name] = list(experiment.judge(got))
+            self.sheets[experiment.name] = list(experiment.sheets(got))
 
     def _say(self, what: str) -> None:
         left = None
@@ -265,10 +245,3 @@ class _Book:
             took = time.perf_counter() - self._started
             left = took * (self._whole - self._spent) / self._spent
         self.progress(Step(self._done, self._total, what, left))
-
-
-def _cores() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
-        return os.cpu_count() or 1

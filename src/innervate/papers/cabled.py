@@ -6,8 +6,6 @@ Whoever does the job builds its own scenario of it, runs it with the moment and 
 `drawn`, and hands `measured` what its nodes said.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -112,14 +110,10 @@ def end_us(given: Given, harm: Harm) -> int:
 def measured(
     given: Given, harm: Harm, changes: Iterable[Change], downs: Iterable[int], sent: int
 ) -> dict[str, Any]:
-    """What a run gave.
+    """What a run of a case gave.
 
-    Args:
-        given: the case.
-        harm: what happened.
-        changes: of next hops, in order of time.
-        downs: when nodes found some link down, us.
-        sent: frames of control in the whole run.
+    `changes` of next hops are in order of time; `downs`, us, is when nodes found some link down;
+    `sent` counts all frames of control.
     """
     made = wiring(given)
     changes = list(changes)

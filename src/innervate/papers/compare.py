@@ -1,7 +1,6 @@
 """The comparison as a book: a figure, tables and claims for every job that a network sets."""
 
-from __future__ import annotations
-
+from functools import partial
 from textwrap import fill
 from typing import Any
 
@@ -11,8 +10,8 @@ from matplotlib.figure import Figure
 
 from innervate.analysis.intervals import median_interval
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Experiment, Measured, Point, Results, Sheet
-from innervate.papers.jobs import Case, Compared, Job, doing, entries, jobs, points
+from innervate.papers.experiment import Experiment, Sheet
+from innervate.papers.jobs import Case, Compared, doing, entries, jobs, points
 from innervate.plot import style
 
 TITLE = "The networks beside protocols of the field"
@@ -36,32 +35,21 @@ def warm_up() -> None:
 def experiment(name: str) -> Experiment:
     """A job as figure, tables and claims."""
     job = jobs()[name]
-
-    def of(results: Results, quick: bool) -> Compared:
-        return Compared(job, Measured(results, quick))
-
-    def wanted(quick: bool) -> list[Point]:
-        return points(job, quick)
-
-    def judge(results: Results, quick: bool) -> list[Claim]:
-        return list(job.judge(of(results, quick)))
-
-    def sheets(results: Results, quick: bool) -> list[Sheet]:
-        return [_legend(job), *of(results, quick).sheets()]
-
-    def draw(results: Results, quick: bool) -> Figure:
-        return picture(of(results, quick))
+    legend = Sheet(
+        "Who is compared", ("who", "what it is"), [(one.name, one.what) for one in entries(name)]
+    )
 
     def compiled() -> None:
         for once in dict.fromkeys(entry.warm_up for entry in entries(name)):
             once()
 
-    return Experiment(name, job.title, job.caption, wanted, draw, judge, sheets, compiled)
-
-
-def _legend(job: Job) -> Sheet:
-    rows = [(entry.name, entry.what) for entry in entries(job.name)]
-    return Sheet("Who is compared", ("who", "what it is"), rows)
+    return Experiment(
+        name, job.title, job.caption, partial(points, job),
+        draw=lambda got: picture(Compared(job, got)),
+        judge=lambda got: job.judge(Compared(job, got)),
+        sheets=lambda got: [legend, *Compared(job, got).sheets()],
+        warm_up=compiled,
+    )  # fmt: skip
 
 
 def picture(compared: Compared) -> Figure:

@@ -1,7 +1,5 @@
 """What figures are drawn with: looks of series, bands, logarithmic axes, legends outside."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -72,13 +70,9 @@ LEADER = (0.012, 0.05)  # from the axes' edge to the text, as shares of the axes
 def end_labels(
     ax: Axes, ends: Sequence[tuple[float, str, str]], gap: float = 0.062, size: float = 6.5
 ) -> None:
-    """Name curves at their ends; call it when the limits are set.
+    """Name curves at their `ends` (last value, text, colour), when the limits of the axes are set.
 
-    Args:
-        ax: of the curves.
-        ends: last value, text and colour of each curve.
-        gap: least distance of two names, as a share of the axes' height.
-        size: of the type, points.
+    `gap` is the least distance of two names, as a share of the axes' height; `size` is in points.
     """
     to_axes = ax.transData + ax.transAxes.inverted()
     x = ax.get_xlim()[1]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from math import inf
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 HOLDS = "holds"
 FAILS = "does not hold"
 OURS = "ours"
+T = TypeVar("T")
 
 # Results of points by their keys: whatever JSON can hold.
 Results = Mapping[str, Any]
@@ -22,17 +23,11 @@ Results = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One piece of work whose result is kept.
+    """One piece of work whose result is kept."""
 
-    Attributes:
-        key: says everything that decides the result; equal keys are run once.
-        work: runs it; what it returns is plain numbers, texts, lists and dicts.
-        cost_s: about how long that takes, for the time left.
-    """
-
-    key: str
-    work: Callable[[], Any]
-    cost_s: float = 0.5
+    key: str  # says everything that decides the result; equal keys are run once
+    work: Callable[[], Any]  # runs it; what it returns is plain numbers, texts, lists and dicts
+    cost_s: float = 0.5  # about how long that takes, for the time left
 
     @classmethod
     def of(cls, key: str, cost_s: float, work: Callable[..., Any], *args: Any) -> Point:
@@ -66,6 +61,11 @@ def columns(measure: Callable[..., Any], case: Sequence[Any], seeds: Sequence[in
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
+def sized(quick: T, full: T) -> Callable[[bool], T]:
+    """What figures take in their small and their full size, as a function of `quick`."""
+    return lambda is_quick: quick if is_quick else full
+
+
 @dataclass(frozen=True, slots=True)
 class Measured:
     """What the points of a figure gave, in its small or its full size."""
@@ -84,25 +84,17 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One row of the table: what the paper (or an issue) says, and what came out.
+    """One row of the table: what the paper (or an issue) says, and what came out."""
 
-    Attributes:
-        figure: of the paper; "beyond" where the paper has none.
-        claim: as the paper means it.
-        measurement: with its unit and how many runs it is of.
-        verdict: "holds", "holds with reading E..", "does not hold". Readings are
-            those of the skin's errata (E), of the radio's questions and findings (Q, F), of the
-            mesh's ambiguities (A).
-        reason: why; empty where it simply holds.
-        source: whose sentence it is: OURS, or the document's words (`quoted`); empty in a book
-            that does not tell them apart.
-    """
-
-    figure: str
-    claim: str
-    measurement: str
+    figure: str  # of the paper; "beyond" where the paper has none
+    claim: str  # as the paper means it
+    measurement: str  # with its unit and how many runs it is of
+    # "holds", "holds with reading E..", "does not hold". Readings are those of the skin's errata
+    # (E), of the radio's questions and findings (Q, F), of the mesh's ambiguities (A)
     verdict: str
-    reason: str = ""
+    reason: str = ""  # why; empty where it simply holds
+    # whose sentence it is: OURS, or the document's words (`quoted`); empty in a book that does not
+    # tell them apart
     source: str = ""
 
     @property
@@ -119,6 +111,11 @@ Claims = Iterator[Claim]
 def quoted(section: str, words: str) -> str:
     """The source of a claim that is the document's: its section, and its own words."""
     return f'the document, {section}: "{words}"'
+
+
+def beyond(claim: str, measurement: str, verdict: str, reason: str = "") -> Claim:
+    """A claim that the paper does not make."""
+    return Claim("beyond", claim, measurement, verdict, reason)
 
 
 def summary(claims: Sequence[Claim]) -> str:
@@ -152,37 +149,26 @@ class Sheet:
 class Experiment:
     """A figure: its points, its drawing, its rows of the table.
 
-    All take `quick`: fewer seeds and settings, the same code. As a module it is TITLE,
-    CAPTION, `points(quick)`, and `draw`, `judge` and perhaps `sheets`, tables of its own, which
-    take what was measured. Only what compares compiles what it runs by itself (`warm_up`).
+    As a module it is TITLE, CAPTION, `points(quick)`, and `draw`, `judge` and perhaps `sheets`,
+    tables of its own, which take what was measured. Quick is fewer seeds and settings, the same
+    code. Only what compares compiles what it runs by itself (`warm_up`).
     """
 
     name: str
     title: str
     caption: str
     points: Callable[[bool], list[Point]]
-    draw: Callable[[Results, bool], Figure]
-    judge: Callable[[Results, bool], list[Claim]]
-    sheets: Callable[[Results, bool], list[Sheet]] = lambda results, quick: []
+    draw: Callable[[Measured], Figure]
+    judge: Callable[[Measured], Iterable[Claim]]
+    sheets: Callable[[Measured], Iterable[Sheet]] = lambda got: ()
     warm_up: Callable[[], None] | None = None
 
     @classmethod
     def of(cls, book: str, name: str) -> Experiment:
         """The experiment that a module of a book is, loaded when it is asked for."""
-        module = import_module(f"{book}.{name}")
-
-        def draw(results: Results, quick: bool) -> Figure:
-            made: Figure = module.draw(Measured(results, quick))
-            return made
-
-        def judge(results: Results, quick: bool) -> list[Claim]:
-            return list(module.judge(Measured(results, quick)))
-
-        def sheets(results: Results, quick: bool) -> list[Sheet]:
-            return list(module.sheets(Measured(results, quick))) if has_sheets else []
-
-        has_sheets = hasattr(module, "sheets")
-        return cls(name, module.TITLE, module.CAPTION, module.points, draw, judge, sheets)
+        one = import_module(f"{book}.{name}")
+        more = {"sheets": one.sheets} if hasattr(one, "sheets") else {}
+        return cls(name, one.TITLE, one.CAPTION, one.points, one.draw, one.judge, **more)
 
 
 @dataclass(frozen=True, slots=True)

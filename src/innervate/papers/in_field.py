@@ -5,8 +5,6 @@ hears whom, who dies when, who sends what to whom. Networks that only declare th
 it by `run_declared`; one of its own loop runs as it likes, and says what came when.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -32,52 +30,35 @@ MONITOR = -1  # the recipient of an alarm: whoever is to know
 
 @dataclass(frozen=True, slots=True)
 class Sent:
-    """A message that a node's user hands in; all of a world at different times.
+    """A message that a node's user hands in; all of a world at different times."""
 
-    Attributes:
-        at_us: when.
-        source: who sends.
-        dest: who is to have it, MONITOR = the gateway, or who stands in for it.
-        part: what it counts for.
-    """
-
-    at_us: int
-    source: int
-    dest: int
-    part: str
+    at_us: int  # when
+    source: int  # who sends
+    dest: int  # who is to have it, MONITOR = the gateway, or who stands in for it
+    part: str  # what it counts for
 
 
 @dataclass(slots=True)
 class World:
-    """What is the same for all that do a job.
+    """What is the same for all that do a job."""
 
-    Attributes:
-        nodes: how many.
-        rssi_cdb, prob_q15: per sender and receiver, row after row: how loud, 0.01 dBm, and the
-            chance of reception where nothing disturbs, in 1/32768.
-        good: links (a < b) that are good both ways.
-        air: of the radio: byte_ns, phy_bytes, turnaround_us, sense_db, capture_db.
-        gateway: who is asked for, the root.
-        standby: who takes an alarm in its place, where a protocol can ask it to.
-        since_us: from here on airtime counts.
-        duration_us: of the run.
-        faults: (when, us, KILL or REVIVE, node), in order of time.
-        sent: messages, in order of time.
-        again: of what parts it is asked when their messages come again: (from when, us, and
-            until when they must have come).
-    """
-
-    nodes: int
+    nodes: int  # how many
+    # rssi_cdb, prob_q15: per sender and receiver, row after row: how loud, 0.01 dBm, and the chance
+    # of reception where nothing disturbs, in 1/32768
     rssi_cdb: list[int]
     prob_q15: list[int]
-    good: list[tuple[int, int]]
+    good: list[tuple[int, int]]  # links (a < b) that are good both ways
+    # of the radio: byte_ns, phy_bytes, turnaround_us, sense_db, capture_db
     air: Mapping[str, float]
-    gateway: int
-    since_us: int
-    duration_us: int
+    gateway: int  # who is asked for, the root
+    since_us: int  # from here on airtime counts
+    duration_us: int  # of the run
+    # (when, us, KILL or REVIVE, node), in order of time
     faults: list[tuple[int, int, int]] = field(default_factory=list)
-    sent: list[Sent] = field(default_factory=list)
-    standby: int = NEVER
+    sent: list[Sent] = field(default_factory=list)  # messages, in order of time
+    standby: int = NEVER  # who takes an alarm in its place, where a protocol can ask it to
+    # of what parts it is asked when their messages come again: (from when, us, and until when they
+    # must have come)
     again: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     def on_at(self, at_us: int) -> set[int]:
@@ -168,14 +149,10 @@ def _counted(world: World) -> list[bool]:
 def run_declared(
     kind: str, protocol: Mapping[str, int], inputs: Mapping[bool, Any], world: World
 ) -> dict[str, float | None]:
-    """Run a network that only declares its protocol in a world.
+    """Run a kind of network that only declares its protocol in a world.
 
-    Args:
-        kind: of network.
-        protocol: its parameters.
-        inputs: (kind, item) of what a node is given for a message (False: the item gets `dest`),
-            and for an alarm (True).
-        world: the world.
+    `inputs` are (kind, item) of what a node is given for a message (False: the item gets `dest`),
+    and for an alarm (True).
     """
     network = networks()[kind]
     plan = plan_in(kind, protocol, world)

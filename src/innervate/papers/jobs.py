@@ -30,82 +30,53 @@ Given = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a job's tables.
+    """One column of a job's tables."""
 
-    Attributes:
-        head: with its unit.
-        name: of the number in what entries measure; None there = it never happened.
-        show: of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, PERCENT (a mean of 0 to 100),
-            each with its 95 % interval;
-            TOTAL, MOST; SHARE: how many are above 0, with Wilson's interval.
-        digits: behind the point.
-    """
-
-    head: str
-    name: str
+    head: str  # with its unit
+    name: str  # of the number in what entries measure; None there = it never happened
+    # of all runs: MEDIAN, TAIL (90 % are no greater), MEAN, PERCENT (a mean of 0 to 100), each with
+    # its 95 % interval; TOTAL, MOST; SHARE: how many are above 0, with Wilson's interval
     show: str = MEDIAN
-    digits: int = 1
+    digits: int = 1  # behind the point
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One setting of a job, a table of its own.
+    """One setting of a job, a table of its own."""
 
-    Attributes:
-        name: says all that decides its runs but the entry and the seed.
-        title: of its table.
-        given: what entries are given: plain numbers, texts, lists, dicts.
-        seeds: of its runs, the same for every entry.
-        columns: of its table.
-    """
-
-    name: str
-    title: str
-    given: Given
-    seeds: range
-    columns: tuple[Column, ...]
+    name: str  # says all that decides its runs but the entry and the seed
+    title: str  # of its table
+    given: Given  # what entries are given: plain numbers, texts, lists, dicts
+    seeds: range  # of its runs, the same for every entry
+    columns: tuple[Column, ...]  # of its table
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A protocol, as it is set, that does a job.
+    """A protocol, as it is set, that does a job."""
 
-    Attributes:
-        job: which.
-        name: a few words, as the tables call it.
-        what: a sentence: which protocol, which settings.
-        measure: (what a case gives, seed) -> numbers by the columns' names; None = never happened.
-        warm_up: compiles what it runs.
-        cost_s: about how long a run takes.
-        does: (what a case gives) -> True if it can be measured there.
-    """
-
-    job: str
-    name: str
-    what: str
+    job: str  # which
+    name: str  # a few words, as the tables call it
+    what: str  # a sentence: which protocol, which settings
+    # (what a case gives, seed) -> numbers by the columns' names; None = never happened
     measure: Callable[[Given, int], dict[str, Any]]
-    warm_up: Callable[[], None]
-    cost_s: float = 0.2
+    warm_up: Callable[[], None]  # compiles what it runs
+    cost_s: float = 0.2  # about how long a run takes
+    # (what a case gives) -> True if it can be measured there
     does: Callable[[Given], bool] = field(default=lambda given: True)
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What all have to do.
+    """What all have to do."""
 
-    Attributes:
-        name: "skin"; what `--only` takes.
-        title, caption: of its figure.
-        cases: (quick) -> all cases, in order.
-        judge: what is claimed of it: (compared) -> claims.
-        drawn: column name that the figure shows, of all cases that have it, and its axis in words.
-    """
-
-    name: str
+    name: str  # "skin"; what `--only` takes
+    # title, caption: of its figure
     title: str
     caption: str
-    cases: Callable[[bool], list[Case]]
-    judge: Callable[[Compared], Iterator[Claim]]
+    cases: Callable[[bool], list[Case]]  # (quick) -> all cases, in order
+    judge: Callable[[Compared], Iterator[Claim]]  # what is claimed of it: (compared) -> claims
+    # column name that the figure shows, of all cases that have it, and its axis in words
     drawn: tuple[str, str]
 
 
@@ -163,18 +134,14 @@ class Compared:
         return {seed: inf if one[name] is None else float(one[name])
                 for seed, one in found if name in one}  # fmt: skip
 
-    def cell(self, case: Case, entry: Entry, column: Column) -> str:
-        """A cell of a table."""
-        return cell(self.values(case, entry, column.name), column)
-
     def sheets(self) -> list[Sheet]:
         """The tables: one a case, a row an entry."""
         made = []
         for case in self.cases():
-            rows = [
-                (entry.name, *(self.cell(case, entry, column) for column in case.columns))
-                for entry in doing(self.job, case)
-            ]
+            rows = []
+            for entry in doing(self.job, case):
+                cells = (cell(self.values(case, entry, one.name), one) for one in case.columns)
+                rows.append((entry.name, *cells))
             head = ("who", *(column.head for column in case.columns))
             made.append(Sheet(f"{case.title}; {len(case.seeds)} runs each", head, rows))
         return made
@@ -184,13 +151,8 @@ class Compared:
     ) -> Claim:
         """The claim that, seed by seed, the first of a pair gives less than the second.
 
-        It holds if in all cases the 95 % interval of the median difference lies below 0.
-
-        Args:
-            where: cases by a word for each.
-            name: of what is measured.
-            pair: ours, the other.
-            words: what is claimed, and why it does not hold where it does not.
+        It holds if in all cases, `where` by a word for each, the 95 % interval of the median
+        difference lies below 0.
         """
         holds, said = True, []
         for word, case in where.items():
@@ -199,7 +161,7 @@ class Compared:
             differences = [a - b if a != b else 0.0 for a, b in both]
             between = median_interval(differences)
             holds = holds and between.high < 0
-            fewer, more = (sum(map(is_so, differences)) for is_so in (_below_0, _above_0))
+            fewer, more = sum(d < 0 for d in differences), sum(d > 0 for d in differences)
             counts = f"less in {fewer} and more in {more} of {len(differences)}"
             label = f"{word}: " if word else ""
             said.append(f"{label}{shown(between, words.digits)}, {counts}")
@@ -214,14 +176,6 @@ class Words(NamedTuple):
     claim: str
     why: str = ""
     digits: int = 1
-
-
-def _below_0(value: float) -> bool:
-    return value < 0
-
-
-def _above_0(value: float) -> bool:
-    return value > 0
 
 
 def cell(values: list[float], column: Column) -> str:

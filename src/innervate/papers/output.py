@@ -1,7 +1,5 @@
 """A paper's outputs besides its figures: the table as CSV and Markdown, one page with all of it."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import io
@@ -22,58 +20,23 @@ from innervate.trace.provenance import checkout
 
 PACKAGES = ("numba", "numpy", "matplotlib")
 QUICK = "Of few seeds and settings (--quick): with all of them some verdicts may be others."
-_LAYOUT = """<style>
-figure img{display:block;width:100%;height:auto;background:#fff;border-radius:6px;padding:8px;
-margin:.5em 0}
-figure.narrow img{max-width:640px}
-figure{margin:1.2em 0}
-a{color:var(--accent)}
-.contents{columns:2 22em;padding:0;margin:.8em 0}
-.contents li{list-style:none;margin:.25em 0;break-inside:avoid}
-.failed{padding-left:1.2em}
-.failed li{margin:.3em 0}
-.good{color:var(--good)}
-.bad{color:var(--alarm)}
-table.claims{width:100%}
-.claims td{white-space:normal;overflow-wrap:anywhere}
-.claims td:first-child{white-space:normal;min-width:8.5em}
-.readings dt{font-weight:600;margin-top:.6em}
-.readings dd{margin:0 0 0 0}
-.readings :target,section:target h2{background:var(--panel)}
-@media (max-width:760px){
-figure{overflow-x:auto}
-figure:not(.narrow) img{min-width:640px}
-.claims,.claims tbody,.claims tr,.claims td{display:block}
-.claims tr:first-child{display:none}
-.claims tr{border:1px solid var(--faint);border-radius:8px;padding:.5em .8em;margin:.7em 0}
-.claims td{border:0;padding:.15em 0}
-.claims td:nth-child(2){font-weight:600}
-.claims td:nth-child(3)::before{content:"measured: ";color:var(--soft)}
-.claims td:nth-child(4):not(:empty)::before{content:"why: ";color:var(--soft)}
-}
-</style>"""
+_LAYOUT = f"<style>\n{Path(__file__).with_name('output.css').read_text(encoding='utf-8')}</style>"
 Sections = Sequence[tuple[Experiment, Sequence[Claim]]]
 NARROW_PT = 400  # a figure of one column is not blown up
 
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """What the outputs are of.
-
-    Attributes:
-        stamp: hash of the sources the results depend on.
-        redraw: results of other sources were allowed.
-        command: the line that does it again.
-        readings: what the labels in claims and reasons mean, a sentence each.
-    """
+    """What the outputs are of."""
 
     system: str
     title: str
     authors: str
     quick: bool
-    stamp: str
-    redraw: bool
-    command: str
+    stamp: str  # hash of the sources the results depend on
+    redraw: bool  # results of other sources were allowed
+    command: str  # the line that does it again
+    # what the labels in claims and reasons mean, a sentence each
     readings: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -142,11 +105,7 @@ def _table_of(sheet: Sheet) -> str:
 
 
 def insert(page: Path, name: str, text: str) -> None:
-    """Put a text between a page's marks of this name.
-
-    Raises:
-        PapersError: there is no such page, or it has no such marks.
-    """
+    """Put a text between a page's marks of this name; see around()."""
     before, after = around(page, name)
     _put(page, f"{before}\n{text}\n{after}")
 

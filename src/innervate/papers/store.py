@@ -1,7 +1,5 @@
 """Results of simulations, kept one by one as they come, so that an interrupt loses nothing."""
 
-from __future__ import annotations
-
 import json
 import threading
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What claims are worded with: shares, lists, spans of numbers; and sentences for labels."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from typing import Any

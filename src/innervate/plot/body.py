@@ -1,7 +1,5 @@
 """The report of a run of any network: headline, figures to know, graph, reports over time."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Collection, Mapping
 from html import escape
@@ -11,10 +9,10 @@ import numpy as np
 
 from innervate.analysis.spread import spread
 from innervate.network import networks
-from innervate.plot import charts, svg
+from innervate.plot import charts, page, svg
 from innervate.plot.happened import event_words
 from innervate.plot.lines import traffic_lines
-from innervate.plot.page import element, figure, headline, pictures, section, table, tiles
+from innervate.plot.page import figure, pictures, section, table, tiles
 from innervate.plot.words import count_words, figure_words, number_of
 from innervate.sim.tables import get
 
@@ -29,11 +27,10 @@ Places = dict[str, tuple[float, float]]
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """All of it, as HTML."""
-    parts = (
-        top(result, summary), graph(result.plan, result.counts.off),
-        _over_time(result), _nodes(result), _events(result.plan),
+    return page.joined(
+        top(result, summary), graph(result.plan, result.counts.off), _over_time(result),
+        _nodes(result), _events(result.plan),
     )  # fmt: skip
-    return "\n".join(part for part in parts if part)
 
 
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
@@ -56,9 +53,8 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         _counted(messages["delivered"], "message", " delivered"),
         _counted(summary["events"], "event"),
     ]
-    lines = "".join(element("p", f"{line}.") for line in traffic_lines(summary))
-    head = element("p", over, "over") + headline(summary["headline"]) + tiles(numbers) + lines
-    return f"<header>\n{head}</header>"
+    said = page.paragraphs(f"{line}." for line in traffic_lines(summary))
+    return page.top(over, summary, tiles(numbers), said)
 
 
 def _counted(count: int, thing: str, did: str = "") -> tuple[str, str]:
@@ -75,11 +71,8 @@ def graph(plan: Any, off: Collection[int] = ()) -> str:
     if not 0 < len(made.nodes) <= DRAWN_MAX:
         return ""
     places = _places(made.nodes, made.edges)
-    size = (
-        max(x for x, _ in places.values()) + 40,
-        max(y for _, y in places.values()) + 40,
-    )
-    drawing = svg.Drawing(*size, f"graph of {len(made.nodes)} nodes")
+    width, height = (max(spots) + 40 for spots in zip(*places.values(), strict=True))
+    drawing = svg.Drawing(width, height, f"graph of {len(made.nodes)} nodes")
     for a, b, _about in made.edges:
         drawing.line(places[a], places[b], "cable")
     for node, (name, (x, y)) in enumerate(places.items()):
@@ -117,11 +110,9 @@ def _over_time(result: Any) -> str:
     text = "So many so far; dashed: the events below." if marks else "So many so far."
     figures = []
     for name, times in _series(result)[:CHARTS_MAX]:
-        shown = charts.Steps(
-            np.sort(times) / 1e6, np.arange(1, len(times) + 1), charts.Axis(0, end_s, "s"),
-            charts.Axis(0, max(1, len(times))), f"{name} over time",
-            marks=marks[: charts.BARS_MAX],
-        )  # fmt: skip
+        x, y = charts.Axis(0, end_s, "s"), charts.Axis(0, max(1, len(times)))
+        shown = charts.Steps(np.sort(times) / 1e6, np.arange(1, len(times) + 1), x, y,
+                             f"{name} over time", marks=marks[: charts.BARS_MAX])  # fmt: skip
         figures.append(figure(shown.drawing, name, text))
     return section("Over time", pictures(figures, "two"))
 

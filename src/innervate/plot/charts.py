@@ -1,10 +1,9 @@
 """Line charts with marked moments, and bars: what is shown, and as what drawing."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from textwrap import wrap
 from typing import Any
 
@@ -96,6 +95,17 @@ class Bars:
     def drawing(self) -> svg.Drawing:
         """It as it stands on a page."""
         return bar_chart(self.bars, self.label or self.head, self.even)
+
+
+def marked(events: Iterable[tuple[int, str]], most: int) -> list[Mark]:
+    """Marks, in seconds, of the first moments of events (us, words); of several how many."""
+    seen: dict[int, list[str]] = {}
+    for at_us, what in events:
+        seen.setdefault(at_us, []).append(what)
+    return [
+        Mark(at_us / 1e6, what[0] if len(what) == 1 else f"{len(what)} events")
+        for at_us, what in islice(seen.items(), most)
+    ]
 
 
 def distribution(

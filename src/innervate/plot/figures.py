@@ -1,7 +1,5 @@
 """Figures of a run of any network, for `Run.plot`: delivered, latency."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from textwrap import wrap
 from typing import Any
@@ -64,9 +62,7 @@ def delivered(run: Any) -> Figure:
             ax.step(np.append(times, result.ended_us / 1e6),
                     np.append(np.arange(1, len(times) + 1), len(times)), where="post",
                     lw=1, label=label)  # fmt: skip
-    ax.set_xlim(0, result.ended_us / 1e6)
-    ax.set_xlabel("time (s)")
-    ax.set_ylabel("so far")
+    ax.set(xlim=(0, result.ended_us / 1e6), xlabel="time (s)", ylabel="so far")
     ax.legend()
     return made
 
@@ -78,9 +74,7 @@ def latency(run: Any) -> Figure:
         return nothing("no message whose latency is known")
     made, (ax,) = style.panels(style.COLUMN_IN, 2.2)
     ax.step(known, np.arange(1, len(known) + 1) / len(known), where="post", lw=1)
-    ax.set_xlabel("latency (ms)")
-    ax.set_ylabel("share delivered")
-    ax.set_ylim(0, 1.02)
+    ax.set(xlabel="latency (ms)", ylabel="share delivered", ylim=(0, 1.02))
     return made
 
 

@@ -3,8 +3,6 @@
 Where nothing can move, on paper for example, a film shows its last moment.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from innervate.plot.svg import Drawing, Value, clean, number, opening
@@ -13,17 +11,12 @@ Step = tuple[float, float]
 
 
 class Film(Drawing):
-    """A drawing whose parts appear, go and move in a cycle.
-
-    Attributes:
-        cycle_s: length of the cycle, s of the viewer's time.
-        low, high: the times that it shows, in any unit; all times given to it are of these.
-    """
+    """A drawing whose parts appear, go and move in a cycle."""
 
     def __init__(self, size: Step, label: str, window: tuple[float, float], cycle_s: float) -> None:
         super().__init__(*size, label)
-        self.low, self.high = window
-        self.cycle_s = cycle_s
+        self.low, self.high = window  # the times that it shows; all times given are of their unit
+        self.cycle_s = cycle_s  # of the viewer's time
 
     def share(self, time: float) -> float:
         """Where in the cycle a time is, 0 .. 1."""
@@ -32,13 +25,9 @@ class Film(Drawing):
     def seen(
         self, tag: str, steps: Sequence[Step], content: str | None = None, **attributes: Value
     ) -> None:
-        """An element whose opacity is that of the last step behind, 0 before the first.
+        """An element, as for `add`, whose opacity is that of the last step behind, 0 before.
 
-        Args:
-            tag: of the element.
-            steps: (time, opacity), in order of time.
-            content: text inside.
-            attributes: as for `add`.
+        Steps are (time, opacity), in order of time.
         """
         inner = self._changes("opacity", [(self.low, 0.0), *steps], "discrete")
         last = steps[-1][1] if steps else 0.0

@@ -1,7 +1,5 @@
 """What a scenario did to a network that has no words of its own for it, in words."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.network import networks
@@ -23,17 +21,19 @@ def event_words(plan: Any, fault: Any) -> str:
     graph = plan.graph
     if fault.end < 0:
         return f"node {graph.label(fault.node)} {NODES[action]}"
-    cable = f"cable {graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
+    ends = f"{graph.label_end(fault.end)} - {graph.label_end(graph.peer[fault.end])}"
+    return f"cable {ends} {cable_words(action, fault)}"
+
+
+def cable_words(action: str, fault: Any) -> str:
+    """What happened to a cable: "cut"."""
     share = share_words(fault.loss_q15 / LOSS_ONE)
-    return (
-        f"{cable} "
-        + {
-            "cut": "cut",
-            "restore": "put back",
-            "loose": f"loose, losing {share}" if fault.loss_q15 else "tight again",
-            "lose": f"loses {number_of(fault.frames, 'frame')}",
-        }[action]
-    )
+    return {
+        "cut": "cut",
+        "restore": "put back",
+        "loose": f"loose, losing {share}" if fault.loss_q15 else "tight again",
+        "lose": f"loses {number_of(fault.frames, 'frame')}",
+    }[action]
 
 
 def _on_air(action: str, fault: Any) -> str:

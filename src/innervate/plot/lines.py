@@ -1,7 +1,5 @@
 """A run of any network for a terminal, in plain words."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

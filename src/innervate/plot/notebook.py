@@ -1,7 +1,5 @@
 """A run in a cell of a notebook: the top of its report and a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -4,8 +4,6 @@ It knows what `svg.Drawing` writes: paths of straight lines and half circles, li
 rectangles, texts and drawings inside; their classes look as in the light style sheet.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator
@@ -47,8 +45,7 @@ def figure(drawing: Drawing, title: str = "", width_in: float = style.WIDE_IN) -
 
 def paint(ax: Axes, drawing: Drawing, width_in: float) -> None:
     """Show a drawing on axes that are about `width_in` wide."""
-    ax.set_xlim(0, drawing.width)
-    ax.set_ylim(drawing.height, 0)
+    ax.set(xlim=(0, drawing.width), ylim=(drawing.height, 0))
     ax.set_aspect("equal")
     ax.axis("off")
     _paint(ax, ElementTree.fromstring(drawing.render()), (0.0, 0.0), 72 * width_in / drawing.width)

@@ -1,10 +1,9 @@
 """A counterexample as a page of panels: the network after each event, the sentences below."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 
 from innervate.plot.svg import Drawing, Point
 from innervate.plot.theme import drawing_style
@@ -14,15 +13,9 @@ COLUMNS = 4
 RADIUS = 15.0
 TOP = 34.0
 LINE = 15.0
-LETTERS = 118
+LETTERS = 119
 DISC_LETTERS, WORD = 4, 9.0  # of a node's disc: letters that fit side by side, a row of a word
-STYLE = """
-.node{fill:var(--panel);stroke:var(--link);stroke-width:1.4}
-.actor{stroke:var(--accent);stroke-width:2.6}
-.pc{fill:var(--ink)}
-.way{stroke:var(--link);stroke-width:2.4;fill:none;stroke-linecap:round}
-.ring{stroke:var(--alarm);stroke-width:3.2;fill:none;stroke-linecap:round}
-"""
+STYLE = "\n" + Path(__file__).with_name("panels.css").read_text(encoding="utf-8")
 
 
 def page(title: str, panels: Sequence[Drawing], sentences: Sequence[str]) -> Drawing:
@@ -54,14 +47,8 @@ def save(drawing: Drawing, path: Path, more: str = "") -> None:
 
 def wrapped(text: str) -> list[str]:
     """A sentence as lines of at most LETTERS letters, all but the first indented."""
-    lines, line = [], ""
-    for word in text.split():
-        if len(line) + len(word) > LETTERS:
-            lines.append(line)
-            line = "    " + word
-        else:
-            line = f"{line} {word}".strip() if not line.startswith("    ") else f"{line} {word}"
-    return [*lines, line]
+    return wrap(" ".join(text.split()), LETTERS, subsequent_indent="    ", break_long_words=False,
+                break_on_hyphens=False)  # fmt: skip
 
 
 def disc(panel: Drawing, place: Point, label: str, is_end: bool, is_actor: bool) -> None:

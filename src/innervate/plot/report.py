@@ -1,44 +1,19 @@
 """A run's report: one HTML file that needs nothing else, for a browser, a phone or paper."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from html import escape
-from typing import Any, Protocol
+from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.network import networks
 from innervate.plot.page import details, element, page, section, table
 
 
-class Reportable(Protocol):
-    """What a report needs of a run."""
-
-    @property
-    def scenario(self) -> Any:
-        """The scenario as resolved: all keys, with defaults filled in."""
-
-    @property
-    def result(self) -> Any:
-        """Rows and world of the simulation."""
-
-    @property
-    def summary(self) -> Mapping[str, Any]:
-        """The figures of the run, as in summary.json."""
-
-    @property
-    def provenance(self) -> dict[str, Any]:
-        """Versions, seeds and fingerprint: what made this run."""
-
-
-def render(run: Reportable) -> str:
-    """The report of a run as HTML."""
+def render(run: Any) -> str:
+    """The report of a run (its scenario, result, summary and provenance) as HTML."""
     summary = run.summary
-    parts = [
-        networks()[summary["kind"]].report(run.result, summary),
-        _numbers(summary),
-        _again(run),
-    ]
+    body = networks()[summary["kind"]].report(run.result, summary)
+    parts = (body, _numbers(summary), _again(run))
     return page(f"{summary['name']} · innervate", "\n".join(parts))
 
 
@@ -74,19 +49,16 @@ def _value(value: Any) -> str:
     return str(value)
 
 
-def _again(run: Reportable) -> str:
+def _again(run: Any) -> str:
     """How to get the same run again, and from what it came."""
-    known = run.provenance
     text = scenarios.dump(run.scenario)
+    mark = run.summary["fingerprint"]
     lines = [
         element("p", "In the folder of this report, or with the scenario below saved to a file:"),
         element("pre", "innervate run scenario.toml --out again", "command"),
-        element(
-            "p",
-            f"It gives the same run, event by event: fingerprint {run.summary['fingerprint']}.",
-        ),
+        element("p", f"It gives the same run, event by event: fingerprint {mark}."),
     ]
-    rows = [(escape(key), escape(_value(value))) for key, value in flatten(known)]
+    rows = [(escape(key), escape(_value(value))) for key, value in flatten(run.provenance)]
     if len(text) > 40_000:
         text = text[:40_000] + "\n# ... the rest is in scenario.toml\n"
     return section(

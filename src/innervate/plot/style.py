@@ -4,8 +4,6 @@ Figures are made without pyplot, so that they may be drawn in any thread and lea
 Series differ by marker or dash as well as by colour.
 """
 
-from __future__ import annotations
-
 import io
 import os
 from collections.abc import Iterator
@@ -21,7 +19,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 COLUMN_IN = 3.5  # one column of a two-column page
 WIDE_IN = 7.16  # both
-DPI, SCREEN_DPI = 300, 130
+SCREEN_DPI = 130
 
 # Hues of Okabe and Ito.
 BLACK = "#000000"
@@ -43,44 +41,12 @@ FAINT = "#d5dae1"
 PALE = "#eef1f5"
 
 # Any: which keys there are differs between releases of matplotlib.
-_RC: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 7.5,
-    "axes.titlesize": 8,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.labelsize": 7.5,
-    "axes.linewidth": 0.6,
-    "axes.edgecolor": SOFT,
-    "axes.labelcolor": INK,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": FAINT,
-    "grid.linewidth": 0.4,
-    "text.color": INK,
-    "xtick.labelsize": 7,
-    "ytick.labelsize": 7,
-    "xtick.color": SOFT,
-    "ytick.color": SOFT,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 2.5,
-    "ytick.major.size": 2.5,
-    "legend.fontsize": 6.8,
-    "legend.frameon": False,
-    "legend.handlelength": 1.8,
-    "legend.borderaxespad": 0.2,
-    "lines.linewidth": 1.2,
-    "lines.markersize": 3.5,
-    "savefig.dpi": DPI,
-    "figure.dpi": DPI,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "innervate",
-}
+_RC: Any = dict(matplotlib.rc_params_from_file(
+    Path(__file__).with_name("house.mplstyle"), fail_on_error=True, use_default_template=False
+))  # fmt: skip
+_RC |= dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), SOFT)
+_RC |= dict.fromkeys(("axes.labelcolor", "text.color", "xtick.labelcolor", "ytick.labelcolor"), INK)
+_RC["grid.color"] = FAINT
 
 
 @contextmanager

@@ -21,11 +21,7 @@ _FORBIDDEN = {c: "\ufffd" for c in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0
 
 
 def number(value: float) -> str:
-    """A coordinate, to a hundredth.
-
-    Raises:
-        ValueError: it is not a finite number.
-    """
+    """A coordinate, to a hundredth; a ValueError if it is not finite."""
     if not math.isfinite(value):
         raise ValueError(f"a coordinate must be finite, not {value}")
     text = f"{value:.2f}".rstrip("0").rstrip(".")
@@ -94,17 +90,12 @@ def opening(tag: str, attributes: Mapping[str, Value]) -> str:
 
 
 class Drawing:
-    """An SVG drawing that is filled piece by piece.
-
-    Attributes:
-        width, height: natural size in px, > 0.
-        label: what a screen reader says of it.
-    """
+    """An SVG drawing that is filled piece by piece, of a natural size in px, > 0."""
 
     def __init__(self, width: float, height: float, label: str) -> None:
         self.width = width
         self.height = height
-        self.label = label
+        self.label = label  # what a screen reader says of it
         self._parts: list[str] = []
 
     def add(self, tag: str, content: str | None = None, **attributes: Value) -> None:

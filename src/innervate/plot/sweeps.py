@@ -1,7 +1,5 @@
 """Figures of a sweep: means over a setting with bands, runs as dots, heat maps."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -35,21 +33,13 @@ UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": 
 
 
 class Shown(NamedTuple):
-    """What a figure shows.
+    """What a figure of a sweep shows."""
 
-    Attributes:
-        x: what goes to the right: a setting, or a measure.
-        y: what goes up, or the shade of a heat map.
-        by: what tells lines apart, or what goes up in a heat map; "" = one line.
-        kind: "band" or "heat".
-        title: above it.
-    """
-
-    x: str
-    y: str
-    by: str = ""
-    kind: str = "band"
-    title: str = ""
+    x: str  # what goes to the right: a setting, or a measure
+    y: str  # what goes up, or the shade of a heat map
+    by: str = ""  # what tells lines apart, or what goes up in a heat map; "" = one line
+    kind: str = "band"  # "band" or "heat"
+    title: str = ""  # above it
 
 
 def draw(columns: Columns, shown: Shown, over: Mapping[str, int] | None) -> Figure:
@@ -118,8 +108,7 @@ def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
         if len(across) == 1:  # a band of one place cannot be seen
             ax.vlines(across, low, high, color=look["color"], lw=1.2)
     _name_places(ax, places, numbers)
-    ax.set_xlabel(label(x))
-    ax.set_ylabel(f"{label(y)}\nmean, 95 % interval")
+    ax.set(xlabel=label(x), ylabel=f"{label(y)}\nmean, 95 % interval")
 
 
 def _from_first_to_last(places: list[Any], groups: Mapping[Any, list[float]]) -> list[Any]:
@@ -136,8 +125,7 @@ def _dots(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
         kept = [(a, b) for a, b, c in rows if c == value and a is not None and b is not None]
         look = _look(number, "" if value is None else _text(value))
         ax.plot([a for a, _ in kept], [b for _, b in kept], **(look | {"ls": "", "alpha": 0.6}))
-    ax.set_xlabel(label(x))
-    ax.set_ylabel(label(y))
+    ax.set(xlabel=label(x), ylabel=label(y))
 
 
 def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
@@ -163,8 +151,7 @@ def _heat(made: Figure, ax: Axes, columns: Columns, x: str, y: str, by: str) -> 
         axis.set_ticks(range(0, len(values), step), [_text(value) for value in values[::step]])
     _slant(ax)
     ax.grid(visible=False)
-    ax.set_xlabel(label(x))
-    ax.set_ylabel(label(by))
+    ax.set(xlabel=label(x), ylabel=label(by))
     bar = made.colorbar(image, ax=ax)
     bar.set_label(f"{label(y)}, mean")
     bar.outline.set_visible(False)

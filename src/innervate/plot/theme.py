@@ -4,112 +4,22 @@ Categories are the hues of Okabe and Ito, which stay apart for colour-blind read
 shown by a shape or a word as well.
 """
 
-from __future__ import annotations
+import tomllib
+from pathlib import Path
 
 PORT_COLOURS = 8
 SHADES = 8
 
-_LIGHT = {
-    "ground": "#ffffff",
-    "panel": "#f6f7f9",
-    "ink": "#1c2430",
-    "soft": "#5b6675",
-    "faint": "#d5dae1",
-    "link": "#26303d",
-    "alarm": "#c43d00",
-    "warn": "#8a5a00",
-    "good": "#00734f",
-    "accent": "#0063a6",
-}
-_DARK = {
-    "ground": "#12161c",
-    "panel": "#1b2129",
-    "ink": "#e8ecf1",
-    "soft": "#a3aebb",
-    "faint": "#37414d",
-    "link": "#e3e9f0",
-    "alarm": "#ff8a4c",
-    "warn": "#f0c04a",
-    "good": "#4fd0a0",
-    "accent": "#6db8f2",
-}
-_PORTS_LIGHT = (
-    "#7db7e0", "#f0b545", "#6cc5a6", "#df9fc4", "#b9dcf2", "#ece37a", "#c9a98a", "#bdbdbd",
-)  # fmt: skip
-_PORTS_DARK = (
-    "#205f8f", "#98690b", "#147056", "#8a4670", "#4888ad", "#837c1d", "#6f4f33", "#5e5e5e",
-)  # fmt: skip
-_DEPTH_LIGHT = (
-    "#eff5fb", "#dfebf6", "#cde0f1", "#b9d4ea", "#a2c7e3", "#8ab9db", "#71a9d2", "#5899c8",
-)  # fmt: skip
-_DEPTH_DARK = (
-    "#18222c", "#1b2b39", "#1e3547", "#213f56", "#254a66", "#295677", "#2e6389", "#34719c",
-)  # fmt: skip
-_HEAT_LIGHT = (
-    "#f6f3ee", "#fbe6c8", "#fbd39c", "#f8bd72", "#f2a24c", "#e6852d", "#d26716", "#b34a08",
-)  # fmt: skip
-_HEAT_DARK = (
-    "#2b2722", "#3d2f1f", "#573c1b", "#764d1b", "#98611f", "#bb7a2b", "#dc9845", "#ffbd70",
-)  # fmt: skip
-
-_SHAPES = """
-text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;fill:var(--ink)}
-.ground{fill:var(--ground)}
-.small{font-size:11px;fill:var(--soft)}
-.strong{font-weight:600}
-.alarm{fill:var(--alarm)}
-.cell{stroke:var(--ground);stroke-width:1}
-.none,.off{fill:var(--ground);stroke:var(--soft);stroke-width:1;stroke-dasharray:2 1.6}
-.off{fill:var(--faint);stroke-dasharray:none}
-.lack{fill:none;stroke:var(--ink);stroke-width:1.2}
-.tree{fill:none;stroke:var(--link);stroke-width:2;stroke-opacity:.62;stroke-linecap:round}
-.cable{fill:none;stroke:var(--faint);stroke-width:1.4}
-.plug{fill:none;stroke:var(--link);stroke-width:2.2;stroke-linecap:round}
-.port{fill:var(--ink)}
-.portname{fill:var(--ground);font-size:11px;font-weight:600}
-.cut{fill:none;stroke:var(--alarm);stroke-width:2.4;stroke-dasharray:4 3}
-.gap{fill:none;stroke:var(--alarm);stroke-width:3;stroke-linecap:round}
-.touch{fill:none;stroke:var(--accent);stroke-width:1.6;stroke-dasharray:5 3}
-.axis{fill:none;stroke:var(--soft);stroke-width:1}
-.grid{fill:none;stroke:var(--faint);stroke-width:1}
-.series{fill:none;stroke:var(--accent);stroke-width:2;stroke-linejoin:round}
-.area{fill:var(--accent);fill-opacity:.16;stroke:none}
-.bar{fill:var(--accent)}
-.mark{fill:none;stroke:var(--ink);stroke-width:1.2;stroke-dasharray:4 3}
-.even{fill:none;stroke:var(--ink);stroke-width:1.4;stroke-dasharray:5 3}
-.deaf{fill:var(--faint);fill-opacity:.5}
-.ones{fill:var(--soft)}
-.outlined{stroke:var(--ink);stroke-width:1.4}
-.struck{fill:none;stroke:var(--alarm);stroke-width:1.6}
-.warn{fill:var(--alarm)}
-.done{fill:none;stroke:var(--good);stroke-width:2.2;stroke-linecap:round;stroke-linejoin:round}
-.mesh{fill:none;stroke:var(--soft);stroke-opacity:.36;stroke-width:1.1}
-.gone{stroke-dasharray:2 4}
-.zone{fill:var(--panel);fill-rule:evenodd}
-.fence{fill:none;stroke:var(--ink);stroke-width:1.8;stroke-linejoin:round}
-.walk{fill:none;stroke:var(--accent);stroke-width:1.8;stroke-dasharray:.1 4.5;stroke-linecap:round}
-.way{fill:none;stroke:var(--accent);stroke-width:3;stroke-linecap:round;stroke-linejoin:round}
-.flooder{fill:none;stroke:var(--alarm);stroke-width:1.4;stroke-dasharray:3 2}
-.relay{fill:var(--d5);stroke:var(--ground);stroke-width:1}
-.leader,.robot{fill:var(--ink);stroke:var(--ground);stroke-width:1}
-.ringed{fill:none;stroke:var(--ink);stroke-width:1.8}
-.other{fill:none;stroke:var(--soft);stroke-width:1.4}
-.wave{fill:none;stroke:var(--alarm);stroke-width:2}
-.failed{stroke-dasharray:3 6}
-.cursor{fill:none;stroke:var(--accent);stroke-width:2}
-.heavy{font-size:13px;font-weight:600}
-"""
+_HERE = Path(__file__).parent
+_PALETTE = tomllib.loads((_HERE / "palette.toml").read_text(encoding="utf-8"))
+_SHAPES = "\n" + (_HERE / "shapes.css").read_text(encoding="utf-8")
 
 
-def _variables(names: dict[str, str], dark: bool) -> str:
-    families = {
-        "p": _PORTS_DARK if dark else _PORTS_LIGHT,
-        "d": _DEPTH_DARK if dark else _DEPTH_LIGHT,
-        "h": _HEAT_DARK if dark else _HEAT_LIGHT,
-    }
-    words = [f"--{name}:{colour}" for name, colour in names.items()]
-    for letter, colours in families.items():
-        words += [f"--{letter}{i}:{colour}" for i, colour in enumerate(colours)]
+def _variables(look: str) -> str:
+    words = []
+    for name, colour in _PALETTE[look].items():
+        shades = enumerate(colour) if isinstance(colour, list) else [("", colour)]
+        words += [f"--{name}{i}:{shade}" for i, shade in shades]
     return ";".join(words)
 
 
@@ -119,7 +29,7 @@ def _fills() -> str:
 
 def variables() -> str:
     """The colours as CSS variables: light, dark where the reader prefers it, light on paper."""
-    light, dark = _variables(_LIGHT, False), _variables(_DARK, True)
+    light, dark = _variables("light"), _variables("dark")
     return (
         f":root{{color-scheme:light dark;{light}}}\n"
         f"@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"

@@ -1,7 +1,5 @@
 """Numbers of any run in plain words, for people."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from innervate.analysis.words import figure_words as figure_words

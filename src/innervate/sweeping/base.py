@@ -27,30 +27,17 @@ TAKEN = (PLAN_FILE, "jobs.sqlite", "results.parquet", "points.parquet", "timings
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """A scenario that is run many times.
+    """A scenario that is run many times."""
 
-    Attributes:
-        text: its TOML.
-        file: what its copy in the results is called.
-        folder: where relative paths in it start.
-        settings: (dotted key, value) that hold for every run.
-        kind: of network.
-        name: of a scenario that is no file, which the copy's name says nothing of.
-    """
-
-    text: str
-    file: str
-    folder: str
-    settings: Settings = ()
-    kind: str = ""
-    name: str = ""
+    text: str  # its TOML
+    file: str  # what its copy in the results is called
+    folder: str  # where relative paths in it start
+    settings: Settings = ()  # (dotted key, value) that hold for every run
+    kind: str = ""  # of network
+    name: str = ""  # of a scenario that is no file, which the copy's name says nothing of
 
     def scenario(self, settings: Iterable[tuple[str, Any]] = (), seed: int | None = None) -> Any:
-        """The scenario with these settings besides.
-
-        Raises:
-            ScenarioError: it is not valid.
-        """
+        """The scenario with these settings besides; a ScenarioError if it is not valid."""
         changes = [*self.settings, *settings]
         return scenarios.loads(self.text, changes, seed, self.file, self.folder)
 
@@ -67,11 +54,7 @@ class Base:
         return shlex.join([*words, "--seed", str(seed)])
 
     def anywhere(self, settings: Settings) -> Base:
-        """The same, with relative paths made full, so that the copy can be run elsewhere.
-
-        Raises:
-            ScenarioError: it is not valid with these settings.
-        """
+        """The same, valid as it is, with full paths for relative ones: it can be run elsewhere."""
         made = self.scenario(settings)
         plain = msgspec.to_builtins(made.model)
         full = tomllib.loads(scenarios.dump(made))
@@ -96,9 +79,8 @@ def base_of(source: Source, changes: Iterable[str] | Mapping[str, Any]) -> Base:
         text, label, folder = scenarios.read(source)
         name = ""
     file = Path(label).name
-    settings = tuple(_setting(c) for c in changes) if not isinstance(changes, Mapping) else ()
-    if isinstance(changes, Mapping):
-        settings = tuple(changes.items())
+    pairs = changes.items() if isinstance(changes, Mapping) else map(_setting, changes)
+    settings = tuple(pairs)
     if file in TAKEN:
         file, settings = "scenario.toml", (("name", Path(file).stem), *settings)
     kind = dict(settings).get("kind") or _kind(text)

@@ -1,12 +1,11 @@
 """Values that follow from others: arithmetic over scenario keys, `2 + 100 / protocol.beacon_hz`."""
 
-from __future__ import annotations
-
 import ast
 import math
 import operator
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from innervate.sweeping.errors import SweepError
@@ -22,14 +21,7 @@ _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Mod: operator.mod,
 }
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "min": min,
-    "max": max,
-    "abs": abs,
-    "round": round,
-    "floor": math.floor,
-    "ceil": math.ceil,
-    "sqrt": math.sqrt,
-    "log2": math.log2,
+    one.__name__: one for one in (min, max, abs, round, math.floor, math.ceil, math.sqrt, math.log2)
 }
 
 
@@ -65,25 +57,15 @@ class Formula:
         return f"_{self.keys.index(name)}"
 
     def value(self, look_up: Callable[[str], Any]) -> float | int:
-        """What it comes to.
-
-        Args:
-            look_up: the value of a key; raises KeyError.
-
-        Raises:
-            SweepError: a key has no number, or the result is none.
-        """
-        try:
-            result = self._of(self._tree, look_up)
-            fits = isinstance(result, int | float) and math.isfinite(result)
-        except ZeroDivisionError:
-            raise SweepError(f"{self.where}: {self.text} divides by zero") from None
-        except (OverflowError, ValueError, TypeError, RecursionError):
-            raise SweepError(f"{self.where}: {self.text} comes to no number") from None
-        if not fits:
-            raise SweepError(f"{self.where}: {self.text} comes to no number")
-        found: float | int = result
-        return found
+        """What it comes to, with the values of keys that `look_up` gives; it has to be a number."""
+        with suppress(OverflowError, ValueError, TypeError, RecursionError):
+            try:
+                result = self._of(self._tree, look_up)
+            except ZeroDivisionError:
+                raise SweepError(f"{self.where}: {self.text} divides by zero") from None
+            if isinstance(result, int | float) and math.isfinite(result):
+                return result
+        raise SweepError(f"{self.where}: {self.text} comes to no number")
 
     def _of(self, node: ast.expr, look_up: Callable[[str], Any]) -> Any:
         if isinstance(node, ast.Constant) and type(node.value) in (int, float):

@@ -3,8 +3,6 @@
 All are executors of the standard library's kind, behind one function, `engine()`.
 """
 
-from __future__ import annotations
-
 import logging
 import math
 import multiprocessing
@@ -33,23 +31,14 @@ _NOT_BEGUN = (BrokenExecutor, EOFError, OSError)
 
 
 class Engine:
-    """Takes batches.
+    """Takes batches, and has them run."""
 
-    Attributes:
-        workers: batches it runs at the same time.
-        ahead: batches to hand out at most, so that nobody waits for the next one.
-        died: errors of a batch whose worker died.
-        lost: errors of a batch when the whole engine is gone.
-        falls_together: when a worker dies, all batches under way are lost with it.
-        look_s: after so long without a result ask `lacks`; None = never, workers are its own.
-    """
-
-    workers = 1
-    ahead = 1
-    died: tuple[type[BaseException], ...] = ()
-    lost: tuple[type[BaseException], ...] = ()
-    falls_together = False
-    look_s: float | None = None
+    workers = 1  # batches it runs at the same time
+    ahead = 1  # batches to hand out at most, so that nobody waits for the next one
+    died: tuple[type[BaseException], ...] = ()  # errors of a batch whose worker died
+    lost: tuple[type[BaseException], ...] = ()  # those of a batch when the whole engine is gone
+    falls_together = False  # when a worker dies, all batches under way are lost with it
+    look_s: float | None = None  # after so long without a result ask `lacks`; None = never
 
     def submit(self, work: Callable[..., Any], *args: Any) -> Future[Any]:
         """Run `work(*args)` on some worker; its result comes by the future."""
@@ -95,11 +84,7 @@ class Pool(Engine):
         self._pool = self._start()
 
     def _start(self) -> Executor:
-        """A pool that works; found out now, lest every run be taken for one that kills workers.
-
-        Raises:
-            SweepError: its workers die before they have done anything.
-        """
+        """A pool that works; found out now, lest every run be taken for one that kills workers."""
         for _ in range(_STARTS):
             pool = self._make()
             try:

@@ -1,7 +1,5 @@
 """A run's summary as one flat row: `data.loss_ratio`, `recoveries.routed_ms`, ..."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from typing import Any

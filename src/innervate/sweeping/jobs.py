@@ -21,17 +21,7 @@ from innervate.sweeping.work import Outcome
 
 SCHEMA = 1
 FILE = "jobs.sqlite"
-_TABLES = """
-CREATE TABLE IF NOT EXISTS meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS places (id INTEGER PRIMARY KEY, facts TEXT UNIQUE NOT NULL);
-CREATE TABLE IF NOT EXISTS runs (
-    point TEXT NOT NULL, repeat INTEGER NOT NULL, seed INTEGER NOT NULL,
-    state TEXT NOT NULL CHECK (state IN ('done', 'failed')),
-    figures TEXT, reason TEXT NOT NULL,
-    wall_s REAL NOT NULL, began_s REAL NOT NULL, place INTEGER NOT NULL REFERENCES places (id),
-    PRIMARY KEY (point, repeat)
-) WITHOUT ROWID;
-"""
+_TABLES = Path(__file__).with_name("jobs.sql").read_text(encoding="utf-8")
 _INSERT = "INSERT OR IGNORE INTO runs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"
 _DELETE = "DELETE FROM runs WHERE point = ? AND repeat = ?"
 
@@ -56,17 +46,13 @@ class Jobs:
     Args:
         folder: where it lies, made if it is not there; None keeps it in memory.
 
-    Attributes:
-        torn: the runs whose rows were found torn, (point, repeat).
-        torn_places: numbers of the places of which nothing is known any more.
-
     Raises:
         SweepError: it cannot be written, is damaged, or somebody else is at work on it.
     """
 
     def __init__(self, folder: Path | None) -> None:
-        self.torn: set[tuple[str, int]] = set()
-        self.torn_places: set[int] = set()
+        self.torn: set[tuple[str, int]] = set()  # runs whose rows were found torn, (point, repeat)
+        self.torn_places: set[int] = set()  # numbers of those of which nothing is known any more
         self._name = ":memory:" if folder is None else str(folder / FILE)
         with self._errors():
             self._db = sqlite3.connect(self._name, timeout=0.2, isolation_level=None)
@@ -143,14 +129,9 @@ class Jobs:
                 outcomes = list(outcomes)
                 again = [(o.point, o.repeat) for o in outcomes if (o.point, o.repeat) in self.torn]
                 self._db.executemany(_DELETE, again)
-                self._db.executemany(
-                    _INSERT,
-                    [
-                        (o.point, o.repeat, o.seed, "failed" if o.row is None else "done", o.row,
-                         o.reason, o.wall_s, o.began_s, number)
-                        for o in outcomes
-                    ],
-                )  # fmt: skip
+                rows = [(o.point, o.repeat, o.seed, "failed" if o.row is None else "done", o.row,
+                         o.reason, o.wall_s, o.began_s, number) for o in outcomes]  # fmt: skip
+                self._db.executemany(_INSERT, rows)
                 self._db.execute("COMMIT")
             except BaseException:
                 if self._db.in_transaction:

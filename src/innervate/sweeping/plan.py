@@ -4,8 +4,6 @@ A point is known by its settings, not by its number, and so are its seeds: point
 are added later change nothing for those that were there.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -35,21 +33,13 @@ ALL = "all"
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One combination of settings.
+    """One combination of what is varied."""
 
-    Attributes:
-        index: its place in the plan, from 0.
-        settings: (dotted key, value), the derived ones last.
-        columns: what the results' columns say of them.
-        digest: names it, by its settings alone.
-        stream: names its random numbers; points that are compared in pairs share it.
-    """
-
-    index: int
-    settings: Settings
-    columns: dict[str, Any]
-    digest: str
-    stream: str
+    index: int  # its place in the plan, from 0
+    settings: Settings  # (dotted key, value), the derived ones last
+    columns: dict[str, Any]  # what the results' columns say of them
+    digest: str  # names it, by its settings alone
+    stream: str  # names its random numbers; points that are compared in pairs share it
 
     @property
     def label(self) -> str:
@@ -59,31 +49,21 @@ class Point:
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """What is to be run.
+    """What is to be run."""
 
-    Attributes:
-        base: the scenario.
-        axes: what is varied; the points are all combinations, the last axis changing fastest.
-        derived: (key, formula) of values that follow from others.
-        repeat: runs of every point, at most with `until`.
-        batch: repeats between two decisions of `until`.
-        until: rules that end a point early once all of them are met.
-        root: the root seed.
-        paired: keys in which points differ that share their seeds, run by run; or ("all",).
-        name: of the sweep.
-        plots: figures to draw of it.
-    """
-
-    base: Base
+    base: Base  # the scenario
+    # what is varied; the points are all combinations, the last axis changing fastest
     axes: tuple[Axis, ...] = ()
+    # (key, formula) of values that follow from others
     derived: tuple[tuple[str, Formula], ...] = ()
-    repeat: int = 1
-    batch: int = 10
-    until: tuple[Until, ...] = ()
-    root: int = 1
+    repeat: int = 1  # runs of every point, at most with `until`
+    batch: int = 10  # repeats between two decisions of `until`
+    until: tuple[Until, ...] = ()  # rules that end a point early once all of them are met
+    root: int = 1  # the root seed
+    # keys in which points differ that share their seeds, run by run; or ("all",)
     paired: tuple[str, ...] = ()
-    name: str = "sweep"
-    plots: tuple[Any, ...] = field(default=())
+    name: str = "sweep"  # of the sweep
+    plots: tuple[Any, ...] = field(default=())  # figures to draw of it
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -92,11 +72,7 @@ class SweepPlan:
 
     @cached_property
     def points(self) -> tuple[Point, ...]:
-        """All points in order.
-
-        Raises:
-            SweepError: too many, a key varied twice, or a derived value that cannot be told.
-        """
+        """All points in order; a SweepError if there are too many, or a key is varied twice."""
         keys = self.keys
         twice = [key for key in dict.fromkeys(keys) if keys.count(key) > 1]
         if twice:
@@ -117,11 +93,8 @@ class SweepPlan:
         )
 
     def _point(self, index: int, steps: tuple[Any, ...], tables: dict[str, Any]) -> Point:
-        varied = [
-            pair
-            for axis, step in zip(self.axes, steps, strict=True)
-            for pair in zip(axis.keys, step, strict=True)
-        ]
+        varied = [(key, value) for axis, step in zip(self.axes, steps, strict=True)
+                  for key, value in zip(axis.keys, step, strict=True)]  # fmt: skip
         values = {key: plain(value) for key, value in varied}
         free = {k: v for k, v in values.items() if k not in self.paired and ALL not in self.paired}
         columns = {key: column(value) for key, value in varied}

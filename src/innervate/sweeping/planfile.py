@@ -27,8 +27,6 @@ by = "protocol.beacon_hz"
 ```
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -91,11 +89,7 @@ def is_plan(text: str) -> bool:
 
 
 def read(text: str, path: str) -> PlanFile:
-    """The plan in a TOML text; `path` is what errors call it.
-
-    Raises:
-        ScenarioError: an unknown key, a value of the wrong kind, with its line.
-    """
+    """The plan in a TOML text; `path` is what a ScenarioError calls it, with the line."""
     try:
         raw = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -112,11 +106,7 @@ def scenario_of(plan: PlanFile, folder: str) -> str:
 
 
 def axes_of(plan: PlanFile, path: str) -> tuple[Axis, ...]:
-    """What a plan file varies, [vary] first.
-
-    Raises:
-        SweepError: a list that is none, or lists of different lengths that go together.
-    """
+    """What a plan file varies, [vary] first; a SweepError where that is no list of values."""
     made = [
         axis((key,), [(value,) for value in listed(value, f"{path}: {key}")], f"{path}: {key}")
         for key, value in leaves(plan.vary)
@@ -129,11 +119,7 @@ def axes_of(plan: PlanFile, path: str) -> tuple[Axis, ...]:
 
 
 def plots_of(plan: PlanFile, path: str) -> tuple[PlotTable, ...]:
-    """The figures that a plan file asks for, each with a name.
-
-    Raises:
-        SweepError: a heat map without its second axis, or two that would be one file.
-    """
+    """The figures that a plan file asks for, each with a name of its own, or a SweepError."""
     made: dict[str, PlotTable] = {}
     for number, plot in enumerate(plan.plot):
         name = plot.name or f"plot-{number}"
@@ -146,11 +132,7 @@ def plots_of(plan: PlanFile, path: str) -> tuple[PlotTable, ...]:
 
 
 def together(lists: dict[str, list[Any]], where: str) -> Axis:
-    """The axis of lists that go together.
-
-    Raises:
-        SweepError: they are not of one length.
-    """
+    """The axis of lists that go together, all of one length, else a SweepError."""
     lengths = {key: len(values) for key, values in lists.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{key} has {count}" for key, count in lengths.items())
@@ -159,12 +141,9 @@ def together(lists: dict[str, list[Any]], where: str) -> Axis:
 
 
 def listed(value: Any, where: str) -> list[Any]:
-    """The values of a list, or of a text like "2..8" or "a,b".
+    """The values of a list, or of a text like "2..8" or "a,b"; a SweepError if it is neither.
 
     An element { name = "...", value = ... } goes by its name in tables and figures.
-
-    Raises:
-        SweepError: it is neither.
     """
     if isinstance(value, str):
         return [v for part in split(value, ",") for v in values_of(part.strip(), where)]

@@ -29,22 +29,16 @@ NAMED_MAX = 8  # figures that an error names
 
 @dataclass(slots=True)
 class State:
-    """How far a point is.
+    """How far a point is."""
 
-    Attributes:
-        point: which.
-        goal: repeats that it gets as far as is decided.
-        done, failed: how many of these there are, and failed ones among them.
-        values: for each measure followed, its value by repeat; None where it has none.
-        finished: nothing more will be run.
-    """
-
-    point: Point
-    goal: int = 0
+    point: Point  # which
+    goal: int = 0  # repeats that it gets as far as is decided
+    # done, failed: how many of these there are, and failed ones among them
     done: int = 0
     failed: int = 0
+    # for each measure followed, its value by repeat; None where it has none
     values: dict[str, dict[int, float]] = field(default_factory=dict)
-    finished: bool = False
+    finished: bool = False  # nothing more will be run
 
     def series(self, measure: str) -> list[float]:
         """A measure's values in order of repeat."""
@@ -56,17 +50,10 @@ class Scheduler:
     """Brings a sweep from where it is to its end.
 
     Args:
-        plan: what is wanted.
-        jobs: what is there.
-        engine: who runs the rest.
+        plan, jobs, engine: what is wanted, what is there, who runs the rest.
         show: measures that somebody wants to see: runs have to have them.
         follow: measures whose values are kept at hand for a display, besides those of `until`.
         progress: called after every batch, with this.
-
-    Attributes:
-        states: how far every point is.
-        ran: runs done by this process.
-        lacks: what nothing goes on without, in words; "" = it goes on.
     """
 
     def __init__(
@@ -80,8 +67,8 @@ class Scheduler:
     ) -> None:
         self.plan = plan
         self.states = [State(point) for point in plan.points]
-        self.ran = 0
-        self.lacks = ""
+        self.ran = 0  # runs done by this process
+        self.lacks = ""  # what nothing goes on without, in words; "" = it goes on
         self._jobs = jobs
         self._engine = engine
         self._progress = progress or (lambda scheduler: None)

@@ -1,7 +1,5 @@
 """What runs of a sweep come from besides its plan: innervate, a network's folder, files named."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import tomllib
@@ -43,10 +41,7 @@ def _mark(folder: Path, edition: Any) -> str:
 def files_named(made: Scenario, folder: str, varied: Mapping[str, Any]) -> dict[str, str]:
     """The files that a scenario names, and those that it is given in turn: (in words, hash).
 
-    Args:
-        made: the scenario.
-        folder: where relative paths start.
-        varied: the values that it is given, by key.
+    Relative paths start in `folder`; `varied` are the values that it is given, by key.
     """
     whole = texts(tomllib.loads(scenarios.dump(made)))  # with full paths
     paths = [text for text in whole if os.path.isabs(text)]

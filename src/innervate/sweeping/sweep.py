@@ -1,7 +1,5 @@
 """sweep(scenario, vary=...) -> Sweep: plan, run what is missing, write the tables."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -153,11 +151,7 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
 
 
 def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
-    """The plan that these describe (see sweep); what they say goes before a plan file's.
-
-    Raises:
-        SweepError, ScenarioError: see sweep().
-    """
+    """The plan that these describe, as in sweep(); what they say goes before a plan file's."""
     file, source = _plan_file(scenario)
     base = base_of(source, planned.get("overrides", ()))
     axes, derived = _axes(planned.get("vary", ())), dict(planned.get("derive") or {})
@@ -195,11 +189,7 @@ def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
 def _count(
     name: Literal["repeat", "batch"], planned: Planned, file: planfile.PlanFile | None, usual: int
 ) -> int:
-    """How often, as was asked for, or as the plan file says.
-
-    Raises:
-        SweepError: never, or too often.
-    """
+    """How often, as was asked for, or as the plan file says; not never, and not too often."""
     count = _first(planned.get(name), getattr(file, name, None), usual)
     if not 1 <= count <= REPEAT_MAX:
         raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
@@ -274,11 +264,7 @@ def _checked(plan: SweepPlan) -> tuple[SweepPlan, Scenario]:
 
 
 def _prepare(folder: Path) -> None:
-    """Make the folder, unless something else is in it.
-
-    Raises:
-        SweepError: it cannot be used.
-    """
+    """Make the folder, unless something else is in it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         names = {entry.name for entry in folder.iterdir()}
@@ -348,3 +334,36 @@ def _writing(folder: Path) -> Iterator[None]:
             f"{folder} cannot be written: {why}; what is done is kept in {FILE}, give the same "
             "command again"
         ) from error
+
+
+def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
+    """A sweep from its folder; nothing is run.
+
+    Raises:
+        SweepError: it is no sweep's folder, or damaged.
+    """
+    import polars
+
+    path = Path(folder)
+    try:
+        origin = json.loads((path / "provenance.json").read_text(encoding="utf-8"))
+        written = (path / PLAN_FILE).read_bytes()
+        results, timings = (
+            polars.read_parquet(path / name) for name in (tables.RESULTS, tables.TIMINGS)
+        )
+        complete = bool(origin["complete"])
+        planned, scenario = origin.get("plan"), origin["identity"]["the scenario"]
+    except FileNotFoundError as error:
+        name = Path(str(error.filename or "")).name or tables.RESULTS
+        raise SweepError(f"{path} is not a finished sweep's folder: it has no {name}") from None
+    except (OSError, ValueError, KeyError, TypeError, polars.exceptions.PolarsError):
+        raise SweepError(f"{path} is damaged; give its sweep again") from None
+    if planned not in (None, sha256(written).hexdigest()):
+        raise SweepError(
+            f"the tables in {path} are of another plan than its {PLAN_FILE}: its last sweep was "
+            "killed before its end, or the file was changed; give that sweep again"
+        )
+    plan = make_plan(path / PLAN_FILE)
+    if plan.identity()["the scenario"] != scenario:
+        raise SweepError(f"{path / plan.base.file} is missing or was changed; give its sweep again")
+    return Sweep(plan, results, timings, complete, written=path)

@@ -33,10 +33,7 @@ Columns = dict[str, list[Any]]
 def results(plan: SweepPlan, jobs: Jobs, repeats: Sequence[int]) -> polars.DataFrame:
     """One row for every run, by point and repeat.
 
-    Args:
-        plan: of the sweep.
-        jobs: the runs.
-        repeats: how many runs of every point belong to it; those that are missing are left out.
+    `repeats`: how many runs of every point belong to it; those that are missing are left out.
     """
     aside = (*FIRST, *plan.keys, *AFTER)
     columns = _columns(_rows(plan, jobs, repeats), aside)
@@ -144,23 +141,15 @@ def measures(table: polars.DataFrame, keys: Iterable[str]) -> list[str]:
     import polars
 
     aside = {*FIRST, *AFTER, *keys}
-    return [
-        name
-        for name, kind in table.schema.items()
-        if name not in aside and kind in (polars.Int64, polars.Float64)
-    ]
+    numbers = (polars.Int64, polars.Float64)
+    return [name for name, kind in table.schema.items() if kind in numbers and name not in aside]
 
 
 def points(
     table: polars.DataFrame, plan_points: Sequence[Point], wanted: Sequence[str], level: float
 ) -> polars.DataFrame:
-    """For every point and measure: runs with a value, mean, interval, median, extremes.
-
-    Args:
-        table: the results.
-        plan_points: of the sweep.
-        wanted: which measures.
-        level: of the confidence interval, as a share.
+    """For every point and measure of the results: runs with a value, mean, interval of a level,
+    quantiles, extremes.
     """
     keys = plan_points[0].columns if plan_points else ()
     rows = _of_points(table, plan_points, wanted, level)
@@ -199,22 +188,14 @@ def reasons(failed: polars.DataFrame) -> dict[str, int]:
 
 
 def write(table: polars.DataFrame, path: Path) -> None:
-    """Write a table as Parquet, whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Write a table as Parquet, whole or not at all (OSError)."""
     packed = io.BytesIO()  # written by ourselves, a full disk is an OSError that says so
     table.write_parquet(packed, compression="zstd", statistics=True, row_group_size=1 << 16)
     write_bytes(bytes(packed.getbuffer()), path)
 
 
 def write_bytes(content: bytes, path: Path) -> None:
-    """Put a file in the place of an older one, whole or not at all.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Put a file in the place of an older one, whole or not at all (OSError)."""
     fresh = path.with_name(f".{path.name}.part")
     try:
         fresh.write_bytes(content)

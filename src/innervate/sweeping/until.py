@@ -4,14 +4,12 @@ Decided on the first 1, 2, 3, ... batches of repeats in order of repeat, never o
 be ready first, so that it is the same on any number of processes.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from innervate.analysis.intervals import Interval, mean_interval
+from innervate.analysis.intervals import mean_interval
 from innervate.sweeping.errors import SweepError
 
 _RULE = re.compile(r"\s*([\w.-]+)\.ci\s*=\s*([0-9.eE+-]+)\s*(%?)\s*")
@@ -19,25 +17,15 @@ _RULE = re.compile(r"\s*([\w.-]+)\.ci\s*=\s*([0-9.eE+-]+)\s*(%?)\s*")
 
 @dataclass(frozen=True, slots=True)
 class Until:
-    """A point is finished when the mean of a measure is known well enough.
+    """A point is finished when the mean of a measure is known well enough."""
 
-    Attributes:
-        measure: a column of the results.
-        half: greatest half width of its 95 % interval, in the measure's unit or as a share.
-        relative: `half` is a share of the mean.
-    """
-
-    measure: str
-    half: float
-    relative: bool
+    measure: str  # a column of the results
+    half: float  # greatest half width of its 95 % interval, in the measure's unit or as a share
+    relative: bool  # `half` is a share of the mean
 
     def __str__(self) -> str:
         value = f"{100 * self.half:g}%" if self.relative else f"{self.half:g}"
         return f"{self.measure}.ci={value}"
-
-    def interval(self, values: Sequence[float]) -> Interval | None:
-        """Mean and 95 % interval; None without values."""
-        return mean_interval(values) if values else None
 
     def met(self, values: Sequence[float]) -> bool:
         """Whether these values, of the first repeats in order, are enough."""
@@ -59,11 +47,7 @@ class Until:
 
 
 def parse(text: str) -> Until:
-    """The rule of an `--until` text: "recoveries.routed_ms.ci=5%", "throughput.ci=0.01".
-
-    Raises:
-        SweepError: it is not written like that.
-    """
+    """The rule of an `--until` text: "recoveries.routed_ms.ci=5%", "throughput.ci=0.01"."""
     match = _RULE.fullmatch(text)
     try:
         half = float(match[2]) if match else math.nan

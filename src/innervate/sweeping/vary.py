@@ -4,8 +4,6 @@
 which both keys change together.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable
@@ -35,14 +33,10 @@ class Named:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One direction of a sweep.
+    """One direction of a sweep."""
 
-    Attributes:
-        keys: dotted scenario keys that change together.
-        steps: for every step a value of each key; Named where it goes by a name.
-    """
-
-    keys: tuple[str, ...]
+    keys: tuple[str, ...]  # dotted scenario keys that change together
+    # for every step a value of each key; Named where it goes by a name
     steps: tuple[tuple[Any, ...], ...]
 
 
@@ -51,9 +45,6 @@ def parse(text: str) -> Axis:
 
     Values are separated by commas, a range is FIRST..LAST or FIRST..LAST..STEP with both ends
     included. Several keys before the "=" take as many values, joined by ":", in every step.
-
-    Raises:
-        SweepError: it cannot be read as that.
     """
     name, equals, rest = text.partition("=")
     where = f"--vary {text[:80]}"
@@ -71,11 +62,7 @@ def parse(text: str) -> Axis:
 
 
 def axis(keys: tuple[str, ...], steps: Iterable[tuple[Any, ...]], where: str) -> Axis:
-    """A checked axis; `where` begins the error messages.
-
-    Raises:
-        SweepError: a key that is none, no steps, or two equal ones.
-    """
+    """An axis of keys that are some, and of steps, no two equal; `where` begins a SweepError."""
     for key in keys:
         check_key(key, where)
     if len(set(keys)) < len(keys):
@@ -96,11 +83,7 @@ def axis(keys: tuple[str, ...], steps: Iterable[tuple[Any, ...]], where: str) ->
 
 
 def check_key(key: str, where: str) -> None:
-    """That a key can be varied or derived.
-
-    Raises:
-        SweepError: it is none, or has the name of another column of the results.
-    """
+    """Raise a SweepError if a key is none, or called as another column of the results."""
     if not _KEY.fullmatch(key):
         raise SweepError(f'{where}: "{key}" is no key; keys are names with dots between')
     if key == "seed":
@@ -116,11 +99,7 @@ def check_key(key: str, where: str) -> None:
 
 
 def values_of(text: str, where: str) -> list[Any]:
-    """The values of one part of a list: those of a range, or the one it is.
-
-    Raises:
-        SweepError: a range that leads nowhere.
-    """
+    """The values of one part of a list: of a range, which has to lead somewhere, or the one."""
     match = _RANGE.fullmatch(text)
     if match is None:
         return [parse_value(text)]

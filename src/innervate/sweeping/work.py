@@ -3,8 +3,6 @@
 Nothing here loads polars, whose threads do not outlive the fork that worker processes come from.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os
@@ -43,23 +41,15 @@ class Job(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """One run done.
-
-    Attributes:
-        point, repeat, seed: which.
-        row: its figures as JSON; None if it failed.
-        reason: why it failed; "" if it did not.
-        wall_s: how long it took, s.
-        began_s: when it began, s since 1970.
-    """
+    """What came of one run."""
 
     point: str
     repeat: int
     seed: int
-    row: str | None
-    reason: str
-    wall_s: float
-    began_s: float
+    row: str | None  # its figures as JSON; None if it failed
+    reason: str  # why it failed; "" if it did not
+    wall_s: float  # how long it took, s
+    began_s: float  # when it began, s since 1970
 
 
 class Done(NamedTuple):
@@ -77,11 +67,7 @@ _loaded: set[frozenset[str]] = set()
 
 
 def run_batch(base: Base, jobs: list[Job]) -> Done:
-    """Run these; what fails is an outcome as well.
-
-    Raises:
-        KeyboardInterrupt: Ctrl-C; nothing of the run in progress counts.
-    """
+    """Run these; what fails is an outcome as well, Ctrl-C is none."""
     mark = base.mark()
     return Done([_run(base, mark, job) for job in jobs], place(), sources_of(base.kind))
 

@@ -17,7 +17,7 @@ from innervate.networks.mesh.papers import (
     stretch,
     versions,
 )
-from innervate.papers.experiment import FAILS
+from innervate.papers.experiment import FAILS, Measured
 
 QUICK = True
 BINS = gateway.BEFORE + gateway.AFTER_S // gateway.BIN_S
@@ -278,7 +278,7 @@ def is_of(claim, words):
 
 
 def verdict(figure, words, edits):
-    judged = experiment(figure).judge(results(figure, *edits), QUICK)
+    judged = list(experiment(figure).judge(Measured(results(figure, *edits), QUICK)))
     (found,) = (claim for claim in judged if is_of(claim, words))
     assert found.verdict != FAILS or found.reason or words in UNEXPLAINED, found
     return found.verdict
@@ -301,5 +301,5 @@ def test_the_state_of_a_node_has_a_most(monkeypatch, over, holds):
 @pytest.mark.parametrize("figure", FIGURES)
 def test_every_row_is_tried_on_both_sides(figure):
     tried = [words for name, words, *_ in EDGES if name == figure] + [BY_SIZE]
-    for claim in experiment(figure).judge(results(figure), QUICK):
+    for claim in experiment(figure).judge(Measured(results(figure), QUICK)):
         assert sum(is_of(claim, words) for words in tried) == 1, claim.claim

@@ -6,7 +6,7 @@ import pytest
 
 from innervate.networks.mesh.papers import FIGURES, document
 from innervate.papers import output
-from innervate.papers.experiment import FAILS, OURS, summary
+from innervate.papers.experiment import FAILS, OURS, Measured, summary
 from tests.networks.mesh.papers.test_edges import QUICK, experiment, results
 
 # What the document says where claims quote it, its sentences whole, by section.
@@ -35,7 +35,7 @@ FROM_DOCUMENT = re.compile(r'the document, ([\d.]+): "(.+)"')
 
 
 def rows(figure):
-    return experiment(figure).judge(results(figure), QUICK)
+    return list(experiment(figure).judge(Measured(results(figure), QUICK)))
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ import pytest
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.plot import report
+from innervate.plot import page
 
 PLAN = Of(names=["a", "b", "c&d"])
 
@@ -58,13 +59,15 @@ def test_a_flow_is_a_row_where_there_are_several():
     assert report._flows(result, {"flows": flows[:1]}) == ""
 
 
-def test_events_and_reports_are_rows(monkeypatch):
-    monkeypatch.setattr(report, "fault_words", lambda plan, fault: fault.words)
+def test_events_and_reports_are_rows():
+    def events(result):
+        return page.events(result, lambda fault: fault.words)
+
     plan = Of(faults=[Of(at_us=1_234_567, words="kill <a>"), Of(at_us=2_000_000, words="b")])
     both = [["1.235 s", "kill &lt;a&gt;"], ["2.000 s", "b"]]
-    assert cells(report._events(Of(plan=plan, ended_us=2_000_000))) == both
-    assert cells(report._events(Of(plan=plan, ended_us=1_999_999))) == both[:1]  # interrupted
-    assert report._events(Of(plan=Of(faults=[]), ended_us=9)) == ""
+    assert cells(events(Of(plan=plan, ended_us=2_000_000))) == both
+    assert cells(events(Of(plan=plan, ended_us=1_999_999))) == both[:1]  # interrupted
+    assert events(Of(plan=Of(faults=[]), ended_us=9)) == ""
     (known, name), *_ = report.REPORTS.items()
     rows = np.array([(999,), (known,), (known,)], [("code", np.int64)])
     assert cells(report._reports(Of(rows=rows))) == [[name, "2"], ["code 999", "1"]]

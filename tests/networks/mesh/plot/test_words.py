@@ -6,7 +6,7 @@ from types import SimpleNamespace as Of
 import pytest
 
 import innervate
-from innervate.networks.mesh.plot import node_report, words
+from innervate.networks.mesh.plot import report, words
 from innervate.networks.mesh.protocol.constants import WHOLE_GRAPH
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
@@ -154,9 +154,9 @@ def test_nodes_one_by_one_and_many_folded(monkeypatch, count, folded):
     one = Of(node=0, on=False, neighbours=2, depth=None, version=0, control_bytes=1, forwarded=1,
              share=0.5, suspected=0)  # fmt: skip
     top = Of(**vars(one) | {"depth": 0, "on": True, "version": 3})
-    monkeypatch.setattr(node_report, "nodes", lambda _: [one, *[top] * (count - 1)])
-    monkeypatch.setattr(node_report, "roles", lambda _: {0: "robot"})
-    made = node_report.section_of(Of(plan=PLAN))
+    monkeypatch.setattr(report, "nodes", lambda _: [one, *[top] * (count - 1)])
+    monkeypatch.setattr(report.mesh_map, "roles", lambda _: {0: "robot"})
+    made = report.nodes_section(Of(plan=PLAN))
     cells = re.findall("<td[^>]*>([^<]*)</td>", made)
     assert (cells[1], cells[3:5]) == ("robot, off", ["unknown", "none"])
     assert (cells[10], cells[12:14]) == ("robot", ["0", "3"])
@@ -170,7 +170,7 @@ def test_nodes_one_by_one_and_many_folded(monkeypatch, count, folded):
 def test_a_standby_that_leads_is_told_from_one_that_waits(monkeypatch, node, depth, on, said):
     one = Of(node=node, on=on, neighbours=2, depth=depth, version=0, control_bytes=1, forwarded=1,
              share=0.5, suspected=0)  # fmt: skip
-    monkeypatch.setattr(node_report, "nodes", lambda _: [one])
-    monkeypatch.setattr(node_report, "roles", lambda _: {0: "gateway", 1: "standby", 2: ""})
-    cells = re.findall("<td[^>]*>([^<]*)</td>", node_report.section_of(Of(plan=PLAN)))
+    monkeypatch.setattr(report, "nodes", lambda _: [one])
+    monkeypatch.setattr(report.mesh_map, "roles", lambda _: {0: "gateway", 1: "standby", 2: ""})
+    cells = re.findall("<td[^>]*>([^<]*)</td>", report.nodes_section(Of(plan=PLAN)))
     assert cells[1] == said

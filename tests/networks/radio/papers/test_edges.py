@@ -19,7 +19,7 @@ from innervate.networks.radio.papers import (
     turnaround,
 )
 from innervate.networks.radio.papers.common import RESERVED, SIZES
-from innervate.papers.experiment import FAILS
+from innervate.papers.experiment import FAILS, Measured
 from tests.networks.radio.papers.results import (
     AS_N,
     CONTEND,
@@ -214,7 +214,7 @@ def is_of(claim, words):
 
 
 def verdict(figure, words, edits):
-    judged = experiment(figure).judge(results(figure, *edits), QUICK)
+    judged = list(experiment(figure).judge(Measured(results(figure, *edits), QUICK)))
     (found,) = (claim for claim in judged if is_of(claim, words))
     return found.verdict
 
@@ -236,7 +236,7 @@ def test_a_verdict_turns_at_its_threshold(figure, words, inside, outside):
 def test_both_transitions_are_nineteen_or_twenty_slots(monkeypatch, us, holds):
     monkeypatch.setattr(fig12, "TURNAROUND_US", us)
     made = results("fig12")
-    judged = experiment("fig12").judge(made, QUICK) if us == 2000 else None
+    judged = list(experiment("fig12").judge(Measured(made, QUICK))) if us == 2000 else None
     found = next(iter(judged or [next(fig12.judge(fig12.Measured(made, QUICK)))]))
     assert is_of(found, BY_TURNAROUND)
     assert (found.verdict != FAILS) == holds
@@ -245,5 +245,5 @@ def test_both_transitions_are_nineteen_or_twenty_slots(monkeypatch, us, holds):
 @pytest.mark.parametrize("figure", FIGURES)
 def test_every_row_is_tried_on_both_sides(figure):
     tried = {words for name, words, *_ in EDGES if name == figure} | {BY_TURNAROUND}
-    for claim in experiment(figure).judge(results(figure), QUICK):
+    for claim in experiment(figure).judge(Measured(results(figure), QUICK)):
         assert sum(is_of(claim, words) for words in tried) == 1, claim.claim

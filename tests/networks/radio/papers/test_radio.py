@@ -9,7 +9,7 @@ from innervate.networks.radio.papers import FIGURES, experiment
 from innervate.networks.radio.papers.common import first_from, slope
 from innervate.networks.radio.papers.fairness import longest
 from innervate.papers import main
-from innervate.papers.experiment import FAILS, HOLDS
+from innervate.papers.experiment import FAILS, HOLDS, Measured
 from innervate.papers.words import spans
 from tests.fixtures.papers import made_of_rows
 from tests.plot.ink import measured
@@ -156,7 +156,7 @@ def bent(value, name, change):
 @pytest.mark.parametrize(("figure", "words", "keys", "name", "change"), TIPS)
 def test_another_result_gives_another_verdict(radio_made, figure, words, keys, name, change):
     def holds(values):
-        claims = radio_made.experiments[figure].judge(values, True)
+        claims = list(radio_made.experiments[figure].judge(Measured(values, True)))
         (claim,) = [claim for claim in claims if words in claim.claim]
         return claim.verdict != FAILS
 

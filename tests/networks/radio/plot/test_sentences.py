@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from innervate.networks.radio.analysis.summary import summarize
-from innervate.networks.radio.plot import report, slotted_report
+from innervate.networks.radio.plot import report
 from innervate.networks.radio.protocol.constants import REPORT_COLLISION
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.scenario import from_dict, plan
@@ -122,11 +122,11 @@ def test_what_nobody_knows_of(count, said):
 def test_what_is_said_of_the_slotted_level(monkeypatch, kind, delivered, said):
     model = Of(protocol=Of(mac="tdma"), traffic=Of(kind=kind))
     run = Of(plan=Of(scenario=Of(model=model), params={"packet_slots": 5}))
-    monkeypatch.setattr(slotted_report, "warnings", lambda _: [])
+    monkeypatch.setattr(report, "warnings", lambda _: [])
     summary = {"name": "n", "seed": 1, "headline": {"text": "", "level": "ok"}, "stations": 3,
                "delivered": delivered, "throughput": 0.5, "duration_slots": 123.46, "jain": 1.0,
                "collisions": 0}  # fmt: skip
-    assert f"<p>{said}</p>" in slotted_report.top(run, summary)
+    assert f"<p>{said}</p>" in report.slotted_top(run, summary)
 
 
 def summary_of(**changes):

@@ -107,9 +107,8 @@ def _delay(mean=6.0):
 def _fig8a(off=0.0, detected=0.0):
     found = {}
     sweep = fig8a.grid(QUICK)
-    for one in [one for rule in RULES for one in fig8a._cells(sweep, rule)]:
-        k = one[2]
-        found |= recovered(fig8a.case(*one), sweep.seeds, 7 + k + off, detected=k + detected)
+    for one in [one for rule in RULES for one in fig8a.cells(sweep, rule)]:
+        found |= recovered(one, sweep.seeds, 7 + one.k + off, detected=one.k + detected)
     return found
 
 
@@ -120,7 +119,7 @@ def _fig8b(off=0.0, slope=0.0, scatter=0.0):
             for k in fig8b.KS:
                 seeds = fig8b.seeds(QUICK)
                 value = ceil(h / 2) + k + off + slope * h + scatter * (-1) ** place
-                found |= recovered(fig8b.case(setup, k, rule), seeds, value)
+                found |= recovered(rule.case(setup, fig8b.HZ, k), seeds, value)
     return found
 
 
@@ -134,7 +133,9 @@ def _eq7(beyond=0.0, half=0.0):
                 middle = eq7.HALF[setup] if is_half else eq7.depth(setup)
                 more = half if is_half and not beyond else beyond
                 middle = eq7.depth(setup) if beyond else middle
-                found |= recovered(eq7.case(setup, rule, cut), seeds, middle + eq7.K + more)
+                found |= recovered(
+                    rule.case(setup, eq7.HZ, eq7.K, cut), seeds, middle + eq7.K + more
+                )
     return found
 
 
@@ -143,7 +144,7 @@ def _at_most(ms=40.0):
     for rule in RULES:
         for setup, _ in at_most.SKINS:
             for k in at_most.KS:
-                one = at_most.case(setup, rule, k)
+                one = rule.case(setup, at_most.HZ, k)
                 found |= recovered(one, at_most.seeds(QUICK), [30 / 4, ms / 4])
     return found
 

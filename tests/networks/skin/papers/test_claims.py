@@ -144,7 +144,9 @@ def test_waves_are_near_the_floor():
 
 
 def test_random_cables_cut_off_few():
-    found = columns(recovery, (eq7.case("setup-3", RULES[0], "random link"),), seeds_of(3))
+    found = columns(
+        recovery, (RULES[0].case("setup-3", eq7.HZ, eq7.K, "random link"),), seeds_of(3)
+    )
     bound = (eq7.depth("setup-3") + eq7.K) * 4
     assert all(ms is None or ms <= bound for ms in found["converged_ms"])
 

@@ -5,7 +5,7 @@ import pytest
 
 from innervate.networks.skin.papers import experiment, fig8a, fig8b
 from innervate.networks.skin.papers.common import RULES
-from innervate.papers.experiment import FAILS
+from innervate.papers.experiment import FAILS, Measured
 from tests.networks.skin.papers.results import QUICK, of
 
 # Figure, words of its claims, what the runs left just inside, and just outside.
@@ -48,7 +48,7 @@ CLOSE = [
 
 
 def verdicts(figure, words, results):
-    judged = experiment(figure).judge(results, QUICK)
+    judged = list(experiment(figure).judge(Measured(results, QUICK)))
     found = {claim.verdict for claim in judged if words in claim.claim}
     assert found
     return found
@@ -78,7 +78,7 @@ def late(results, cases, seeds, count):
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_4(rule):
     sweep, results = fig8a.grid(QUICK), of("fig8a")
-    cases = [fig8a.case(*one) for one in fig8a._cells(sweep, rule)]
+    cases = fig8a.cells(sweep, rule)
     most = int(0.05 * len(cases) * len(sweep.seeds))
     words = f"{rule.words}: convergence of setup 1"
     assert FAILS not in verdicts("fig8a", words, late(results, cases, sweep.seeds, most))
@@ -88,7 +88,7 @@ def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_4(rule):
 @pytest.mark.parametrize("setup", fig8b.SETUPS)
 def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_6(setup):
     rule, seeds, results = RULES[0], fig8b.seeds(QUICK), of("fig8b")
-    cases = [fig8b.case(setup, k, rule) for k in fig8b.KS]
+    cases = [rule.case(setup, fig8b.HZ, k) for k in fig8b.KS]
     most = int(0.05 * len(cases) * len(seeds))
     words = f"{rule.words}: convergence = (ceil"
     assert FAILS not in verdicts("fig8b", words, late(results, cases, seeds, most))
@@ -100,7 +100,7 @@ def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_6(setup):
 def test_one_detection_beyond_a_period_is_one_too_many(extreme, holds, sign):
     results = of("fig8a")
     sweep = fig8a.grid(QUICK)
-    case = fig8a.case(*fig8a._cells(sweep, RULES[0])[0])
+    case = fig8a.cells(sweep, RULES[0])[0]
     key = case.point(sweep.seeds).key
     times = list(results[key]["detected_ms"])
     times[0] += sign * extreme * case.period_ms
@@ -126,7 +126,7 @@ def test_almost_linear_is_an_r2_of_four_fifths(fit, holds):
 
 @pytest.mark.parametrize(("off", "share"), [(2.9, 100), (-2.9, 100), (3.1, 0), (-3.1, 0)])
 def test_how_many_recoveries_are_within_a_period_more_is_said(off, share):
-    judged = experiment("fig8b").judge(of("fig8b", off=off), QUICK)
+    judged = list(experiment("fig8b").judge(Measured(of("fig8b", off=off), QUICK)))
     said = [claim.measurement for claim in judged if "(Eq. 6)" in claim.claim]
     assert len(said) == len(RULES)
     assert all(text.endswith(f"; within +-3 T at least {share} %") for text in said), said

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from innervate.networks.skin.papers import FIGURES, eq3, experiment
-from innervate.papers.experiment import FAILS, HOLDS, reading
+from innervate.papers.experiment import FAILS, HOLDS, Measured, reading
 from innervate.plot import style
 from tests.fixtures.papers import CHEAP
 from tests.networks.skin.papers import results
@@ -33,7 +33,7 @@ def test_no_labels_overlap(made, name):
 def test_bars_and_lines_lie_within_their_panels(name):
     """Of figures whose runs are too long to be made here: of results that are written here."""
     with style.house():
-        figure = experiment(name).draw(results.of(name), True)
+        figure = experiment(name).draw(Measured(results.of(name), True))
     assert [found for ax in figure.axes for found in beyond(ax)] == []
 
 
@@ -46,7 +46,7 @@ def test_a_legend_names_only_clocks_that_have_points(moved):
             if flag not in moved or setup == eq3.SETUPS[0]:
                 got[eq3.sizes(setup, flag, True).key] = [[]]
     with style.house():
-        ax = experiment("eq3").draw(got, True).axes[2]
+        ax = experiment("eq3").draw(Measured(got, True)).axes[2]
     named = [text.get_text() for text in ax.get_legend().get_texts()]
     assert named == [*(eq3.CLOCKS[flag] for flag in eq3.CLOCKS if flag in moved), "2 max(H)"]
 
@@ -110,7 +110,9 @@ def test_points_are_told_apart(name):
 
 def test_figures_have_the_same_bytes_twice(made, tmp_path):
     with style.house():
-        paths = style.save(made.experiments["eq9"].draw(made.values, True), tmp_path, "eq9")
+        paths = style.save(
+            made.experiments["eq9"].draw(Measured(made.values, True)), tmp_path, "eq9"
+        )
     for path in paths:
         assert path.read_bytes() == (made.folder / path.name).read_bytes()
 

@@ -73,7 +73,7 @@ EDGES = [
 
 
 def verdicts(figure, words, knobs):
-    judged = experiment(figure).judge(of(figure, **knobs), QUICK)
+    judged = list(experiment(figure).judge(Measured(of(figure, **knobs), QUICK)))
     return [claim.verdict for claim in judged if words in claim.claim]
 
 
@@ -91,7 +91,7 @@ def judged_with_one(figure, key, name, value, words, **knobs):
     """Verdicts where one value among all of the runs is another one."""
     made = of(figure, **knobs)
     made[key][name][-1] = value
-    judged = experiment(figure).judge(made, QUICK)
+    judged = list(experiment(figure).judge(Measured(made, QUICK)))
     return [claim.verdict != FAILS for claim in judged if words in claim.claim]
 
 
@@ -99,7 +99,7 @@ def judged_with_one(figure, key, name, value, words, **knobs):
 def test_a_bound_on_convergence_has_no_exception(place):
     rule, k_ms = RULES[place], 1000 / eq7.HZ
     for setup, cut in ((eq7.SETUPS[0], "random link"), (eq7.SETUPS[-1], "interface 1")):
-        one = eq7.case(setup, rule, cut)
+        one = rule.case(setup, eq7.HZ, eq7.K, cut)
         key, bound = one.point(eq7.seeds(QUICK, cut)).key, eq7.depth(setup) + eq7.K + 3
         for more, holds in ((0.0, True), (0.1, False)):
             found = judged_with_one("eq7", key, "converged_ms", (bound + more) * k_ms, "+ 3 T")
@@ -108,7 +108,7 @@ def test_a_bound_on_convergence_has_no_exception(place):
 
 def test_nor_has_the_one_with_half_the_height():
     setup, half = next(iter(eq7.HALF.items()))
-    one = eq7.case(setup, RULES[0], "interface 1")
+    one = RULES[0].case(setup, eq7.HZ, eq7.K)
     key = one.point(eq7.seeds(QUICK, "interface 1")).key
     for more, holds in ((0.0, True), (0.1, False)):
         ms = (half + eq7.K + more) * one.period_ms
@@ -119,7 +119,7 @@ def test_nor_has_the_one_with_half_the_height():
 @pytest.mark.parametrize("k", at_most.KS)
 def test_at_most_so_many_ms_has_no_exception(place, k):
     for setup, _ in at_most.SKINS:
-        key = at_most.case(setup, RULES[place], k).point(at_most.seeds(QUICK)).key
+        key = RULES[place].case(setup, at_most.HZ, k).point(at_most.seeds(QUICK)).key
         for ms, holds in ((50.0, True), (50.1, False)):
             found = judged_with_one("at_most", key, "converged_ms", ms, "at most 50 ms", ms=40.0)
             # The paper gives no k: judged is the least that tolerates a lost beacon.
@@ -135,7 +135,7 @@ def judged_with_some(figure, cases, seeds, more, words):
         for i in range(count):
             one, place = points[i // len(seeds)], i % len(seeds)
             made[one.key]["converged_ms"][place] += more * cases[i // len(seeds)].period_ms
-        judged = experiment(figure).judge(made, QUICK)
+        judged = list(experiment(figure).judge(Measured(made, QUICK)))
         found.append([claim.verdict != FAILS for claim in judged if words in claim.claim])
     return found
 
@@ -144,11 +144,11 @@ def judged_with_some(figure, cases, seeds, more, words):
 def test_one_recovery_in_twenty_may_lie_outside_a_band(place):
     but_one = [i != place for i in range(3)]
     sweep = fig8a.grid(QUICK)
-    cases = [fig8a.case(*one) for one in fig8a._cells(sweep, RULES[place])]
+    cases = fig8a.cells(sweep, RULES[place])
     found = judged_with_some("fig8a", cases, sweep.seeds, 3.1, "convergence of setup 1")
     assert found == [[True] * 3, but_one]
     for setup in ("setup-1", "setup-4"):  # of every setup by itself
-        cases = [fig8b.case(setup, k, RULES[place]) for k in fig8b.KS]
+        cases = [RULES[place].case(setup, fig8b.HZ, k) for k in fig8b.KS]
         found = judged_with_some("fig8b", cases, fig8b.seeds(QUICK), 2.1, "(Eq. 6)")
         assert found == [[True] * 3, but_one]
 
@@ -161,7 +161,7 @@ def test_one_recovery_in_twenty_may_lie_outside_a_band(place):
 def test_one_recovery_with_a_loop_is_one_too_many(rule, words):
     made = of("loop")
     made[loop.loops(rule, QUICK).key]["episodes"][-1] = 1
-    failed = [claim.claim for claim in experiment("loop").judge(made, QUICK)
+    failed = [claim.claim for claim in experiment("loop").judge(Measured(made, QUICK))
               if claim.verdict == FAILS]  # fmt: skip
     assert len(failed) == 1
     assert words in failed[0]
@@ -171,7 +171,7 @@ def test_every_row_is_tried_on_both_sides():
     tried = {figure: [words for name, words, *_ in EDGES if name == figure] for figure in FIGURES}
     by_graph = ("only one node", "n_bal", "more deterministic")  # below
     for figure in FIGURES:
-        for claim in experiment(figure).judge(of(figure), QUICK):
+        for claim in experiment(figure).judge(Measured(of(figure), QUICK)):
             words = (*tried[figure], *by_graph)
             assert any(word in claim.claim for word in words), claim.claim
 
@@ -189,7 +189,7 @@ def test_who_may_balance_is_counted(monkeypatch, tied, holds):
 
 
 def test_more_deterministic_means_a_third_of_the_spread():
-    from innervate.networks.skin.papers import fig10, fig10_gain
+    from innervate.networks.skin.papers import fig10
 
     got = Measured(of("fig10", worst=0.30), QUICK)
     losses = [fig10.values(got, "setup-7", fig10.STATIC, "loss")]
@@ -198,8 +198,8 @@ def test_more_deterministic_means_a_third_of_the_spread():
     for share, holds in ((0.33, True), (0.34, False)):
         values = {fig10.STATIC: losses[0], fig10.DYNAMIC: [0.0, share * spread]}
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(fig10_gain, "values", lambda got, s, mode, n, v=values: v[mode])
-            assert (fig10_gain._spread(got).verdict != FAILS) == holds
+            patch.setattr(fig10, "values", lambda got, s, mode, n, v=values: v[mode])
+            assert (fig10._spread(got).verdict != FAILS) == holds
 
 
 def test_a_span_has_its_ends_and_nothing_beyond():

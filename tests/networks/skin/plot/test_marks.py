@@ -2,15 +2,21 @@
 
 from types import SimpleNamespace as Of
 
+import numpy as np
+
 from innervate.networks.skin.plot.digest import MARKS_MAX, Digest
 from innervate.plot.charts import Mark
 from innervate.scenario.actions.cables import CUT, KILL
 
 
 def marked(*events):
-    """Marks of (us, action)."""
+    """Marks of (us, action), on the chart of the whole run."""
     incidents = [Of(at_us=at_us, fault=Of(action=action)) for at_us, action in events]
-    return Digest._marked(Of(incidents=incidents))
+    history = Of(steps=lambda: (np.zeros(1, np.int64), np.zeros(1, np.int64)))
+    made = Of(
+        incidents=incidents, history=history, result=Of(ended_us=9), _received=lambda *_: None
+    )
+    return Digest.overview(made)[0].marks
 
 
 def test_events_of_one_moment_have_one_mark():

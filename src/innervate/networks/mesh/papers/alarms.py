@@ -1,7 +1,5 @@
 """Sections 2.1 and 2.2: how soon the monitor knows of a crossing, and how far the robot got."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +10,7 @@ from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.networks.mesh.papers import testbed as beds
-from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, ours, said
+from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
 from innervate.networks.mesh.scenario.profiles import FAST, GOOD_CDB
@@ -21,7 +19,7 @@ from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
 from innervate.sim.status import ON_FRAME
-from innervate.topology.placement import distance_cm, path_loss_cdb
+from innervate.topology.placement import distance_cm, neighbours, path_loss_cdb
 from innervate.trace.streams import stream
 
 TITLE = "2.1, 2.2: a robot crosses the fence"
@@ -123,7 +121,6 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
     (way,) = plan.walks
     x, y = position_cm(way, at_us)
     here = (round(x), round(y))
-    near: list[list[int]] = [[] for _ in range(count)]
     links = [link for link in plan.good if way.node not in link]
     for node, place in enumerate(plan.positions_cm):
         if node != way.node:
@@ -132,10 +129,7 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
             least = min(radio.base_cdb[there], radio.base_cdb[back])
             if least >= radio.rssi50_cdb + GOOD_CDB + loss:
                 links.append((node, way.node))
-    for a, b in links:
-        if a not in gone and b not in gone:
-            near[a].append(b)
-            near[b].append(a)
+    near = neighbours(count, [(a, b) for a, b in links if a not in gone and b not in gone])
     return bool(distances(near, beds.GATEWAY)[way.node] != UNREACHABLE)
 
 
@@ -235,7 +229,7 @@ def _within(
     )
     why = "" if good else _late(runs["ms"])
     if sentence is None:
-        return ours("beyond", claim, measured, verdict(good), why)
+        return beyond(claim, measured, verdict(good), why)
     readings = ["A3", "A4"] if scheme is ROUTED else []
     return said(sentence, claim, measured, verdict(good, *readings), why)
 
@@ -260,8 +254,7 @@ def _flood(got: Measured) -> Claim:
     (half, late), (half_alone, late_alone) = (
         np.percentile(ms, (50, 99)) for ms in (runs["ms"], alone)
     )
-    return ours(
-        "beyond",
+    return beyond(
         "a flood beside the routed alarm shortens the tail and costs nothing in the median",
         f"{WORST} dead, median / 99 %: {half_alone:.1f} / {late_alone:.1f} ms routed alone, "
         f"{half:.1f} / {late:.1f} ms both; flooded copies "
@@ -278,8 +271,7 @@ def _floor(got: Measured) -> Claim:
     hops, over = runs["hops"][came], runs["overrun_m"][came]
     each = runs["ms"][came] / hops
     sample = 0.02  # m, at 1 m/s and 50 Hz
-    return ours(
-        "beyond",
+    return beyond(
         "what is left is the air: a sample, then a frame and its backoff for every hop (1.5 times)",
         f"{np.median(each):.1f} ms a hop in the median, {hops.mean():.1f} hops, at most "
         f"{hops.max():.0f}; a frame with its turnaround and mean backoff is {air_ms():.1f} ms; of "

@@ -1,7 +1,5 @@
 """What was asked for, in one table: thirty nodes, eight neighbours in the mean, 250 kbit/s."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,20 +27,14 @@ TAKEN = (gateway.SILENT, gateway.ONE)
 
 
 class Bar(NamedTuple):
-    """Something that was asked for.
-
-    Attributes:
-        words: what.
-        asked, got: the bar and what was measured, in words.
-        used: how much of what is allowed was used; 1 = just reached.
-        of: runs, crossings, messages.
-    """
+    """Something that was asked for."""
 
     words: str
+    # asked, got: the bar and what was measured, in words
     asked: str
     got: str
-    used: float
-    of: str
+    used: float  # how much of what is allowed was used; 1 = just reached
+    of: str  # runs, crossings, messages
 
 
 def measure_round(testbed: MeshTestbed, seed: int) -> dict[str, Any]:

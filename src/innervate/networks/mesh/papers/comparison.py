@@ -1,7 +1,5 @@
 """The mesh's job beside other protocols: messages between any two, deaths, alarms, a dead root."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any, NamedTuple
@@ -82,17 +80,12 @@ def world(given: Given, seed: int) -> World:
 
 def _rounds(made: World, seed: int, gone: list[int], given: Given) -> list[Sent]:
     """In each round every live node writes to another one, always the same; or raises an alarm."""
-    draw = stream(seed, "papers/senders")
-    alive = [node for node in range(made.nodes) if node not in gone]
-    left = list(alive)
-    order = [left.pop(draw.draw(len(left))) for _ in alive]
-    to = {node: [one for one in alive if one != node][draw.draw(len(alive) - 1)] for node in order}
+    to = beds.correspondents(seed, [node for node in range(made.nodes) if node not in gone])
     span = made.nodes * GAP_US
     if given.get("alarms"):
-        order.remove(GATEWAY)
-        to = dict.fromkeys(order, in_field.MONITOR)
+        to = dict.fromkeys((node for node in to if node != GATEWAY), in_field.MONITOR)
     return [Sent(BEGIN_US + k * span + i * GAP_US + 1, node, to[node], LATER if k else FIRST)
-            for k in range(given["rounds"]) for i, node in enumerate(order)]  # fmt: skip
+            for k in range(given["rounds"]) for i, node in enumerate(to)]  # fmt: skip
 
 
 def _through_an_outage(made: World, seed: int) -> list[Sent]:

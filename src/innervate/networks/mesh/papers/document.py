@@ -1,19 +1,13 @@
 """The document's sentences that claims quote, word by word; every other claim is one of ours."""
 
-from __future__ import annotations
-
+from functools import partial
 from typing import NamedTuple
 
 from innervate.papers.experiment import OURS, Claim, quoted
 
 
 class Sentence(NamedTuple):
-    """A sentence of the document, or a part of one.
-
-    Attributes:
-        section: where it stands.
-        words: as they stand there.
-    """
+    """A sentence of the document, or a part of one: where it stands, and word by word."""
 
     section: str
     words: str
@@ -60,3 +54,6 @@ def said(sentence: Sentence, claim: str, measurement: str, verdict: str, reason:
 def ours(figure: str, claim: str, measurement: str, verdict: str, reason: str = "") -> Claim:
     """A claim of ours, which the document does not make; beside a section, "beyond" or "asked"."""
     return Claim(figure, claim, measurement, verdict, reason, OURS)
+
+
+beyond = partial(ours, "beyond")

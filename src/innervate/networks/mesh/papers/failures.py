@@ -1,7 +1,5 @@
 """Section 2.2: nodes die, and their neighbours replace them; every rule of replacing."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,11 +11,11 @@ from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary import connected, looped
 from innervate.networks.mesh.papers import losses
 from innervate.networks.mesh.papers import testbed as beds
-from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, ours, said
+from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, beyond, ours, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options, seeds_of
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -34,6 +32,7 @@ EVERY_US = 2_000_000
 QUIET: Options = (("period_s", 60.0), ("period_max_s", 60.0))
 DURATION_S = (DEATHS_US + ROUNDS * EVERY_US) / 1e6 + 2.5
 WORST = 8
+dead_of = sized((0, 4, 8), tuple(range(9)))  # numbers of nodes that die, one point each
 
 
 class Rule(NamedTuple):
@@ -85,11 +84,6 @@ def share(runs: dict[str, Any], which: str) -> tuple[int, int]:
 
 ORIGIN = Rule("random, not the origin", (("failover", "random"), ("avoid", "origin")))
 NAMES = {"document": "the document to the letter"}
-
-
-def dead_of(quick: bool) -> tuple[int, ...]:
-    """Numbers of nodes that die, one point each."""
-    return (0, 4, 8) if quick else tuple(range(9))
 
 
 def point(rule: Rule, dead: int, quick: bool, end: bool = False) -> Point:
@@ -224,8 +218,7 @@ def _ours(got: Measured, rule: Rule) -> Claim:
     dead = dead_of(got.quick)
     worst = max(lost(got, rule, which, k) for k in dead for which in ("first", "later"))
     what = "alternates, then a search along the path trace" if rule is SEARCH else "the whole graph"
-    return ours(
-        "beyond",
+    return beyond(
         f"{what}: every packet arrives (0.995) while its recipient is connected, without "
         "end-to-end acks",
         f"{dead[0]}..{dead[-1]} dead, at worst {percent(1 - worst, 2)}; {WORST} dead: "
@@ -243,8 +236,7 @@ def _again(got: Measured) -> Claim:
         worse.append(with_ > without + 0.01)
         if worse[-1]:
             why.append(f"{rule.name}: {_how(got, rule, 'later', end=True)}")
-    return ours(
-        "beyond",
+    return beyond(
         "end-to-end acks with up to five retries help every rule, or do no harm (0.01)",
         f"{WORST} dead, later packets without and with: {joined(words)}",
         verdict(not any(worse)),

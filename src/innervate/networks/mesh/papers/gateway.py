@@ -1,7 +1,5 @@
 """The gateway dies: what is lost without a standby, and how soon all have tables of one."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +9,7 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers import testbed as beds
-from innervate.networks.mesh.papers.document import ours
+from innervate.networks.mesh.papers.document import beyond, ours
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options, seeds_of
 from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
@@ -39,15 +37,12 @@ SOONEST = 30.0  # seconds until all have tables of the new gateway, at most
 
 
 class Setting(NamedTuple):
-    """Who could take over, who dies, and how much is sent.
-
-    Attributes:
-        every_s: everyone sends a message to the gateway and one to another node so often; 0 never.
-    """
+    """Who could take over, who dies, and how much is sent."""
 
     name: str
     standbys: tuple[int, ...]
     dead: tuple[int, ...]
+    # everyone sends a message to the gateway and one to another node so often; 0 never
     every_s: int
 
 
@@ -182,8 +177,7 @@ def judge(got: Measured) -> Claims:
 def _twice(got: Measured) -> Claim:
     runs = [got[point(setting, got.quick)] for setting in SETTINGS]
     twice, both = (sum(sum(one[name]) for one in runs) for name in ("duplicates", "both"))
-    return ours(
-        "beyond",
+    return beyond(
         "nothing is delivered twice to a node, or both to the old gateway and to the new one",
         f"{twice} messages twice to a node and {both} to both, in "
         f"{sum(len(one['both']) for one in runs)} runs",
@@ -203,8 +197,7 @@ def _taken(got: Measured, setting: Setting) -> Claim:
     within = sum(time <= most for time in times)
     most_s = f"at most {times[-1]:.1f} s" if np.isfinite(times[-1]) else "in some never"
     waits = got.floats(point(setting, got.quick), "led_s")
-    return ours(
-        "beyond",
+    return beyond(
         f"{setting.name}: tables of the new gateway within {most:g} s of the gateway's death",
         f"{within} of {len(times)} networks; {most_s}{sent}",
         verdict(within == len(times)),
@@ -217,8 +210,7 @@ def _busy(got: Measured) -> Claim:
     x, share = _shares(got, BUSY, 1)
     before, during = share[x < 0].mean(), share[x > 0].mean()
     times = takeovers(got, BUSY)
-    return ours(
-        "beyond",
+    return beyond(
         "who looks for a dead gateway does not disturb the others, however many do (0.98)",
         f"everyone sends to it every {BUSY.every_s} s: of messages among others "
         f"{percent(before, 1)} come before its death and {percent(during, 1)} after it; tables of "

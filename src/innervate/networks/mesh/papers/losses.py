@@ -1,7 +1,5 @@
 """What messages were lost by, as their last transmission shows."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from typing import Any
 

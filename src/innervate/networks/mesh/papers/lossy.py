@@ -1,7 +1,5 @@
 """Section 2.2: frames get lost, nobody dies; what a rule that takes loss for death does."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,14 +7,14 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground, distances
-from innervate.networks.mesh.papers.document import RELIABLE, ours, said
+from innervate.networks.mesh.papers.document import RELIABLE, beyond, ours, said
 from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_TABLE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.sim.tables import get
@@ -31,15 +29,11 @@ FIVE = 5
 FROM_S, UNTIL_S, BIN_S = 8, 68, 5
 EVERY_S = 2  # one message from everyone, to somebody drawn anew
 NONE = 255
+losses = sized((0, 5), (0, 1, 2, 5, 10, 20))  # shares of frames lost, in percent
 THREE = Rule("document, three transmissions", (*DOCUMENT.protocol[:-1], ("transmissions", 3)))
 PLAIN_SEARCH = Rule("search", (*SEARCH.protocol, ("reliable", False)))
 PLAIN_GRAPH = Rule("graph", (*GRAPH.protocol, ("reliable", False)))
 RULES = (DOCUMENT, THREE, PLAIN_SEARCH, PLAIN_GRAPH)
-
-
-def losses(quick: bool) -> tuple[int, ...]:
-    """Shares of frames lost, in percent."""
-    return (0, 5) if quick else (0, 1, 2, 5, 10, 20)
 
 
 def point(rule: Rule, loss: int, quick: bool) -> Point:
@@ -166,8 +160,7 @@ def judge(got: Measured) -> Claims:
             yield ours("2.2", "the same after three transmissions without an ack", *row)
     for rule in (PLAIN_SEARCH, PLAIN_GRAPH):
         shares = {k: delivered(got, rule, k) for k in losses(got.quick)}
-        yield ours(
-            "beyond",
+        yield beyond(
             f"{rule.name}: suspicion for 10 s instead, the table stays as it is; all "
             f"messages come at {FIVE} % (0.99), without end-to-end acks",
             joined(f"{k} %: {percent(s, 2)}" for k, s in shares.items()),

@@ -1,7 +1,5 @@
 """Section 1.1: how much of the network a discovery round finds, by reading and by jitter."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,7 +13,7 @@ from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.networks.mesh.protocol.constants import REQUEST, RESPONSE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -26,22 +24,15 @@ CAPTION = (
 )
 USUAL_MS = 100
 SOME_MS = (1, 10, 100)
+# Longest wait before a request is repeated, ms; sizes of the networks, in nodes.
+jitters = sized(SOME_MS, (1, 2, 5, 10, 20, 50, 100, 200))
+sizes = sized((10, 20, 30), (10, 20, 30, 45, 60))
 # Readings of "responds to the request".
 READINGS = {
     "tree": "once a round",
     "each": "to every request",
     "list": "once, with all it hears",
 }
-
-
-def jitters(quick: bool) -> tuple[int, ...]:
-    """Longest wait before a request is repeated, ms."""
-    return SOME_MS if quick else (1, 2, 5, 10, 20, 50, 100, 200)
-
-
-def sizes(quick: bool) -> tuple[int, ...]:
-    """Sizes of the networks, in nodes."""
-    return (10, 20, 30) if quick else (10, 20, 30, 45, 60)
 
 
 def point(quick: bool, reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30) -> Point:

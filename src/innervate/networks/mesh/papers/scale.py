@@ -1,7 +1,5 @@
 """Section 1: "not scalable, but sufficient for small networks": up to how many nodes?"""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.summary import summarize
-from innervate.networks.mesh.papers.document import SMALL, ours, said
+from innervate.networks.mesh.papers.document import SMALL, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import TABLES
@@ -30,20 +28,13 @@ SMALL_MOST = 70  # nodes: more than that, we would not call small
 
 
 class Radio(NamedTuple):
-    """A profile and what is tried with it.
-
-    Attributes:
-        period_s: between discovery rounds.
-        nodes: how many, up to what is reasonable.
-        graph_max: nodes that a flooded graph has room for.
-        per_node_s: a round and its tables take less than this for every node.
-    """
+    """A profile and what is tried with it."""
 
     profile: str
-    period_s: float
-    nodes: tuple[int, ...]
-    graph_max: int
-    per_node_s: float
+    period_s: float  # between discovery rounds
+    nodes: tuple[int, ...]  # how many, up to what is reasonable
+    graph_max: int  # nodes that a flooded graph has room for
+    per_node_s: float  # a round and its tables take less than this for every node
 
 
 RADIOS = (
@@ -101,21 +92,13 @@ def _ns(radio: Radio, scheme: str, quick: bool) -> list[int]:
 
 
 class Size(NamedTuple):
-    """What came of a scheme at one size.
+    """What came of a scheme at one size."""
 
-    Attributes:
-        nodes: how many.
-        share: of the period that the busiest channel is busy, all tables new each round.
-        without: how many nodes got no table, in each network.
-        unknown: to how many nodes the gateway knows no way, in all networks.
-        took_s: until the last node had its table, mean of the networks where all got theirs.
-    """
-
-    nodes: int
-    share: float
-    without: list[int]
-    unknown: int
-    took_s: float
+    nodes: int  # how many
+    share: float  # of the period that the busiest channel is busy, all tables new each round
+    without: list[int]  # how many nodes got no table, in each network
+    unknown: int  # to how many nodes the gateway knows no way, in all networks
+    took_s: float  # until the last node had its table, mean of the networks where all got theirs
 
     @property
     def is_whole(self) -> bool:
@@ -239,8 +222,7 @@ def _others(got: Measured, radio: Radio) -> Claim:
     fine = all(one.share < tables.share and one.is_whole for one in others)
     words = [f"{scheme} {percent(size.share, 1)}" + ("" if size.is_whole else f" ({size.short})")
              for scheme, size in at.items()]  # fmt: skip
-    return ours(
-        "beyond",
+    return beyond(
         f"at {radio.profile} the flooded graph and the table-free mode take less of the channel "
         "than tables, at the largest size that has a graph",
         f"N = {n}, all new each round: {joined(words)}",
@@ -258,8 +240,7 @@ def _complete(got: Measured) -> Claim:
                        for size in tried if not size.is_whole]  # fmt: skip
             words += [f"{name}, N = {tried[-1].nodes}: {tried[-1].took}"] * tried[-1].is_whole
             lost += sum(size.unknown for size in tried)
-    return ours(
-        "beyond",
+    return beyond(
         "at every size that was tried everyone gets its table in the end",
         joined([*failed, *words], "; "),
         verdict(not failed),

@@ -1,7 +1,5 @@
 """Section 2.1: are the tables' ways the shortest, and how often is there another next hop?"""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
-from innervate.networks.mesh.papers.document import SHORTEST, ours, said
+from innervate.networks.mesh.papers.document import SHORTEST, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.topology.placement import good_links, neighbours
@@ -27,11 +25,7 @@ CAPTION = (
 READINGS = ("tree", "each", "list")
 KINDS = ("around the next hop, too", "free of loops", "last resort", "none")
 FILLS = (style.BLUE, style.SKY, style.ORANGE, style.FAINT)
-
-
-def degrees(quick: bool) -> tuple[int, ...]:
-    """Mean degrees of the networks tried."""
-    return (6, 8) if quick else (5, 6, 8, 10, 12)
+degrees = sized((6, 8), (5, 6, 8, 10, 12))  # mean degrees of the networks
 
 
 def point(reading: str, degree: int, quick: bool) -> Point:
@@ -165,8 +159,7 @@ def judge(got: Measured) -> Claims:
         )
     found = {degree: shares(got, "list", degree) for degree in some}
     tree = shares(got, "tree", 8)
-    yield ours(
-        "beyond",
+    yield beyond(
         "nearly every entry has an alternate that cannot loop (0.9 at degree 8)",
         joined(
             f"degree {d}: {percent(v[0] + v[1], 1)}, {percent(v[0], 1)} around the next hop, too"

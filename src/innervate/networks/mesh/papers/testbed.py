@@ -1,7 +1,5 @@
 """The testbed of the mesh's figures [mesh 6]: networks, who dies and when, who sends to whom."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,13 +8,14 @@ from innervate import scenario as scenarios
 from innervate.networks.mesh.protocol.constants import END_TO_END
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan, Offer
 from innervate.networks.mesh.sim.simulate import MeshResult, simulate
-from innervate.papers.experiment import Point
+from innervate.papers.experiment import Point, sized
 from innervate.scenario.actions.field import KILL
 from innervate.trace.streams import stream
 
 Options = tuple[tuple[str, Any], ...]
 GATEWAY = 0
 BYTES = 16  # of a message
+seeds_of = sized(range(1, 5), range(1, 31))  # each of one network
 # The document to the letter: one transmission, another neighbour for the next packet, no second
 # try from end to end.
 LITERAL: Options = (
@@ -24,29 +23,17 @@ LITERAL: Options = (
 )  # fmt: skip
 
 
-def seeds_of(quick: bool) -> range:
-    """Seeds, each of one network."""
-    return range(1, 5 if quick else 31)
-
-
 @dataclass(frozen=True, slots=True)
 class MeshTestbed:
-    """Networks of nodes anywhere in a square of 100 m, node 0 the gateway.
+    """Networks of nodes anywhere in a square of 100 m, node 0 the gateway."""
 
-    Attributes:
-        nodes, degree: how many, and good links of a node in the mean.
-        profile: of the radio.
-        protocol: keys of [protocol].
-        duration_s: of a run.
-        more: other tables of the scenario, as (name, content).
-    """
-
+    # nodes, degree: how many, and good links of a node in the mean
     nodes: int = 30
     degree: float = 8
-    profile: str = "250k"
-    protocol: Options = ()
-    duration_s: float = 6.0
-    more: Options = ()
+    profile: str = "250k"  # of the radio
+    protocol: Options = ()  # keys of [protocol]
+    duration_s: float = 6.0  # of a run
+    more: Options = ()  # other tables of the scenario, as (name, content)
 
     def __str__(self) -> str:
         """All of it in words."""
@@ -99,6 +86,14 @@ def kill(plan: MeshPlan, nodes: Sequence[int], at_us: int) -> None:
     plan.faults.sort(key=lambda fault: fault.at_us)
 
 
+def correspondents(seed: int, nodes: Sequence[int]) -> dict[int, int]:
+    """Whom every node writes to, always the same one; they write in the order of the keys."""
+    draw = stream(seed, "papers/senders")
+    left = list(nodes)
+    order = [left.pop(draw.draw(len(left))) for _ in nodes]
+    return {node: [n for n in nodes if n != node][draw.draw(len(nodes) - 1)] for node in order}
+
+
 def send_rounds(
     plan: MeshPlan, nodes: Sequence[int], rounds: int, since_us: int, every_us: int
 ) -> None:
@@ -106,15 +101,11 @@ def send_rounds(
 
     Sources follow each other in an order that is drawn, over three quarters of a round.
     """
-    draw = stream(plan.seed, "papers/senders")
-    left = list(nodes)
-    order = [left.pop(draw.draw(len(left))) for _ in nodes]
-    to = {node: [one for one in nodes if one != node][draw.draw(len(nodes) - 1)] for node in order}
-    gap_us = every_us * 3 // (4 * len(order))
+    to, gap_us = correspondents(plan.seed, nodes), every_us * 3 // (4 * len(nodes))
     plan.offers += [
         Offer(since_us + k * every_us + i * gap_us, node, to[node], _flags(plan), BYTES, k)
         for k in range(rounds)
-        for i, node in enumerate(order)
+        for i, node in enumerate(to)
     ]
     plan.offers.sort(key=lambda offer: offer.at_us)
 

@@ -1,7 +1,5 @@
 """Whom nodes heard first in a discovery round, and who of the nearer ones is the best [A2]."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Section 1.1: tables of two versions at the same time; robots move meanwhile."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,12 +7,12 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, counted, messages
 from innervate.networks.mesh.analysis.summary import looped
-from innervate.networks.mesh.papers.document import ours
+from innervate.networks.mesh.papers.document import beyond, ours
 from innervate.networks.mesh.papers.testbed import MeshTestbed, Options, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_ROUND, REPORT_TABLE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -26,6 +24,7 @@ CAPTION = (
 )
 ROBOTS = 15
 FROM_S, UNTIL_S, EVERY_S = 8, 108, 1
+speeds = sized((0.5, 2.0), (0.1, 0.5, 1.0, 2.0))  # of robots, metres a second
 TWO: Options = (("activation", True),)
 # Alternates alone, and the document's rule with three transmissions, which takes no notice of
 # where a packet has been: a search would find its way by any table.
@@ -39,11 +38,6 @@ SCHEMES: dict[str, Options] = {
     "random, two phases": (*RANDOM, *TWO),
     "search, at once": SEARCH,
 }
-
-
-def speeds(quick: bool) -> tuple[float, ...]:
-    """Speeds of robots, metres a second."""
-    return (0.5, 2.0) if quick else (0.1, 0.5, 1.0, 2.0)
 
 
 def point(scheme: str, speed: float, quick: bool) -> Point:
@@ -132,8 +126,7 @@ def judge(got: Measured) -> Claims:
         "nothing to who is in the path, make none to speak of in either",
     )
     best = shares(got, "search, at once", "came")
-    yield ours(
-        "beyond",
+    yield beyond(
         "with the search it hardly matters: 0.99 of all messages come at any of these speeds",
         joined(f"{at}: {percent(one, 2)}" for at, one in zip(places, best, strict=True)),
         verdict(min(best) >= 0.99),

@@ -1,7 +1,5 @@
 """Charts of a mesh: latency, delivery over time, alarms, airtime."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,7 +9,7 @@ from innervate.networks.mesh.analysis import messages as sent
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.plot.words import fault_words
 from innervate.plot import words
-from innervate.plot.charts import Axis, Bar, Bars, Mark, Steps, distribution
+from innervate.plot.charts import Axis, Bar, Bars, Mark, Steps, distribution, marked
 
 BINS = 40
 MARKS_MAX = 4
@@ -48,10 +46,8 @@ def over_time(result: Any, bins: int = BINS) -> Steps | None:
     some = np.flatnonzero(asked)
     share = 100.0 * came[some] / asked[some]
     x = Axis(low / 1e6, (low + bins * width) / 1e6, "seconds")
-    lowest, whole = (
-        words.share_words(share.min() / 100),
-        words.number_of(len(found.state), "message"),
-    )
+    lowest = words.share_words(share.min() / 100)
+    whole = words.number_of(len(found.state), "message")
     text = f"{lowest} of {whole}."
     if bins > 1:
         each = words.ms_words(width / 1e3)
@@ -62,15 +58,8 @@ def over_time(result: Any, bins: int = BINS) -> Steps | None:
 
 
 def _marks(plan: Any, x: Axis) -> list[Mark]:
-    """The first moments of events; those of one moment together."""
-    seen: dict[int, list[str]] = {}
-    for fault in plan.faults:
-        if x.low <= fault.at_us / 1e6 <= x.high:
-            seen.setdefault(fault.at_us, []).append(fault_words(plan, fault))
-    return [
-        Mark(at / 1e6, what[0] if len(what) == 1 else f"{len(what)} events")
-        for at, what in list(seen.items())[:MARKS_MAX]
-    ]
+    inside = [fault for fault in plan.faults if x.low <= fault.at_us / 1e6 <= x.high]
+    return marked(((fault.at_us, fault_words(plan, fault)) for fault in inside), MARKS_MAX)
 
 
 def alarms(plan: Any, crossings: Sequence[Crossing]) -> Bars | None:
@@ -81,11 +70,8 @@ def alarms(plan: Any, crossings: Sequence[Crossing]) -> Bars | None:
             continue
         came = crossing.accepted_us != sent.NEVER
         took = (crossing.accepted_us - crossing.raised_us) / 1e3 if came else 0.0
-        said = (
-            f"{words.ms_words(took)}, {words.figure_words(crossing.overrun_m, 2)} m"
-            if came
-            else "never"
-        )
+        out = words.figure_words(crossing.overrun_m, 2)
+        said = f"{words.ms_words(took)}, {out} m" if came else "never"
         bars.append(Bar(f"{i}: {plan.names[crossing.robot]}", took, said))
     head = "From the alarm to the monitor, crossing by crossing"
     return Bars(bars, head, "Behind each bar how far the robot got.") if bars else None
@@ -95,13 +81,11 @@ def airtime(summary: Mapping[str, Any]) -> Bars | None:
     """What the air was used for."""
     spent = {name: summary["airtime"][f"{name}_s"] for name in USES}
     whole = sum(spent.values())
-    bars = [
-        Bar(
-            name,
-            some,
-            f"{words.figure_words(some)} s, {words.figure_words(100 * some / (whole or 1), 2)} %",
-        )
-        for name, some in spent.items()
-    ]
+    if not whole:
+        return None
+    bars = []
+    for name, some in spent.items():
+        share = words.figure_words(100 * some / whole, 2)
+        bars.append(Bar(name, some, f"{words.figure_words(some)} s, {share} %"))
     text = "Summed over all transmitters; acks of hops count for what they acknowledge."
-    return Bars(bars, "Time on the air, by use", text) if whole else None
+    return Bars(bars, "Time on the air, by use", text)

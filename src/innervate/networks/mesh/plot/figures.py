@@ -1,7 +1,5 @@
 """Figures of a mesh run, for `Run.plot`: field, latency, delivery, alarms."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -47,16 +45,11 @@ def alarms(run: Any) -> Figure:
             ax.plot(waits, [crossing.overrun_m for crossing in part], ls="none", marker=marker,
                     color=colour, label="flooded" if flooded else "routed")  # fmt: skip
     ax.legend(loc="best")
-    ax.set_xlim(left=0)
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("from the alarm to the monitor (ms)")
-    ax.set_ylabel("farthest outside (m)")
+    ax.set(xlim=(0, None), ylim=(0, None), xlabel="from the alarm to the monitor (ms)",
+           ylabel="farthest outside (m)")  # fmt: skip
     return made
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "field": field,
-    "latency": latency,
-    "delivery": delivery,
-    "alarms": alarms,
-}
+    "field": field, "latency": latency, "delivery": delivery, "alarms": alarms,
+}  # fmt: skip

@@ -1,7 +1,5 @@
 """A crossing of the fence as a film: what was on the air until the monitor knew of it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.mesh.analysis.alarms import Crossing

@@ -1,7 +1,5 @@
 """The field of a mesh as SVG: nodes, links, fence, robots, and the way an alarm took."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple
 
@@ -47,51 +45,31 @@ def monitor_of(plan: Any) -> int:
 
 
 class Alarmed(NamedTuple):
-    """The way of one alarm.
+    """The way of one alarm."""
 
-    Attributes:
-        sent: all its transmissions; who flooded it gets a ring.
-        way: the hops that brought it to the monitor.
-        at_us: who was off then is crossed out; None = at the end.
-    """
-
-    sent: Sequence[Hop] = ()
-    way: Sequence[Hop] = ()
-    at_us: int | None = None
+    sent: Sequence[Hop] = ()  # all its transmissions; who flooded it gets a ring
+    way: Sequence[Hop] = ()  # the hops that brought it to the monitor
+    at_us: int | None = None  # who was off then is crossed out; None = at the end
 
 
 NO_ALARM = Alarmed()
 
 
 class Field(NamedTuple):
-    """A field that is being drawn.
-
-    Attributes:
-        sheet: where nodes lie.
-        names: where there is room for names.
-        on: which nodes are.
-    """
+    """A field that is being drawn."""
 
     drawing: Drawing
     plan: Any
-    sheet: Sheet
-    names: Labels
-    on: Sequence[bool]
+    sheet: Sheet  # where nodes lie
+    names: Labels  # where there is room for names
+    on: Sequence[bool]  # which nodes are
 
 
 def field_map(
     result: Any, sheet: Sheet, title: str, crossings: Sequence[Crossing] = (),
     alarm: Alarmed = NO_ALARM,
 ) -> Drawing:  # fmt: skip
-    """The field, with the crossings of a run and the way of one alarm.
-
-    Args:
-        result: of `sim.mesh.simulate`.
-        sheet: where nodes lie.
-        title: what a screen reader says of it.
-        crossings: marked and numbered.
-        alarm: whose way is drawn.
-    """
+    """The field, with the crossings of a run, numbered, and the way of one alarm."""
     plan, way, at_us = result.plan, alarm.way, alarm.at_us
     drawing = Drawing(sheet.width, sheet.height, title)
     places = robot_places(plan, sheet, way[0].start_us if way else None)

@@ -1,24 +1,27 @@
 """The part of a report that is about meshes."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from innervate.networks.mesh.analysis.alarms import Crossing, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.analysis.network import gateways
+from innervate.networks.mesh.analysis.nodes import nodes
 from innervate.networks.mesh.analysis.way import copies, way
 from innervate.networks.mesh.plot import charts as mesh_charts
 from innervate.networks.mesh.plot import film as mesh_film
 from innervate.networks.mesh.plot import map as mesh_map
-from innervate.networks.mesh.plot import node_report as mesh_node_report
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.networks.mesh.plot.words import REPORTS, fault_words, opening, sentences
 from innervate.networks.mesh.scenario.words import forwarding
 from innervate.plot import page, svg, words
 from innervate.plot.page import ROWS_MAX, details, figure, keys, pictures, section, table, tiles
+
+OPEN_MAX = 40  # a longer table of nodes is folded
+NODES_HEAD = ("node", "role", "neighbours", "depth", "table", "control bytes", "forwarded",
+              "on the air", "suspected")  # fmt: skip
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
@@ -31,9 +34,9 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
         _film(result, sheet, crossings),
         _charts(result, summary, crossings),
         _crossings(result, crossings),
-        mesh_node_report.section_of(result),
+        nodes_section(result),
         _flows(result, summary),
-        _events(result),
+        page.events(result, partial(fault_words, result.plan)),
         _reports(result),
     )
 
@@ -187,6 +190,31 @@ def _on_one_line(figure: str) -> str:
     return figure.replace(" ", "\N{NO-BREAK SPACE}")
 
 
+def nodes_section(result: Any) -> str:
+    """The section "Node by node"."""
+    plan, role = result.plan, mesh_map.roles(result.plan)
+    rows = []
+    for node in nodes(result):
+        leads = node.on and node.depth == 0 and plan.ranks[node.node] > 0
+        said = (role[node.node], "leads" if leads else "", "" if node.on else "off")
+        what = ", ".join(word for word in said if word)
+        rows.append((
+            svg.clean(plan.names[node.node]),
+            what,
+            f"{node.neighbours}",
+            "unknown" if node.depth is None else f"{node.depth}",
+            f"{node.version}" if node.version else "none",
+            f"{node.control_bytes:,}",
+            f"{node.forwarded:,}",
+            words.share_words(node.share),
+            f"{node.suspected:,}",
+        ))  # fmt: skip
+    made = table(NODES_HEAD, rows)
+    if len(rows) > OPEN_MAX:
+        made = details(f"All {len(rows)} nodes", made)
+    return section("Node by node", made)
+
+
 def _flows(result: Any, summary: Mapping[str, Any]) -> str:
     """A line for every flow of the scenario."""
     flows = summary["flows"]
@@ -206,14 +234,6 @@ def _flows(result: Any, summary: Mapping[str, Any]) -> str:
         ))  # fmt: skip
     head = ("flow", "messages", "delivered", "half within", "99 % within")
     return section("Flows", table(head, rows))
-
-
-def _events(result: Any) -> str:
-    """The section on events that the scenario has brought about; "" if there are none."""
-    plan = result.plan
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(fault_words(plan, f)))
-            for f in plan.faults if f.at_us <= result.ended_us]  # fmt: skip
-    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
 
 
 def _reports(result: Any) -> str:

@@ -1,7 +1,5 @@
 """Where the nodes of a mesh lie on a drawing, and where there is room for their names."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any
@@ -12,6 +10,7 @@ from innervate.analysis.spread import scaled
 from innervate.networks.mesh.analysis.fence import edges_of
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
+from innervate.topology.placement import neighbours
 
 WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
 LONELY_CM = 500.0, 100.0  # around a node that is alone
@@ -24,18 +23,11 @@ Box = tuple[float, float, float, float]
 
 
 class Sheet:
-    """Places of a plan's nodes on a drawing, in px.
-
-    Attributes:
-        width, height: of the drawing.
-        points: (nodes, 2), where they are at the start.
-        metres: True if places are true ones; False if they only show who hears whom, because
-            nobody knows them or they lie on top of each other.
-        scale: px per cm.
-        dot: radius of a node, px.
-    """
+    """Places of a plan's nodes on a drawing, in px."""
 
     def __init__(self, plan: Any, width: float = WIDTH, height_max: float = HEIGHT_MAX) -> None:
+        # Places are true ones, or only show who hears whom, as nobody knows them or they lie on
+        # top of each other.
         self.metres = is_to_scale(plan, width)
         places = np.array(plan.positions_cm if self.metres else laid_out(plan), np.float64)
         around = [places]
@@ -48,12 +40,13 @@ class Sheet:
         if not (self._high - self._low).any():
             self._low, self._high = self._low - LONELY_CM, self._high + LONELY_CM
         wide, high = (float(value) for value in np.maximum(self._high - self._low, 1.0))
-        self.scale = min((width - 2 * MARGIN) / wide, (height_max - 2 * MARGIN) / high)
+        self.scale = min((width - 2 * MARGIN) / wide, (height_max - 2 * MARGIN) / high)  # px per cm
         self.width = width
         self._left = (width - wide * self.scale) / 2
         self.height = high * self.scale + 2 * MARGIN + (SCALE_PX if self.metres else 0)
+        # (nodes, 2), where they are at the start.
         self.points: Floats = np.array([self.of_cm((x, y)) for x, y in places.tolist()])
-        self.dot = DOT_PX if plan.nodes <= 100 else 3.5
+        self.dot = DOT_PX if plan.nodes <= 100 else 3.5  # radius of a node, px
 
     def of_cm(self, place: Point) -> Point:
         """A place of the world on the drawing; north is up."""
@@ -95,10 +88,7 @@ def shortened(start: Point, end: Point, gap: float) -> tuple[Point, Point]:
 
 def laid_out(plan: Any) -> Floats:
     """Places for nodes that have none: far apart as they are in hops (classical scaling)."""
-    near: list[list[int]] = [[] for _ in range(plan.nodes)]
-    for a, b in plan.good:
-        near[a].append(b)
-        near[b].append(a)
+    near = neighbours(plan.nodes, plan.good)
     far = np.array([distances(near, node) for node in range(plan.nodes)], np.float64)
     far[far == UNREACHABLE] = far.max() + 2
     if plan.nodes < 3:

@@ -1,7 +1,5 @@
 """Packets, reports and events of a mesh in plain words."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,12 +1,14 @@
 """The radio paper: Kim and Kim, CSMA/CD-R for a wireless multi-robot communication."""
 
 from functools import partial
+from pathlib import Path
 
-from innervate.networks.radio.papers.readings import READINGS as READINGS
 from innervate.papers.experiment import Experiment
+from innervate.papers.words import sentences
 
 TITLE = "CSMA/CD-R for a wireless multi-robot communication"
 AUTHORS = "D.-H. Kim, J.-H. Kim"
+READINGS = sentences(Path(__file__).with_name("readings.txt").read_text(encoding="utf-8"))
 # One module each: figures in the order of the paper, what was found about them, and the last
 # three beyond it.
 FIGURES = (

@@ -1,9 +1,5 @@
 """F3: CSMA/CD's advantage with few stations is capture: one station has the channel."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -11,7 +7,7 @@ from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers import common
 from innervate.networks.radio.papers.common import CONTENDING, LOOKS, RESERVED, SIZES, Curve
 from innervate.networks.radio.slotted.model import slotted
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -64,8 +60,7 @@ def draw(got: Measured) -> Figure:
         ax.set_ylim(0, 1.04)
     left.set(ylabel="Jain's index over one round", title="b  fairness, T = 5")
     left.legend(loc="center right", bbox_to_anchor=(1, 0.72))
-    right.set_ylabel("throughput S")
-    right.set_title("c  the winner draws a backoff, too: D2', T = 5")
+    right.set(ylabel="throughput S", title="c  the winner draws a backoff, too: D2', T = 5")
     right.legend(loc="upper right", ncols=3, columnspacing=1)
     return figure
 
@@ -83,22 +78,6 @@ def _strips(ax: Axes, found: dict[str, list[int]]) -> None:
     ax.grid(axis="y", visible=False)
 
 
-def kept_without_capture(
-    ours: Sequence[float], whole: Sequence[float], drawn: Sequence[float]
-) -> list[bool]:
-    """Where CSMA/CD leads: whether it still does when its winner draws a backoff, too.
-
-    Args:
-        ours: S of CSMA/CD-R, over n.
-        whole: S of D2.
-        drawn: S of D2'.
-
-    Returns:
-        One entry for each n at which D2 leads.
-    """
-    return [d > o for o, w, d in zip(ours, whole, drawn, strict=True) if w > o]
-
-
 def _small(got: Measured, size: int) -> Claim:
     """The reason that the paper gives for what it sees at small n, at each of them."""
     ours = [forms.reserved_throughput(n, size) for n in SMALL]
@@ -110,9 +89,8 @@ def _small(got: Measured, size: int) -> Claim:
         f"n = {n}: {w:.3f}, {d:.3f} against {o:.3f}, Jain {j:.2f}"
         for n, o, w, d, j in zip(SMALL, ours, whole, drawn, jain, strict=True)
     ]
-    kept = kept_without_capture(ours, whole, drawn)
     led = [n for n, o, w in zip(SMALL, ours, whole, strict=True) if w > o]
-    still = [n for n, yes in zip(led, kept, strict=True) if yes]
+    still = [n for n, o, d in zip(SMALL, ours, drawn, strict=True) if n in led and d > o]
     share = f"at n = {joined(still)} only" if still else "at none of them"
     return Claim(
         "4, 5",
@@ -120,7 +98,7 @@ def _small(got: Measured, size: int) -> Claim:
         "time T - T_c0",
         f"S of D2, of D2' (the winner draws a backoff too) against CSMA/CD-R, and D2's fairness "
         f"over one round: {joined(words, '; ')} ({curve(STRIPS[0], size, got.quick).seeds} runs)",
-        verdict(bool(kept) and all(kept)),
+        verdict(bool(led) and still == led),
         f"F3: D2 leads at n = {joined(led)}, and without capture {share}: the fixed time "
         "explains it there, capture at the others",
     )
@@ -132,8 +110,7 @@ def judge(got: Measured) -> Claims:
         yield _small(got, size)
     jain = {mac: curve(mac, 5, got.quick).mean(got, "jain_round") for mac in CONTENDING}
     ours = [curve(RESERVED, size, got.quick).mean(got, "jain_round") for size in SIZES]
-    yield Claim(
-        "beyond",
+    yield beyond(
         "CSMA/CD-R serves everybody once a round; capture does not come back",
         "Jain's index over one round at n = 5: CSMA/CD-R 1.00, "
         + joined(f"{common.SHORT[mac]} {of[NS.index(5)]:.2f}" for mac, of in jain.items()),

@@ -1,7 +1,5 @@
 """What the figures of the radio paper share: runs of the slotted level, looks of curves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -34,22 +32,15 @@ Options = tuple[tuple[str, Any], ...]
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A protocol of the slotted level over the number of stations.
-
-    Attributes:
-        ns: numbers of stations.
-        seeds: runs each, with seeds 1 and following.
-        successes: of a saturated run, about; at least 20 a station.
-        options: of `sim.slotted.slotted`.
-    """
+    """A protocol of the slotted level over the number of stations."""
 
     mac: str
     packet_slots: int
     traffic: str
-    ns: tuple[int, ...]
-    seeds: int
-    successes: int = 10_000
-    options: Options = ()
+    ns: tuple[int, ...]  # numbers of stations
+    seeds: int  # runs each, with seeds 1 and following
+    successes: int = 10_000  # of a saturated run, about; at least 20 a station
+    options: Options = ()  # of `sim.slotted.slotted`
 
     @property
     def key(self) -> str:

@@ -8,9 +8,8 @@ mode's windows and pulses, DCF's two slots (its receivers would have to switch, 
 `DCF_ANSWERS` keeps that free), nothing with TDMA, a token ring and polling, whose senders are told.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,7 +25,7 @@ from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.plan import RadioPlan
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 from innervate.sim.tables import uniform
@@ -41,6 +40,7 @@ CAPTION = (
 STATIONS = (5, 20)
 BARS = (0.1, 0.3, 0.6, 0.9)  # loads that are judged
 LOADS = (0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9)
+loads = sized(BARS, LOADS)  # shares of the channel
 PRACTICAL, DCF, TDMA, RING, POLLING = "practical", "dcf", "tdma", "token-ring", "polling"
 DCF_ANSWERS = "dcf, answering"  # the answer takes the turnaround, there and back
 NEAR_DCF = 1.3  # times DCF's delay at a tenth of the load
@@ -61,23 +61,14 @@ LOOKS = {
 
 @dataclass(frozen=True, slots=True)
 class Offered:
-    """Poisson packets at a load, by one protocol.
+    """Poisson packets at a load, by one protocol."""
 
-    Attributes:
-        mac: "practical" or a baseline's name.
-        per_turn: most packets in a turn.
-        size: T, slots.
-        n: stations.
-        load: share of the hand-over bound, 0 .. 1.
-        packets: about, of all stations.
-    """
-
-    mac: str
-    per_turn: int
-    size: int
-    n: int
-    load: float
-    packets: int
+    mac: str  # "practical" or a baseline's name
+    per_turn: int  # most packets in a turn
+    size: int  # T, slots
+    n: int  # stations
+    load: float  # share of the hand-over bound, 0 .. 1
+    packets: int  # about, of all stations
 
     def __str__(self) -> str:
         """All of it in words."""
@@ -124,20 +115,9 @@ def point(who: tuple[str, int], size: int, n: int, load: float, quick: bool) -> 
     return Point.each(str(offered), 3e-4 * packets, seeds, offered.measure)
 
 
-def loads(quick: bool) -> tuple[float, ...]:
-    """Offered loads, as shares of the channel."""
-    return BARS if quick else LOADS
-
-
 def points(quick: bool, of: tuple[tuple[str, int], ...] = tuple(LOOKS)) -> list[Point]:
     """A point for each protocol, packet length, number of stations and load."""
-    return [
-        point(who, size, n, load, quick)
-        for who in of
-        for size in SIZES
-        for n in STATIONS
-        for load in loads(quick)
-    ]
+    return [point(*one, quick) for one in product(of, SIZES, STATIONS, loads(quick))]
 
 
 def delay(
@@ -217,8 +197,7 @@ def judge(got: Measured) -> Claims:
     """At each load: below what it has to be below?"""
     runs = [got[one] for one in points(got.quick, ((PRACTICAL, 1), (PRACTICAL, 4)))]
     silent, left = (round(sum(sum(run[name]) for run in runs)) for name in ("silent", "open"))
-    yield Claim(
-        "beyond",
+    yield beyond(
         "with 2 ms the practical mode loses nothing silently at any load",
         f"{sum(len(run['open']) for run in runs)} runs: {silent} lost silently, {left} left over",
         verdict(silent == left == 0),
@@ -254,8 +233,7 @@ def _light(got: Measured, n: int) -> Claim:
             f"floor {perfect_queue(size, 0.1):.1f} for anybody, {at_once(size, n, 0.1):.1f} for "
             f"who sends at once; {spent(got, size, n, 0.1)}"
         )
-    return Claim(
-        "beyond",
+    return beyond(
         f"at 10 % load and {n} stations the mean delay is at most 1.3 times DCF's",
         joined(words, "; "),
         verdict(fine),
@@ -277,8 +255,7 @@ def _below(got: Measured, n: int, load: float, rivals: tuple[str, ...], per_turn
         words.append(f"T = {size}: {ours:.0f} +- {half:.0f} slots, {beside}, "
                      f"floor {floor:.0f}{where}")  # fmt: skip
     turn = "" if per_turn == 1 else f", up to {per_turn} packets a turn and a token,"
-    return Claim(
-        "beyond",
+    return beyond(
         f"at {100 * load:.0f} % load and {n} stations{turn} the mean delay is below "
         + " and ".join(names),
         joined(words, "; "),

@@ -1,7 +1,5 @@
 """Fairness and delay: who has to wait how long, in saturation and under light load."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,7 +10,7 @@ from innervate.networks.radio.papers.common import CONTENDING, LOOKS, MACS, RESE
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.model import slotted
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -22,22 +20,14 @@ CAPTION = (
     "arrivals, from the offer to the end of the packet. Event level: means of the runs."
 )
 N, SIZE = 10, 25
+seeds = sized(range(1, 4), range(1, 11))  # of the runs of each protocol
+packets = sized(300, 1000)  # of a station in a run
 LOADS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 LIGHT = ("csma-cd-d1", "csma-cd-d2", RESERVED)
 SHARES = (50, 95, 99)
 FILLS = (style.INK, style.SOFT, style.FAINT, style.INK)
 WAITS = ("50 %", "95 %", "99 %", "longest")
 EVENT = {"paper": "CSMA/CD-R, event level", "practical": "practical mode, event level"}
-
-
-def seeds(quick: bool) -> range:
-    """Seeds of the runs of each protocol: 10, or 3 if `quick`."""
-    return range(1, 4 if quick else 11)
-
-
-def packets(quick: bool) -> int:
-    """Packets of a station in a run."""
-    return 300 if quick else 1000
 
 
 def points(quick: bool) -> list[Point]:
@@ -100,12 +90,9 @@ def _event_waits(got: Measured, mode: str) -> list[float]:
 def draw(got: Measured) -> Figure:
     """Delay percentiles in saturation; 95th percentile over the load."""
     figure, (left, right) = style.panels(style.WIDE_IN, 3.3, 1, 2, width_ratios=(1.25, 1))
-    rows = {
-        "CSMA/CD-R, slotted" if mac == RESERVED else LOOKS[mac].name: got[
-            level(mac, None, got.quick)
-        ]["delay"]
-        for mac in (*(mac for mac in MACS if mac != RESERVED), RESERVED)
-    }
+    slotted_level = {mac: got[level(mac, None, got.quick)]["delay"] for mac in MACS}
+    rows = {LOOKS[mac].name: slotted_level[mac] for mac in MACS if mac != RESERVED}
+    rows["CSMA/CD-R, slotted"] = slotted_level[RESERVED]
     rows |= {name: _event_waits(got, mode) for mode, name in EVENT.items()}
     for place, values in enumerate(rows.values()):
         left.plot([values[0], values[-1]], [place, place], color=style.SOFT, lw=0.8)
@@ -160,8 +147,7 @@ def judge(got: Measured) -> Claims:
     )
     paper, practical = (np.mean(got[event(mode, 0, got.quick)]["jain_round"]) for mode in EVENT)
     jains = joined(f"{LOOKS[mac].name} {found[mac]['jain_round']:.2f}" for mac in MACS)
-    yield Claim(
-        "beyond",
+    yield beyond(
         "over one round CSMA/CD-R is fair where contention is not",
         f"Jain's index over one round, n = {N}, T = {SIZE}: {jains}; event level: as "
         f"published {paper:.2f}, practical {practical:.3f}",
@@ -177,8 +163,7 @@ def _tails(got: Measured, delays: dict[str, list[float]]) -> Claim:
     practical = _event_waits(got, "practical")
     tails = {"CSMA/CD-R, slotted": delays[RESERVED], **theirs, "practical": practical}
     words = (f"{name} {' / '.join(f'{x:,.0f}' for x in some)}" for name, some in tails.items())
-    return Claim(
-        "beyond",
+    return beyond(
         "in saturation nobody waits long under CSMA/CD-R",
         f"slots, 50 / 95 / 99 % / longest, of {len(seeds(got.quick))} runs: " + joined(words, "; "),
         verdict(max(delays[RESERVED][3], practical[3]) < min(some[3] for some in theirs.values())),

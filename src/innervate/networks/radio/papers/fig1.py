@@ -1,7 +1,5 @@
 """Fig. 1: four robots collide, report and take turns; every event of it to the microsecond."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes

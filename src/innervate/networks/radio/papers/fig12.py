@@ -4,8 +4,6 @@ Whatever T contains, a radio that sends a CR-R switches for it, too: X2, in whic
 packet hold its switching, therefore gives the CR-Rs the paper's 20 slots as well.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +15,7 @@ from innervate.networks.radio.papers.common import LOOKS, RESERVED, TURNAROUND_U
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -34,20 +32,14 @@ SWITCHING = 20  # slots, "20 slots for transitions" (section 4)
 
 
 class Reading(NamedTuple):
-    """What T = 25 is [radio Q16].
+    """What T = 25 is [radio Q16]."""
 
-    Attributes:
-        name, words: as in the table.
-        size: slots on the air.
-        turnaround: a hand-over costs 2 ms besides.
-        report: slots of switching that the CR-Rs cost, where no turnaround does.
-    """
-
+    # name, words: as in the table
     name: str
     words: str
-    size: int
-    turnaround: bool
-    report: int = 0
+    size: int  # slots on the air
+    turnaround: bool  # a hand-over costs 2 ms besides
+    report: int = 0  # slots of switching that the CR-Rs cost, where no turnaround does
 
 
 SIMULATED = Reading("simulation", "T = 25, no turnaround (Fig. 5)", 25, False)
@@ -99,8 +91,7 @@ def draw(got: Measured) -> Figure:
         above.set_title(f"{reading.name}  " + reading.words.replace(", ", ",\n"))
         below.set(xticks=NS, xlabel="robots n")
     axes[0].set(ylabel="throughput S (air time)", ylim=(0, 1.04))
-    axes[3].set_ylabel("$T_D$ (slots)")
-    axes[3].set_ylim(0)
+    axes[3].set(ylabel="$T_D$ (slots)", ylim=(0, None))
     axes[5].set_ylim(0)
     drawing.legend(figure, axes[0], "lower center", ncols=3)
     return figure
@@ -140,11 +131,7 @@ def judge(got: Measured) -> Claims:
 def is_similar_but_poorer(found: Any, plain: Any, longer: Any, shorter: Any) -> bool:
     """Poorer at every n, and similar: S above half, rising, and T_D less than twice.
 
-    Args:
-        found: S over n, of the reading.
-        plain: S over n, of the simulation.
-        longer: T_D over n, of the reading.
-        shorter: T_D over n, of the simulation.
+    S over n of the reading and of the simulation, then T_D of both.
     """
     found, plain, longer, shorter = map(np.asarray, (found, plain, longer, shorter))
     poorer = bool((found < plain - 1e-9).all() and (longer > shorter + 1e-9).all())
@@ -207,8 +194,7 @@ def _medium(got: Measured) -> Claim:
             f"{reading.name} {np.mean(practical['throughput']):.3f} (practical), as "
             f"published {percent(lost)} of the packets lost silently"
         )
-    return Claim(
-        "beyond",
+    return beyond(
         "five robots on the event level: the practical mode loses nothing in any reading",
         f"S, n = 5, saturation: {joined(words, '; ')}",
         verdict(ours == 0),

@@ -1,7 +1,5 @@
 """Figs. 6 and 7: how long a disaster takes, T_D over n, T = 5 and 25; all protocols beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -42,13 +40,8 @@ def points(quick: bool) -> list[Point]:
 def draw(got: Measured) -> Figure:
     """Above all protocols, logarithmic; below small n, T_D a station."""
     figure, axes = style.panels(style.WIDE_IN, 5.4, 2, 2, height_ratios=(1.25, 1))
-    macs = (
-        "tdma",
-        *reversed(common.PEERS[:-1]),
-        *reversed(common.CONTENDING),
-        common.READING_B,
-        RESERVED,
-    )
+    macs = ("tdma", *reversed(common.PEERS[:-1]), *reversed(common.CONTENDING),
+            common.READING_B, RESERVED)  # fmt: skip
     for above, below, number, size in zip(axes[:2], axes[2:], (6, 7), SIZES, strict=True):
         common.stations_axis(above)
         above.set(yscale="log", xlim=(1.9, 105), title=f"Fig. {number}  T = {size}")
@@ -66,8 +59,7 @@ def _few(ax: Axes, got: Measured, size: int) -> None:
         common.line(ax, common.LOOKS[mac], one.ns[:9], one.mean(got)[:9], marks=range(2, 11))
         if mac in common.CONTENDING:
             common.band(ax, common.LOOKS[mac], one.ns[:9], one.all(got)[:9])
-    ax.set_ylim(0)
-    ax.set(xticks=range(2, 11), xlabel="stations n")
+    ax.set(ylim=(0, None), xticks=range(2, 11), xlabel="stations n")
     ax.legend(loc="upper left")
 
 
@@ -85,13 +77,11 @@ def judge(got: Measured) -> Claims:
     yield _small(got)
     for size in SIZES:
         yield _crossing(got, size)
-    gains = {
-        size: [
-            curve(mac, size, got.quick).mean(got)[-1] / forms.reserved_duration_slots(100, size)
-            for mac in common.CONTENDING
-        ]
-        for size in SIZES
-    }
+    gains = {}
+    for size in SIZES:
+        ours = forms.reserved_duration_slots(100, size)
+        theirs = [curve(mac, size, got.quick).mean(got)[-1] for mac in common.CONTENDING]
+        gains[size] = [duration / ours for duration in theirs]
     words = (f"T = {s}: " + joined(f"{gain:.2f}" for gain in some) for s, some in gains.items())
     yield Claim(
         "6, 7",

@@ -1,7 +1,5 @@
 """Stretches of event-level runs as plain numbers, and their drawing: a lane a station."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -55,8 +53,7 @@ def draw(ax: Axes, run: Any, names: Sequence[str], order: Sequence[int], waves: 
         if frame["station"] in places:
             _frame(ax, run, frame, places[frame["station"]] + 0.28)
     ax.set_yticks(range(len(order)), [names[station] for station in order])
-    ax.set_ylim(len(order) - (0.2 if waves else 0.55), -0.6)
-    ax.set_xlabel("ms from the first start")
+    ax.set(ylim=(len(order) - (0.2 if waves else 0.55), -0.6), xlabel="ms from the first start")
     ax.grid(axis="y", visible=False)
 
 

@@ -1,7 +1,5 @@
 """F5: the settling values 0.83 and 0.96 are limits; where they are reached; how flat S is."""
 
-from __future__ import annotations
-
 from math import inf
 
 import numpy as np

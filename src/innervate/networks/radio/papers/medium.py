@@ -1,7 +1,5 @@
 """Runs of CSMA/CD-R on the event level: frames of microseconds, half-duplex radios [radio 3]."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -24,29 +22,21 @@ START_US = 100_000
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """Stations on a shared medium.
+    """Stations on a shared medium."""
 
-    Attributes:
-        mode: "paper": as worded plus the rules that make it run, one delay for all pairs;
-            "practical": delays of pairs drawn from 52..104 us.
-        traffic: "disaster", "saturated" or "poisson".
-        spread_us: starts of a disaster are drawn from 0..spread.
-        starts_us: given starts, whatever the carrier says; instead of drawn ones.
-        packets: a station, of a saturated run.
-        load: Poisson: packets offered per packet time by all stations together.
-        options: of `scenario.radio_plan.parameters`.
-    """
-
+    # "paper": as worded plus the rules that make it run, one delay for all pairs; "practical":
+    # delays of pairs drawn from 52..104 us
     mode: str
     n: int
     packet_slots: int = 25
     ta_us: int = 0
-    traffic: str = "disaster"
-    spread_us: int = 0
+    traffic: str = "disaster"  # "disaster", "saturated" or "poisson"
+    spread_us: int = 0  # starts of a disaster are drawn from 0..spread
+    # given starts, whatever the carrier says; instead of drawn ones
     starts_us: tuple[int, ...] = ()
-    packets: int = 1
-    load: float = 0.0
-    options: Options = ()
+    packets: int = 1  # a station, of a saturated run
+    load: float = 0.0  # Poisson: packets offered per packet time by all stations together
+    options: Options = ()  # of `scenario.radio_plan.parameters`
 
     def __str__(self) -> str:
         """All of it in words."""

@@ -1,7 +1,5 @@
 """Robots that come and go at any moment of a resolution, and whether it matters who they are."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -168,10 +166,7 @@ def _dots(ax: Axes, found: Mapping[str, list[float]], mode: str) -> None:
 def is_harmless(lost: float, left: float, extra: float) -> bool:
     """Nobody else loses a packet, or waits longer than a newcomer's own packet takes.
 
-    Args:
-        lost: packets of others that were lost silently because of it.
-        left: packets of others that were not delivered because of it.
-        extra: the most that it delayed the last packet of the others, slots.
+    Of others' packets: lost silently, left over, the most that the last one was delayed (slots).
     """
     return lost <= 0 and left <= 0 and extra <= ALLOWED
 

@@ -1,14 +1,12 @@
 """Beyond the paper: the practical mode on the event level against the paper's slotted level."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers import practice
 from innervate.networks.radio.papers.common import SIZES, first_from
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 
 TITLE = "Beyond the paper: the practical mode"
@@ -50,8 +48,7 @@ def _passes_slotted(got: Measured) -> Claim:
         words.append(
             f"T = {size}: {ours.min():.3f} to {ours.max():.3f}, least lead {gains[-1]:.3f}"
         )
-    return Claim(
-        "beyond",
+    return beyond(
         "its S is above the paper's slotted S at every n = 2..100",
         joined(words, "; "),
         verdict(min(gains) > 0),
@@ -70,8 +67,7 @@ def _against(got: Measured) -> Claim:
         )
         passed = passed and d2 is not None and d2 <= BARS[size] and d2p == 2
         words.append(f"T = {size}: D2 from n = {d2}, D2' from n = {d2p}")
-    return Claim(
-        "beyond",
+    return beyond(
         "its S beats D2' at every n >= 2 and D2 from n = 5 (T = 5) and n = 2 (T = 25) on",
         f"higher than {joined(words, '; ')}",
         verdict(passed, "Q14"),
@@ -86,8 +82,7 @@ def _small(got: Measured) -> Claim:
         shorter = shorter and bool((ours < theirs).all())
         pairs = joined(f"{a:.0f} against {b:.0f}" for a, b in zip(ours, theirs, strict=True))
         words.append(f"T = {size}: {pairs}")
-    return Claim(
-        "beyond",
+    return beyond(
         "its T_D is shorter than that of D2 at n = 2 and 3, too",
         f"slots, n = 2, 3, {joined(words, '; ')}",
         verdict(shorter),

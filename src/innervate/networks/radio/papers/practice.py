@@ -4,8 +4,6 @@ CSMA/CD stays on the slotted level, where everybody knows of every collision for
 turnaround it is given the better of two lengths of a backoff slot.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +16,7 @@ from innervate.networks.radio.papers.common import LOOKS, RESERVED, SIZES, TAU_U
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Measured, Point, beyond, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -28,6 +26,7 @@ RETURNS = (("", None), (", back at once", 0.0))
 WITH_RETURN = ("csma-cd-d2", "csma-cd-d2p")
 QUICK = (2, 3, 4, 5, 10, 20, 50, 100)
 FULL = (2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 70, 80, 90, 100)
+ns = sized(QUICK, FULL)  # numbers of stations, ascending, one place of a curve each
 TRAFFIC = ("saturated", "disaster")
 
 
@@ -41,11 +40,6 @@ class Setting(NamedTuple):
     def slots(self) -> float:
         """The turnaround in slots, not always a whole number."""
         return self.ta_us / SLOT
-
-
-def ns(quick: bool) -> tuple[int, ...]:
-    """Numbers of stations, ascending, one place of a curve each."""
-    return QUICK if quick else FULL
 
 
 def saturated(setting: Setting, size: int, quick: bool) -> list[Point]:
@@ -141,8 +135,7 @@ def complete(got: Measured, setting: Setting) -> Claim:
     left, silent, done = (
         sum(sum(run[name]) for run in runs) for name in ("open", "silent", "completed")
     )
-    return Claim(
-        "beyond",
+    return beyond(
         "the practical mode resolves every collision of 2..100 stations and loses nothing silently",
         f"{sum(len(run['silent']) for run in runs):,} runs, disaster and saturation, turnaround "
         f"{setting.ta_us / 1e3:g} ms, delays 52..104 us: {left} packets left over, {silent} of "
@@ -158,8 +151,7 @@ def linear(got: Measured, setting: Setting) -> Claim:
         rise, start, fit = common.slope(ns(got.quick), duration(got, setting, size))
         fits.append(fit)
         words.append(f"T = {size}: {start:.0f} + {rise:.2f} n slots, R^2 = {fit:.5f}")
-    return Claim(
-        "beyond",
+    return beyond(
         "its T_D grows linearly with n on the event level (R^2 above 0.99)",
         f"{joined(words, '; ')} ({8 if got.quick else 60} runs each n)",
         verdict(min(fits) > 0.99),
@@ -178,8 +170,7 @@ def near_bound(got: Measured, setting: Setting, share: float) -> Claim:
             f"{bound(setting, size):.4f}"
         )
     extra = f", {setting.per_turn} packets a turn" if setting.per_turn > 1 else ""
-    return Claim(
-        "beyond",
+    return beyond(
         f"its S is at least {percent(share)} of the hand-over bound T / (T + ta + d), n = 2..100"
         + (" (4 T for T)" if setting.per_turn > 1 else ""),
         joined(words, "; ") + extra,
@@ -194,8 +185,7 @@ def fair(got: Measured, *settings: Setting) -> Claim:
     found = (one for setting in settings for size in SIZES
              for one in saturated(setting, size, got.quick))  # fmt: skip
     least = min(float(np.mean(got[one]["jain_round"])) for one in found)
-    return Claim(
-        "beyond",
+    return beyond(
         "it is fair within every round: Jain's index over one round above 0.99",
         f"least mean of all n = 2..100, T = 5 and 25: {least:.4f}",
         verdict(least > 0.99),

@@ -1,7 +1,5 @@
 """Q15: is CSMA/CD's T_D a square of n? Not with any backoff that doubles."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """F2: with 2 ms to switch, stations do not hear the collision that they are part of."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -10,7 +8,7 @@ from matplotlib.figure import Figure
 from innervate.networks.radio.papers import lanes
 from innervate.networks.radio.papers.common import TAU_US, TURNAROUND_US
 from innervate.networks.radio.papers.medium import START_US, Channel
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -57,8 +55,7 @@ def draw(got: Measured) -> Figure:
     """Two robots; share lost over the turnaround."""
     figure, (left, right) = style.panels(style.WIDE_IN, 2.5, 1, 2, width_ratios=(1.25, 1))
     lanes.draw(left, got.values["silent run"], ("Robot1", "Robot2"), range(2), waves=True)
-    left.set_xlim(-0.5, 12)
-    left.set_title("a  two robots, 2 ms turnaround: nobody hears anybody")
+    left.set(xlim=(-0.5, 12), title="a  two robots, 2 ms turnaround: nobody hears anybody")
     left.legend(handles=lanes.keys(waves=True, deaf=True), loc="upper center", ncols=3,
                 bbox_to_anchor=(0.45, -0.22), columnspacing=1.2)  # fmt: skip
     _share(right, got)
@@ -104,8 +101,7 @@ def judge(got: Measured) -> Claims:
     )
     practical = [lost(got, "practical", n, ta) for n in NS for ta in TURNAROUNDS]
     hits, of = map(sum, zip(*practical, strict=True))
-    yield Claim(
-        "beyond",
+    yield beyond(
         "the practical mode loses no packet silently at any turnaround up to 2 ms",
         f"{hits} of {of} packets, n = {joined(NS)}, turnaround 0 to 2 ms",
         verdict(hits == 0),

@@ -1,7 +1,5 @@
 """F1: with carrier sense and packets of one length the ends are a tie: who can be put in order?"""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
@@ -11,7 +9,7 @@ from innervate.networks.radio.papers import lanes
 from innervate.networks.radio.papers.common import TAU_US, Options
 from innervate.networks.radio.papers.medium import Channel
 from innervate.networks.radio.slotted.drive import SLOT
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -99,8 +97,7 @@ def draw(got: Measured) -> Figure:
     order = sorted(ends, key=lambda node: ends[node])
     names = [f"robot {node + 1}" for node in range(5)]
     lanes.draw(right, run, names, order, waves=False)
-    right.set_xlim(FROM_US / 1e3, UNTIL_US / 1e3)
-    right.set_title("b  five robots: later CR-Rs overlap")
+    right.set(xlim=(FROM_US / 1e3, UNTIL_US / 1e3), title="b  five robots: later CR-Rs overlap")
     right.legend(handles=lanes.keys(waves=False, deaf=True), loc="upper center", ncols=4,
                  bbox_to_anchor=(0.45, -0.19), columnspacing=1.2)  # fmt: skip
     return figure
@@ -166,8 +163,7 @@ def _apart(got: Measured) -> Claims:
     )
     two, short, ten, dilated = (got[one]["throughput"][0] for one in variants(got.quick))
     five, of = ordered(got, STRETCHED, 5)
-    yield Claim(
-        "beyond",
+    yield beyond(
         "two small changes help: a window of 2 slots for two stations, T_c stretched over the "
         "window for ten",
         f"S at T = 25, n = 2: {two:.3f}, short window {short:.3f}; n = 10: "

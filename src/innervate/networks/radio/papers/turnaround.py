@@ -1,13 +1,11 @@
 """Beyond the paper: the same with 2 ms to switch, against CSMA/CD with the same turnaround."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from innervate.networks.radio.analysis import formulas as forms
 from innervate.networks.radio.papers import practice
 from innervate.networks.radio.papers.common import SIZES, TURNAROUND_US, first_from
-from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, beyond, verdict
 from innervate.papers.words import joined
 
 TITLE = "Beyond the paper: 2 ms to switch"
@@ -51,8 +49,7 @@ def _against(got: Measured, back: int) -> Claim:
             passed = passed and n == 2
             pair = f"n = 2: {ours[0]:.4f} against {theirs[0]:.4f}"
             words.append(f"T = {size}, {name}: from n = {n} ({pair})")
-    return Claim(
-        "beyond",
+    return beyond(
         "with 2 ms its S beats D2 and D2' with the same turnaround at every n >= 2, "
         + ("both ways" if back == 0 else "even if theirs is 0 on the way back"),
         joined(words, "; "),
@@ -78,8 +75,7 @@ def _unattainable(got: Measured) -> Claim:
             f"T = {size}: bound {practice.bound(SETTING, size):.3f}, reached {most:.3f}, slotted "
             f"{paper:.3f} at n = 10"
         )
-    return Claim(
-        "beyond",
+    return beyond(
         "with 2 ms the S of Figs. 4 and 5 can be had with one packet a turn",
         joined(words, "; "),
         verdict(above),

@@ -1,7 +1,5 @@
 """Where the slots of a packet's delay go: measured from what was on the air in a run."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Charts of a radio run: throughput over time, delays, what each station got."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

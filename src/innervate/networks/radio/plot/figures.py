@@ -1,7 +1,5 @@
 """Figures of a radio run, for `Run.plot`: timeline, delay, fairness, throughput."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -42,8 +40,5 @@ def throughput(run: Any, bins: int = charts.BINS) -> Figure:
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "timeline": timeline,
-    "delay": delay,
-    "fairness": fairness,
-    "throughput": throughput,
-}
+    "timeline": timeline, "delay": delay, "fairness": fairness, "throughput": throughput,
+}  # fmt: skip

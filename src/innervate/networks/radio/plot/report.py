@@ -1,31 +1,31 @@
 """The part of a report that is about radio."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from innervate.networks.radio.analysis import air
 from innervate.networks.radio.plot import charts as radio_charts
 from innervate.networks.radio.plot import scene as radio_scene
-from innervate.networks.radio.plot import slotted_report as radio_slotted_report
 from innervate.networks.radio.plot import timeline as radio_timeline
 from innervate.networks.radio.plot import words as told
 from innervate.networks.radio.scenario.words import warnings
-from innervate.plot import page, svg, words
+from innervate.plot import charts, page, svg, words
 from innervate.plot.page import ROWS_MAX, details, figure, pictures, section, table, tiles
 
 
 def body(result: Any, summary: Mapping[str, Any]) -> str:
     """Headline, numbers and pictures of a radio run, as HTML."""
     if summary.get("level") == "slotted":
-        return radio_slotted_report.body(result, summary)
+        found = section("How well it went", slotted_charts(result, summary))
+        return slotted_top(result, summary) + "\n" + found
     return page.joined(
         top(result, summary),
         _timelines(result),
         _charts(result, summary),
-        _events(result),
+        page.events(result, told.fault_words),
         _reports(result, summary),
     )
 
@@ -33,8 +33,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
 def notebook(result: Any, summary: Mapping[str, Any]) -> str:
     """What a notebook shows of a run, as HTML."""
     if summary.get("level") == "slotted":
-        found = radio_slotted_report.charts_of(result, summary)
-        return radio_slotted_report.top(result, summary) + found
+        return slotted_top(result, summary) + slotted_charts(result, summary)
     return top(result, summary) + on_air(result)
 
 
@@ -225,13 +224,6 @@ def _charts(result: Any, summary: Mapping[str, Any]) -> str:
     return section("How well it went", pictures([page.panel(one) for one in shown if one], "two"))
 
 
-def _events(result: Any) -> str:
-    """The section on events that the scenario has brought about; "" if there are none."""
-    faults = [fault for fault in result.plan.faults if fault.at_us <= result.ended_us]
-    rows = [(f"{f.at_us / 1e6:.3f} s", svg.clean(told.fault_words(f))) for f in faults]
-    return section("Events", page.beginning(("at", "what"), rows) if rows else "")
-
-
 def _reports(result: Any, summary: Mapping[str, Any]) -> str:
     """How often stations reported what, and what became of frames and packets."""
     rows = result.rows
@@ -247,3 +239,43 @@ def _reports(result: Any, summary: Mapping[str, Any]) -> str:
         kinds[what] += summary[key]
     cells = [(svg.clean(name), f"{count:,}") for name, count in kinds.most_common() if count]
     return section("What the stations reported", table(("what", "times"), cells) if cells else "")
+
+
+def slotted_top(result: Any, summary: Mapping[str, Any]) -> str:
+    """What happened on the slotted level, and the figures to know."""
+    model = result.plan.scenario.model
+    over = (
+        f"{summary['name']}: the slotted level, a reference model that counts slots; "
+        f"{model.protocol.mac}, packets of {result.plan.params['packet_slots']} slots; "
+        f"seed {summary['seed']}"
+    )
+    who = told.robots(summary["stations"])
+    if model.traffic.kind == "disaster" and summary["delivered"] < summary["stations"]:
+        count = words.number_of(summary["delivered"], "packet")
+        head = f"{who} started at once; {count} came through in the time."
+    elif model.traffic.kind == "disaster":
+        after = f"{summary['duration_slots']:.4g} slots later"
+        head = f"{who} started at once; every packet was delivered {after}."
+    else:
+        head = f"{who}: packets filled {words.share_words(summary['throughput'])} of the time."
+    found = [
+        (words.share_words(summary["throughput"]), "of the time is packets"),
+        (f"{summary['jain']:.3f}", "fairness (Jain), 1 is even"),
+        (f"{summary['collisions']:,}", "collisions"),
+    ]
+    said = page.paragraphs([head, *warnings(result.plan)])
+    return page.top(over, summary, said, tiles(found))
+
+
+def slotted_charts(result: Any, summary: Mapping[str, Any]) -> str:
+    """Delays and shares of a run on the slotted level, as figures."""
+    delays = np.sort(result.found.delay_slots)
+    head = "Packets delivered by each station"
+    shown: list[charts.Steps | charts.Bars] = [
+        charts.Bars(radio_charts.stations(result.found.successes), head)
+    ]
+    if len(delays):
+        x = charts.Axis(0.0, 1.02 * float(max(delays[-1], 1.0)), "slots from offer to end")
+        head = "Delay: packets delivered within, %"
+        shown.insert(0, charts.distribution(delays, x, head, top=108.0))
+    return pictures([page.panel(one) for one in shown], "two")

@@ -1,7 +1,5 @@
 """A stretch of a radio run as it is drawn, by SVG or matplotlib: boxes, what was heard, marks."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -73,25 +71,17 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """All that is drawn of a stretch of a run.
+    """All that is drawn of a stretch of a run."""
 
-    Attributes:
-        window: what is shown.
-        stations: those that have a lane, in order.
-        boxes, notes: in order of time.
-        heard: by station; intervals cut to the window.
-        cut: there was more between the moments that were asked for than can be shown.
-        off: why stations are off: "switched off", "not in the team", both; "" if none is.
-    """
-
-    window: Window
+    window: Window  # what is shown
     slot_us: int
-    stations: tuple[int, ...]
+    stations: tuple[int, ...]  # those that have a lane, in order
+    # boxes, notes: in order of time
     boxes: tuple[Box, ...]
     notes: tuple[Note, ...]
-    heard: dict[int, Heard]
-    cut: bool
-    off: str = ""
+    heard: dict[int, Heard]  # by station; intervals cut to the window
+    cut: bool  # there was more between the moments that were asked for than can be shown
+    off: str = ""  # why stations are off: "switched off", "not in the team", both; "" if none is
 
     @property
     def frames(self) -> list[FrameWords]:
@@ -145,10 +135,9 @@ def beginning(result: Any, whole: Window) -> Window | None:
 def scene(
     result: Any, from_us: int | None = None, to_us: int | None = None, origin_us: int | None = None
 ) -> Scene:
-    """What is drawn of a run between two moments; by default of its first resolution.
+    """What is drawn of a run between two moments (us of true time); else of its first resolution.
 
-    Raises:
-        ValueError: the window ends before it begins.
+    Slots count from `origin_us`, or the first collision; a window has to end after it begins.
     """
     window = _window(result, from_us, to_us, origin_us)
     on_air = air(result)

@@ -4,8 +4,6 @@ One lane a station, as in Fig. 1 of the paper: boxes for frames, below them CD a
 station hears them, grey where its radio cannot listen. With many stations boxes alone.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.radio.plot.scene import DONE, FAILED, NOTICED, Box, Note, Scene, scene
@@ -27,17 +25,7 @@ ROW_PX = 22.0
 def timeline(
     result: Any, from_us: int | None = None, to_us: int | None = None, origin_us: int | None = None
 ) -> svg.Drawing:
-    """A run between two moments (us of true time); by default its first resolution.
-
-    Args:
-        result: of `sim.radio.simulate`, with its rows kept.
-        from_us: where it begins.
-        to_us: where it ends.
-        origin_us: the moment that slots are counted from; by default the first collision.
-
-    Raises:
-        ValueError: the window ends before it begins.
-    """
+    """A run between two moments, or its first resolution; see scene()."""
     return draw(scene(result, from_us, to_us, origin_us))
 
 

@@ -3,8 +3,6 @@
 A protocol whose frames or reports mean something else than the others' adds an entry to a table.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -15,20 +13,14 @@ from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
 
 class FrameWords(NamedTuple):
-    """How a kind of frame is drawn and called.
+    """How a kind of frame is drawn and called."""
 
-    Attributes:
-        letter, name: on its box, as there is room.
-        kind: class of its fill.
-        height: of its box, 1 = the highest.
-        meaning: in the legend.
-    """
-
+    # letter, name: on its box, as there is room
     letter: str
     name: str
-    kind: str
-    height: float
-    meaning: str
+    kind: str  # class of its fill
+    height: float  # of its box, 1 = the highest
+    meaning: str  # in the legend
 
 
 _FRAMES = {

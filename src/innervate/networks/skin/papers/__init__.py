@@ -1,12 +1,14 @@
 """The skin paper: Bader, Bergner and Cheng, a dynamic network protocol for an artificial skin."""
 
 from functools import partial
+from pathlib import Path
 
-from innervate.networks.skin.papers.readings import READINGS as READINGS
 from innervate.papers.experiment import Experiment
+from innervate.papers.words import sentences
 
 TITLE = "A robust and efficient dynamic network protocol for a large-scale artificial robotic skin"
 AUTHORS = "C. Bader, F. Bergner, G. Cheng"
+READINGS = sentences(Path(__file__).with_name("readings.txt").read_text(encoding="utf-8"))
 # One module each, in the order of the paper; the last two are beyond it.
 FIGURES = (
     "startup", "fig5", "fig6", "eq3", "delay", "fig8a", "fig8b", "eq7", "at_most", "fig10", "eq9",

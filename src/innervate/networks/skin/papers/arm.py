@@ -6,8 +6,6 @@ damper (admittance). A cell that is not heard any more keeps its last value, as 
 knows nothing of the network.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -45,10 +43,7 @@ def torque_table(rows: int, columns: int) -> Numbers:
 def move(deliveries: Any, torques: Numbers, duration_us: int) -> dict[str, Numbers]:
     """Joint angles (rad), speeds (rad/s), and cells heard lately, every STEP_US.
 
-    Args:
-        deliveries: samples in order of arrival, fields time (us), cell, force (mN, three).
-        torques: see torque_table.
-        duration_us: how long.
+    `deliveries` are samples in order of arrival: time (us), cell, force (mN, three).
     """
     steps = duration_us // STEP_US
     force = np.zeros(len(torques))

@@ -1,15 +1,13 @@
 """Abstract and conclusion: a recovery takes at most 50 ms, or 40 ms, at 250 Hz."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate.networks.skin.papers.common import RULES, Case, Rule, rule_panels, seeds_of
+from innervate.networks.skin.papers.common import RULES, Rule, rule_panels, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -25,27 +23,18 @@ KS = (2, 3, 5)
 K = 2  # the paper gives none; the least that tolerates one lost beacon
 PRINTED = (("Abstract", 50.0), ("IV", 40.0))
 ALL = Span(1.0, 1.0)  # share of the recoveries
-
-
-def seeds(quick: bool) -> range:
-    """Seeds of the recoveries of each setting: 40, or 6 if `quick`."""
-    return seeds_of(6 if quick else 40)
-
-
-def case(setup: str, rule: Rule, k: int) -> Case:
-    """The case of one setting, with periodic beacons."""
-    return Case(setup, HZ, k, rule.name, "periodic", rule.m)
+seeds = sized(seeds_of(6), seeds_of(40))  # of the recoveries of each setting
 
 
 def points(quick: bool) -> list[Point]:
     """Both skins, all rules and k."""
-    found = [case(setup, rule, k) for rule in RULES for setup, _ in SKINS for k in KS]
+    found = [rule.case(setup, HZ, k) for rule in RULES for setup, _ in SKINS for k in KS]
     return [one.point(seeds(quick)) for one in found]
 
 
 def converged_ms(got: Measured, setup: str, rule: Rule, k: int) -> Any:
     """Time from the failure to the last change of a parent, ms, one value a seed."""
-    one = case(setup, rule, k)
+    one = rule.case(setup, HZ, k)
     return one.periods(got, seeds(got.quick), "converged_ms") * one.period_ms
 
 

@@ -35,6 +35,10 @@ class Rule(NamedTuple):
     m: int
     words: str = ""
 
+    def case(self, setup: str, hz: float, k: int, cut: str = f"interface {INTERFACE}") -> Case:
+        """Recoveries under it, with periodic beacons."""
+        return Case(setup, hz, k, self.name, "periodic", self.m, cut)
+
 
 # Those of which several figures show the recoveries.
 RULES = (
@@ -49,12 +53,7 @@ def loaded(
 ) -> Scenario:
     """A bundled skin without its events.
 
-    Args:
-        setup: its name.
-        seed: of the run.
-        duration_s: of the run.
-        more: other keys of the scenario, dotted.
-        protocol: keys of [protocol]; None leaves one as it is.
+    `more` are other keys of the scenario, dotted; of those of [protocol] None leaves one as it is.
     """
     set_ = {f"protocol.{name}": value for name, value in protocol.items() if value is not None}
     changes = {**set_, "event": [], "duration_s": duration_s, **(more or {})}
@@ -74,23 +73,16 @@ def plan_of(setup: str) -> Plan:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A skin whose cable is cut once it has settled.
+    """A skin whose cable is cut once it has settled."""
 
-    Attributes:
-        setup: a bundled scenario.
-        cut: "interface 1", or "random link".
-        m: periods between sequence numbers; 0 = the default, min(k, 5).
-        gap_us: least time between two triggered beacons of a cell; -1 = the default, 500.
-    """
-
-    setup: str
+    setup: str  # a bundled scenario
     beacon_hz: float
     k: int
     rule: str = "feasible"
     updates: str = "periodic"
-    m: int = 0
-    cut: str = f"interface {INTERFACE}"
-    gap_us: int = -1
+    m: int = 0  # periods between sequence numbers; 0 = the default, min(k, 5)
+    cut: str = f"interface {INTERFACE}"  # "interface 1", or "random link"
+    gap_us: int = -1  # least time between two triggered beacons of a cell; -1 = the default, 500
 
     @property
     def period_ms(self) -> float:

@@ -1,7 +1,5 @@
 """III-A.1: the average delay of a packet on its way to the PC, which the paper gives as 6 ms."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

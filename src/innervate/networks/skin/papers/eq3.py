@@ -1,7 +1,5 @@
 """II-B.4, Eq. 3: how often cells may balance; and Algorithm 3 as printed."""
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import chain
 from typing import Any, NamedTuple
@@ -18,7 +16,7 @@ from innervate.networks.skin.papers.startup import CLOCKS
 from innervate.networks.skin.papers.steps import stale_sizes
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.topology.ties import tied_at
@@ -54,6 +52,7 @@ RATES = (
     Rate("2", lambda depth, ports: 2),
 )
 USUAL = RATES[1]
+rates = sized(RATES[1:], RATES)  # that are tried
 
 
 @cache
@@ -61,11 +60,6 @@ def skin(setup: str) -> tuple[int, int]:
     """A setup's depth in hops, and its number of interface ports."""
     made = plan_of(setup)
     return int(made.depth_max), int(made.graph.interfaces)
-
-
-def rates(quick: bool) -> tuple[Rate, ...]:
-    """Pairs of rates that are tried."""
-    return RATES[1:] if quick else RATES
 
 
 def point(setup: str, rate: Rate, quick: bool, rule: str = "even") -> Point:

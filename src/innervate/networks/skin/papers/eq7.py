@@ -1,7 +1,5 @@
 """Eq. 7: convergence of any single failure, random cables and all interface cables, setups 1-8."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 
@@ -11,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate import scenario
 from innervate.networks.skin.papers import common
-from innervate.networks.skin.papers.common import RULES, SETUPS, Case, Rule, seeds_of
+from innervate.networks.skin.papers.common import RULES, SETUPS, Rule, seeds_of
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
 from innervate.papers.words import percent
@@ -51,15 +49,10 @@ def depth(setup: str) -> int:
     return int(common.plan_of(setup).depth_max)
 
 
-def case(setup: str, rule: Rule, cut: str) -> Case:
-    """The case of one setting, with periodic beacons and one cut."""
-    return Case(setup, HZ, K, rule.name, "periodic", rule.m, cut)
-
-
 def points(quick: bool) -> list[Point]:
     """All setups, all cuts, all rules."""
     return [
-        case(setup, rule, cut).point(seeds(quick, cut))
+        rule.case(setup, HZ, K, cut).point(seeds(quick, cut))
         for rule in RULES
         for setup in SETUPS
         for cut in cuts(setup)
@@ -71,7 +64,7 @@ def ratios(got: Measured, setup: str, rule: Rule, kind: str) -> Any:
     rows = [np.empty((0, 2))]
     for cut in cuts(setup):
         if cut.startswith(kind):
-            point = case(setup, rule, cut).point(seeds(got.quick, cut))
+            point = rule.case(setup, HZ, K, cut).point(seeds(got.quick, cut))
             both = [got.floats(point, name) for name in ("converged_ms", "routed_ms")]
             rows.append(np.stack(both, axis=1)[got.floats(point, "cut_cells") > 0])
     return np.concatenate(rows) * HZ / 1e3

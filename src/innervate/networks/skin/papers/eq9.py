@@ -1,7 +1,5 @@
 """Eq. 9: bandwidth of beacons. The printed numbers are ten times too high (E28)."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -11,7 +9,7 @@ from innervate.networks.skin.analysis.frames import beacon_share
 from innervate.networks.skin.papers.common import loaded
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -24,11 +22,7 @@ CAPTION = f"Setup 1, {PERIODS} periods without a failure; mean over all directio
 ON_FORMULA = Span(-0.02, 0.02)  # share off Eq. 9
 ON_PRINTED = Span(0.9, 1.1)  # of the printed number
 MORE = Span(-1.0, 0.1)  # beacons of the wave mode beyond Eq. 9
-
-
-def hz(quick: bool) -> tuple[int, ...]:
-    """Beacon frequencies, Hz, one point each."""
-    return (10, 100, 250) if quick else (10, 20, 50, 100, 150, 200, 250)
+hz = sized((10, 100, 250), (10, 20, 50, 100, 150, 200, 250))  # of beacons, one point each
 
 
 def point(updates: str, beacon_hz: int) -> Point:

@@ -1,7 +1,5 @@
 """Fig. 10's runs: setups 5-7 with the static tree and the dynamic protocol, loads and loss."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fig. 11: a controlled arm whose skin loses a cable; 20 Hz beacons, k = 8."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -36,19 +34,17 @@ OFF = Span(0.0, 0.1)  # largest difference from no failure, of the whole movemen
 FASTER = Span(0.0, 1.1)  # highest joint speed after the unplugging, of the usual one
 TWO_SECONDS = about(2000.0)  # ms without a route beyond the detection
 KEPT = 5  # of the arm's steps one in five is stored
-# Name, rule, unplugged.
-CASES = (
-    ("no failure", "feasible", False),
-    ("dynamic", "feasible", True),
-    ("static tree", "static", True),
+# Name, rule, unplugged, colour, dash.
+CASES: tuple[tuple[str, str, bool, str, Any], ...] = (
+    ("no failure", "feasible", False, style.INK, "-"),
+    ("dynamic", "feasible", True, style.BLUE, (0, (4, 1.5))),
+    ("static tree", "static", True, style.VERMILION, (0, (1.5, 1.2))),
 )
-LOOKS = (("no failure", style.INK, "-"), ("dynamic", style.BLUE, (0, (4, 1.5))),
-         ("static tree", style.VERMILION, (0, (1.5, 1.2))))  # fmt: skip
 
 
 def runs(name: str, quick: bool) -> Point:
     """All runs of one case."""
-    _, rule, cut = next(case for case in CASES if case[0] == name)
+    rule, cut = next(case[1:3] for case in CASES if case[0] == name)
     seeds = seeds_of(3 if quick else 20)
     return Point.each(f"fig11 {name} {BEACON_HZ} Hz k={K}", 0.4, seeds, measure, rule, cut)
 
@@ -108,7 +104,7 @@ def draw(got: Measured) -> Figure:
     )
     calm = _calm(got)[0]
     time = np.arange(calm.shape[1]) * KEPT * arm.STEP_US / 1e6
-    for name, colour, dash in LOOKS:
+    for name, _, _, colour, dash in CASES:
         found = runs(name, got.quick)
         joints = got.floats(found, "angle")[0]
         off = np.abs(joints - calm).max(axis=0)

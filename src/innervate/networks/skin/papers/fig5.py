@@ -5,8 +5,6 @@ that shows them is this: n1 carries an interface; n2 and n3 hang on n1, n4 on n3
 longer ways to the second interface.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -15,7 +13,7 @@ from matplotlib.figure import Figure
 from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import parent_changes
 from innervate.networks.skin.papers.common import seeds_of, simulated
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -65,11 +63,7 @@ CASES: dict[str, tuple[int, bool, bool]] = {
     "free running, M = 1": (1, False, False),
     "line of depth 4, free running": (1, False, True),
 }
-
-
-def ks(quick: bool) -> tuple[int, ...]:
-    """The k of the sweep."""
-    return (2, 5, 8) if quick else tuple(range(2, 9))
+ks = sized((2, 5, 8), tuple(range(2, 9)))  # the k of the sweep
 
 
 def runs(name: str, k: int, quick: bool) -> Point:

@@ -4,8 +4,6 @@ Beyond the figure: from which loss on a connection counts as broken, and how fas
 plugged in again is taken back.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

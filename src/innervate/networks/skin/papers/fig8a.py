@@ -1,7 +1,5 @@
 """Fig. 8a: convergence of setup 1 over beacon frequency and k, against Eq. 4 and its band Eq. 5."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +10,7 @@ from matplotlib.figure import Figure
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.papers.common import RULES, Case, Rule, mean_of, seeds_of
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -40,38 +38,33 @@ class Grid:
     seeds: range
 
 
-def grid(quick: bool) -> Grid:
-    """The sweep of the paper, or a thin one."""
-    if quick:
-        return Grid((10, 250), BAR_K, seeds_of(6))
-    return Grid((10, 20, 50, 100, 150, 200, 250), tuple(range(2, 9)), seeds_of(40))
-
-
-def case(rule: Rule, hz: int, k: int) -> Case:
-    """One cell of the sweep."""
-    return Case(SETUP, hz, k, rule.name, "periodic", rule.m)
+grid = sized(
+    Grid((10, 250), BAR_K, seeds_of(6)),
+    Grid((10, 20, 50, 100, 150, 200, 250), tuple(range(2, 9)), seeds_of(40)),
+)
 
 
 def points(quick: bool) -> list[Point]:
     """All combinations, for all rules."""
     sweep = grid(quick)
-    return [case(*one).point(sweep.seeds) for rule in RULES for one in _cells(sweep, rule)]
+    return [one.point(sweep.seeds) for rule in RULES for one in cells(sweep, rule)]
 
 
-def _cells(sweep: Grid, rule: Rule) -> list[tuple[Rule, int, int]]:
-    return [(rule, hz, k) for hz in sweep.hz for k in sweep.k]
+def cells(sweep: Grid, rule: Rule) -> list[Case]:
+    """All cases of a rule."""
+    return [rule.case(SETUP, hz, k) for hz in sweep.hz for k in sweep.k]
 
 
-def off_band(got: Measured, rule: Rule, hz: int, k: int) -> Any:
+def off_band(got: Measured, rule: Rule, hz: float, k: int) -> Any:
     """Convergence minus Eq. 4 of every seed, in periods."""
-    found = case(rule, hz, k).periods(got, grid(got.quick).seeds, "converged_ms")
+    found = rule.case(SETUP, hz, k).periods(got, grid(got.quick).seeds, "converged_ms")
     return found - formulas.convergence_s(hz, k) * hz
 
 
 def _pooled(got: Measured, rule: Rule, only: int = 0) -> Any:
     """Convergence minus Eq. 4 of all recoveries of a rule; of one k if it is given."""
-    cells = [one for one in _cells(grid(got.quick), rule) if only in (0, one[2])]
-    return np.concatenate([off_band(got, *one) for one in cells])
+    some = [one for one in cells(grid(got.quick), rule) if only in (0, one.k)]
+    return np.concatenate([off_band(got, rule, one.beacon_hz, one.k) for one in some])
 
 
 def draw(got: Measured) -> Figure:
@@ -142,8 +135,8 @@ def judge(got: Measured) -> Claims:
         verdict(INSIDE.has(*shares.values())),
     )
     late = np.concatenate([
-        case(*one).periods(got, sweep.seeds, "detected_ms") - one[2]
-        for rule in RULES for one in _cells(sweep, rule)
+        one.periods(got, sweep.seeds, "detected_ms") - one.k
+        for rule in RULES for one in cells(sweep, rule)
     ])  # fmt: skip
     yield Claim(
         "8a",
@@ -167,7 +160,7 @@ _WHY = {
 def _band(got: Measured, sweep: Grid, rule: Rule) -> Claim:
     off = _pooled(got, rule)
     share = IN_BAND.share(off)
-    counts = [got[case(*one).point(sweep.seeds)]["loops"] for one in _cells(sweep, rule)]
+    counts = [got[one.point(sweep.seeds)]["loops"] for one in cells(sweep, rule)]
     loops = sum(count > 0 for some in counts for count in some)
     least, low, high, most = np.nanpercentile(off, [0, 5, 95, 100])
     return Claim(

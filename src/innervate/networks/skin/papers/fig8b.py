@@ -1,7 +1,5 @@
 """Fig. 8b: convergence over the distance between the interface ports, setups 1-4, against Eq. 6."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any
 
@@ -14,7 +12,7 @@ from innervate.networks.skin.papers import common
 from innervate.networks.skin.papers.common import RULES, Case, Rule, number, seeds_of
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 
@@ -33,16 +31,7 @@ WIDE = Case("setup-2", HZ, 3)
 INSIDE = Span(0.95, 1.0)  # share of the recoveries in the band
 SLOPE = Span(0.4, 0.6)  # periods a cell
 FIT = Span(0.8, 1.0)  # R2 of the line
-
-
-def case(setup: str, k: int, rule: Rule) -> Case:
-    """The case of one setting, with periodic beacons."""
-    return Case(setup, HZ, k, rule.name, "periodic", rule.m)
-
-
-def seeds(quick: bool) -> range:
-    """How many recoveries a setting."""
-    return seeds_of(8 if quick else 40)
+seeds = sized(seeds_of(8), seeds_of(40))  # of the recoveries of each setting
 
 
 def last(quick: bool) -> Point:
@@ -52,7 +41,7 @@ def last(quick: bool) -> Point:
 
 def points(quick: bool) -> list[Point]:
     """Four setups, three k, all rules."""
-    made = [case(setup, k, rule) for rule in RULES for setup in SETUPS for k in KS]
+    made = [rule.case(setup, HZ, k) for rule in RULES for setup in SETUPS for k in KS]
     return [*(one.point(seeds(quick)) for one in made), last(quick)]
 
 
@@ -74,7 +63,7 @@ def last_cells(seed: int) -> dict[str, Any]:
 
 def converged(got: Measured, setup: str, k: int, rule: Rule) -> Any:
     """Convergence of every seed, in periods."""
-    return case(setup, k, rule).periods(got, seeds(got.quick), "converged_ms")
+    return rule.case(setup, HZ, k).periods(got, seeds(got.quick), "converged_ms")
 
 
 def draw(got: Measured) -> Figure:

@@ -1,7 +1,5 @@
 """Erratum E25: the printed rule closes forwarding loops: one as a picture, and how many."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -41,7 +39,7 @@ MAP_IN = 2.3
 
 def loops(rule: Rule, quick: bool) -> Point:
     """Recoveries of a rule; E25 counts twenty."""
-    case = Case("setup-1", 250, 5, rule.name, "periodic", rule.m)
+    case = rule.case("setup-1", 250, 5)
     return Point.each(f"loops of {case}", 0.02, seeds_of(5 if quick else 20), count, case)
 
 
@@ -105,8 +103,9 @@ def draw(got: Measured) -> Figure:
     figure = style.figure(style.WIDE_IN, 3.3)
     before, then, bars = figure.subplots(1, 3, width_ratios=(1, 1, 0.95))
     hops = next_hops(graph, np.array(shown["before"]))
-    below = _below(hops, graph)
-    servers = [CUT_PORT if cell in below else 0 for cell in range(graph.cells)]
+    root = graph.peer[4 * graph.cells + CUT_PORT] // 4
+    ends = [_end(hops, cell, graph.cells)[0] for cell in range(graph.cells)]
+    servers = [CUT_PORT if end == root else 0 for end in ends]
     paint.paint(before, _map(graph, hops, servers), MAP_IN)
     before.set_title("a  the cable of port 1 fails")
     _draw_ring(then, graph, shown)
@@ -115,32 +114,24 @@ def draw(got: Measured) -> Figure:
     return figure
 
 
-def _below(hops: Any, graph: Any) -> set[int]:
-    """Cells whose chain of parents ends at interface port 1."""
-    root = graph.peer[4 * graph.cells + 1] // 4
-    found = set()
-    for cell in range(graph.cells):
-        node = cell
-        while node != root and 0 <= hops[node] < graph.cells:
-            node = int(hops[node])
-        if node == root:
-            found.add(cell)
-    return found
+def _end(hops: Any, node: int, cells: int) -> tuple[int, int]:
+    """The last cell of a cell's chain of parents, and after how many steps: no end, too many."""
+    steps = 0
+    while 0 <= hops[node] < cells and steps <= cells:
+        node, steps = int(hops[node]), steps + 1
+    return node, steps
 
 
 def _draw_ring(ax: Axes, graph: Any, shown: Any) -> None:
     hops = next_hops(graph, np.array(shown["then"]))
-    root = graph.peer[4 * graph.cells + 1] // 4
+    root = graph.peer[4 * graph.cells + CUT_PORT] // 4
     if hops[root] == graph.sink:
         hops[root] = -1  # its cable is dead
     servers = []
     for cell in range(graph.cells):
-        node, steps = cell, 0
-        while 0 <= hops[node] < graph.cells and steps <= graph.cells:
-            node, steps = int(hops[node]), steps + 1
-        servers.append(0 if hops[node] == graph.sink else NONE)
-        if steps > graph.cells:
-            servers[-1] = INTO_RING
+        end, steps = _end(hops, cell, graph.cells)
+        way = 0 if hops[end] == graph.sink else NONE
+        servers.append(INTO_RING if steps > graph.cells else way)
     paint.paint(ax, _map(graph, hops, servers, shown["ring"]), MAP_IN)
 
 

@@ -4,8 +4,6 @@ A cell cannot act before the cut is detected, k periods on the mean. What comes 
 to the border of the cut-off part and a route back; its floor is the hops' latency alone.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +13,7 @@ from matplotlib.figure import Figure
 from innervate.analysis.intervals import mean_interval
 from innervate.networks.skin.papers import steady
 from innervate.networks.skin.papers.common import Case, number, seeds_of
-from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, beyond, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
 
@@ -32,6 +30,7 @@ LATENCY_MS = 0.12  # mean of 80..160 us a hop, time on the wire included
 FROM_FLOOR_MS = Span(-2.0, 2.0)
 SOONER_MS = Span(0.1)
 GAP_US = 60  # the time a frame takes on the wire
+seeds = sized(seeds_of(6), seeds_of(100))  # of the recoveries of each setting
 
 
 class Mode(NamedTuple):
@@ -50,11 +49,6 @@ CLOSE = Mode(f"wave, gap {GAP_US} µs", "wave", gap_us=GAP_US)
 OFTEN = Mode("wave, M = 1", "wave", m=1)
 DRAWN = (PERIODIC, TRIGGERED, WAVE, CLOSE)
 MODES = (*DRAWN, OFTEN)
-
-
-def seeds(quick: bool) -> range:
-    """Seeds of the recoveries of each setting: 100, or 6 if `quick`."""
-    return seeds_of(6 if quick else 100)
 
 
 def case(setup: str, k: int, mode: Mode) -> Case:
@@ -121,8 +115,7 @@ def judge(got: Measured) -> Claims:
     for setup, cells, _, bar in SKINS:
         found = time_ms(got, setup, 3, WAVE)
         mean = mean_interval(found.tolist())
-        yield Claim(
-            "beyond",
+        yield beyond(
             f"wave, 250 Hz, k = 3, {cells} cells: all routed again in {bar:g} ms on the mean "
             "(asked for)",
             f"{mean.value:.2f} ms (95 % interval {mean.low:.2f} to {mean.high:.2f}, worst "
@@ -134,8 +127,7 @@ def judge(got: Measured) -> Claims:
         yield _floor(got, setup, cells, depth)
     for setup, cells, *_ in SKINS:
         means = {mode: float(time_ms(got, setup, 3, mode).mean()) for mode in MODES}
-        yield Claim(
-            "beyond",
+        yield beyond(
             f"{cells} cells, k = 3: triggered is faster than periodic, wave faster than both",
             joined(f"{mode.name} {ms:.1f} ms" for mode, ms in means.items()),
             verdict(means[PERIODIC] > means[TRIGGERED] > means[WAVE]),
@@ -151,8 +143,7 @@ def _floor(got: Measured, setup: str, cells: int, depth: int) -> Claim:
     words = joined(
         f"{mode.name}: detection + {min(ms):.2f} to {max(ms):.2f} ms" for mode, ms in above.items()
     )
-    return Claim(
-        "beyond",
+    return beyond(
         f"wave, {cells} cells: within 2 ms of the floor, which is detection (k periods) and "
         f"{least:.1f} ms of latency out and back",
         f"{words}, k {joined(KS)}",
@@ -165,13 +156,9 @@ def _floor(got: Measured, setup: str, cells: int, depth: int) -> Claim:
 
 
 def _sooner(got: Measured) -> Claim:
-    gains = [
-        after_detection(got, setup, k, WAVE) - after_detection(got, setup, k, OFTEN)
-        for setup, *_ in SKINS
-        for k in KS
-    ]
-    return Claim(
-        "beyond",
+    gains = [after_detection(got, setup, k, WAVE) - after_detection(got, setup, k, OFTEN)
+             for setup, *_ in SKINS for k in KS]  # fmt: skip
+    return beyond(
         f"wave with M = 1 recovers sooner than with M = min(k, 5) (at least {SOONER_MS.low:g} ms)",
         f"{min(gains):+.2f} to {max(gains):+.2f} ms sooner, k {joined(KS)}, 99 and 204 cells",
         verdict(SOONER_MS.has(min(gains))),

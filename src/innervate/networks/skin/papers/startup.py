@@ -1,7 +1,6 @@
 """II-B.1: after switching on, all cells know a way to the PC within max(H) periods."""
 
-from __future__ import annotations
-
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -42,39 +41,27 @@ def point(setup: str, rule: Rule, lock_step: bool, quick: bool) -> Point:
 
 def points(quick: bool) -> list[Point]:
     """All setups, all rules; in lock-step and free running."""
-    return [
-        point(setup, rule, lock_step, quick)
-        for rule in RULES
-        for setup in SETUPS
-        for lock_step in CLOCKS
-    ]
+    cases = product(RULES, SETUPS, CLOCKS)
+    return [point(setup, rule, lock_step, quick) for rule, setup, lock_step in cases]
 
 
 def measure(setup: str, rule: Rule, lock_step: bool, seed: int) -> dict[str, Any]:
     """Periods from the PC's first beacon until every cell has a route; the skin's depth."""
+    first_us: list[int] = []
+
+    def note_first(rows: Any, frames: Any, until_us: int) -> None:
+        sent = rows[(rows["at"] >= PORTS * plan.graph.cells) & (rows["out"] == 1)]
+        if not first_us and len(sent):
+            first_us.append(int(sent["start"][0]))
+
     more = {**common.SILENT, "timing.lock_step": lock_step}
     plan = scenario.plan(common.loaded(
         setup, seed, PERIODS / HZ, more, rule=rule.name, updates="periodic", beacon_hz=HZ, k=K,
         m=rule.m or None,
     ))  # fmt: skip
-    first = _First(PORTS * plan.graph.cells)
-    steps = unrouted_steps(simulate(plan, tap=first))
+    steps = unrouted_steps(simulate(plan, tap=note_first))
     done = steps.time_us[-1] if steps.cells[-1] == 0 else np.nan
-    return {"periods": float(done - first.time_us) * HZ / 1e6, "depth": plan.depth_max}
-
-
-class _First:
-    """Notes when the PC sent for the first time; `first_end` is its first port."""
-
-    def __init__(self, first_end: int) -> None:
-        self.first_end = first_end
-        self.time_us = -1
-
-    def __call__(self, rows: Any, frames: Any, until_us: int) -> None:
-        if self.time_us < 0:
-            sent = rows[(rows["at"] >= self.first_end) & (rows["out"] == 1)]
-            if len(sent):
-                self.time_us = int(sent["start"][0])
+    return {"periods": float(done - first_us[0]) * HZ / 1e6, "depth": plan.depth_max}
 
 
 def draw(got: Measured) -> Figure:

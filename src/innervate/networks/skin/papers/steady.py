@@ -1,7 +1,5 @@
 """Do routes settle on shortest ways? Which rule and M leave cells on longer ones (E26)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +8,7 @@ from innervate import scenario
 from innervate.networks.skin.papers.common import SILENT, loaded, seeds_of
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import NONE
-from innervate.papers.experiment import Claim, Measured, Point, Span, verdict
+from innervate.papers.experiment import Claim, Measured, Point, Span, beyond, verdict
 from innervate.papers.words import joined
 
 HZ = 250
@@ -28,10 +26,9 @@ class Variant(NamedTuple):
     m: int
 
 
-PAPER = Variant("paper", "periodic", 1)
 WAVE = Variant("feasible", "wave", 1)
 VARIANTS = (
-    PAPER,
+    Variant("paper", "periodic", 1),
     Variant("paper-lax", "periodic", 1),
     Variant("feasible", "periodic", 1),
     Variant("feasible", "periodic", 0),
@@ -88,8 +85,7 @@ def judge(setup: str, cells: int, got: Measured) -> Claim:
         number = f"M = {variant.m}" if variant.m else "M = 3"
         words.append(f"{variant.rule} {variant.updates} {number}: {after_start}, {after_cut}")
     wave = np.array(got[point(setup, WAVE, got.quick)])
-    return Claim(
-        "beyond",
+    return beyond(
         f"wave with M = 1 leaves no cell on a longer way, {cells} cells (E26)",
         f"skins of {len(wave)} with a longer way {LOOKS[0]} periods after start-up, after the cut: "
         + joined(words),

@@ -1,7 +1,5 @@
 """A simulation in steps, to look into it while it runs: penalties, counters, loads, sizes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Maps of skins too large to draw cell by cell: squares that stand for many cells."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,12 +14,7 @@ TIPS_MAX = 300
 
 
 class Grid:
-    """Squares over a sheet.
-
-    Attributes:
-        place: the square of every cell.
-        cells: how many cells each square has.
-    """
+    """Squares over a sheet of cells."""
 
     def __init__(self, sheet: Sheet) -> None:
         inner = sheet.points - sheet.margin + sheet.pitch / 2
@@ -31,8 +24,8 @@ class Grid:
         where = (inner / self.size).astype(np.int64)
         self.columns = int(where[:, 0].max()) + 1
         self.squares = self.columns * (int(where[:, 1].max()) + 1)
-        self.place = where[:, 1] * self.columns + where[:, 0]
-        self.cells = self.count()
+        self.place = where[:, 1] * self.columns + where[:, 0]  # the square of every cell
+        self.cells = self.count()  # how many cells each square has
 
     def count(self, weights: Any = None) -> Any:
         """Sum of one number per cell over the cells of each square."""

@@ -1,7 +1,5 @@
 """Which moments of a run are worth a picture, and the pictures."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,17 +26,11 @@ MARKS_MAX = 8
 
 @dataclass(frozen=True, slots=True)
 class Incident:
-    """An event of the scenario with what came of it.
+    """An event of the scenario with what came of it."""
 
-    Attributes:
-        fault: what happened.
-        recovery: its entry in the summary.
-        until_us: when the next later event came, or the run ended.
-    """
-
-    fault: Fault
-    recovery: Mapping[str, Any]
-    until_us: int
+    fault: Fault  # what happened
+    recovery: Mapping[str, Any]  # its entry in the summary
+    until_us: int  # when the next later event came, or the run ended
 
     @property
     def at_us(self) -> int:
@@ -187,23 +179,14 @@ class Digest:
         times, cells = self.history.steps()
         end_s = max(self.result.ended_us, 1) / 1e6
         x = charts.Axis(0.0, end_s, "seconds")
-        marks = self._marked()
+        events = ((i.at_us, ACTIONS[i.fault.action]) for i in self.incidents)
+        marks = charts.marked(events, MARKS_MAX)
         most = 1.08 * max(int(cells.max(initial=0)), 1)
         y = charts.Axis(0.0, most)
         head = "Cells without a way to the PC, whole run"
         panels = [charts.Steps(times / 1e6, cells, x, y, head, "", marks, 165.0)]
         received = self._received(x, marks)
         return panels + ([received] if received else [])
-
-    def _marked(self) -> list[charts.Mark]:
-        """The first moments of events; those of one moment together."""
-        seen: dict[int, list[str]] = {}
-        for incident in self.incidents:
-            seen.setdefault(incident.at_us, []).append(ACTIONS[incident.fault.action])
-        return [
-            charts.Mark(at / 1e6, what[0] if len(what) == 1 else f"{len(what)} events")
-            for at, what in list(seen.items())[:MARKS_MAX]
-        ]
 
     def _received(self, x: charts.Axis, marks: list[charts.Mark]) -> charts.Steps | None:
         """Samples received in each sample period, as a share of the cells."""
@@ -259,24 +242,16 @@ class Digest:
         loads = self.summary["port_loads"]
         if not loads:
             return None
-        bars = [
-            charts.Bar(
-                f"port {i}",
-                load,
-                words.number_of(load, "cell"),
-                f"p{i % 8}" if self._tells else "bar",
-            )
-            for i, load in enumerate(loads)
-        ]
+        alike = skinmap.shows_depth(self.graph.interfaces)  # ports have no colours of their own
+        bars = []
+        for i, load in enumerate(loads):
+            kind = "bar" if alike else f"p{i}"
+            bars.append(charts.Bar(f"port {i}", load, words.number_of(load, "cell"), kind))
         even = sum(loads) / len(loads) if len(loads) > 1 else None
         factor = self.summary["balance_factor"]
         text = f"Balance factor {factor:.3f}; 1 is even." if factor is not None else ""
         label = "Cells served by each interface port at the end"
         return charts.Bars(bars, "Cells behind each interface port", text, even, label)
-
-    @property
-    def _tells(self) -> bool:
-        return not skinmap.shows_depth(self.graph.interfaces)
 
     def losses(self) -> charts.Bars | None:
         """Bars of how many samples were lost for which reason; None if none was."""

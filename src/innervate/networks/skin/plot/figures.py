@@ -1,7 +1,5 @@
 """Figures of one run, for `Run.plot`: recovery, routes, loads, received."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -78,8 +76,5 @@ def received(run: Any, time_s: float | None = None, window_s: float = WINDOW_S) 
 
 
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "recovery": recovery,
-    "routes": routes,
-    "loads": loads,
-    "received": received,
-}
+    "recovery": recovery, "routes": routes, "loads": loads, "received": received,
+}  # fmt: skip

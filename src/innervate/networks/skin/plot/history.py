@@ -1,7 +1,5 @@
 """A skin at any moment of a run, put together again from the run's rows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,23 +16,14 @@ Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """The skin at one moment.
+    """The skin at one moment."""
 
-    Attributes:
-        time_us: when.
-        parent: parent port of every cell, -1 none.
-        hop: node on the parent port's cable; -1 without a parent or where that cable is down.
-        server: interface port that a cell's data leave through; -1 without a route.
-        down: lower ends of the cables that are cut or have a dead end.
-        dead: cells that are switched off.
-    """
-
-    time_us: int
-    parent: Numbers
-    hop: Numbers
-    server: Numbers
-    down: frozenset[int]
-    dead: frozenset[int]
+    time_us: int  # when
+    parent: Numbers  # parent port of every cell, -1 none
+    hop: Numbers  # node on the parent port's cable; -1 without a parent or where that cable is down
+    server: Numbers  # interface port that a cell's data leave through; -1 without a route
+    down: frozenset[int]  # lower ends of the cables that are cut or have a dead end
+    dead: frozenset[int]  # cells that are switched off
 
 
 class History:

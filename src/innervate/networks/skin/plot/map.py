@@ -1,7 +1,5 @@
 """Maps of a skin: cells as hexagons, links to parents, interface ports, cut cables, touch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -62,14 +60,11 @@ def value_map(sheet: Sheet, values: Any, most: float, label: str, unit: str = ""
     drawing = svg.Drawing(sheet.width, sheet.height, label)
     missing = np.isnan(values)
     label_of = sheet.graph.label
-    kinds = [
-        "none" if missing[c] else f"cell h{shade(float(values[c]), most)}"
-        for c in range(len(values))
-    ]
-    tips = [
-        f"{label_of(c)}: nothing received" if missing[c] else f"{label_of(c)}: {values[c]:g}{unit}"
-        for c in range(len(values))
-    ]
+    kinds, tips = [], []
+    for cell, value in enumerate(values):
+        kinds.append("none" if missing[cell] else f"cell h{shade(float(value), most)}")
+        told = "nothing received" if missing[cell] else f"{value:g}{unit}"
+        tips.append(f"{label_of(cell)}: {told}")
     _cells(drawing, sheet, kinds, tips)
     _crosses(drawing, sheet, np.flatnonzero(missing).tolist())
     return drawing

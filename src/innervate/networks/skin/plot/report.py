@@ -1,7 +1,5 @@
 """The part of a report that is about skins."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -93,12 +91,8 @@ def _figures(digest: Digest) -> list[tuple[str, str]]:
         found.append((words.share_words(summary["beacon_share"]), "of the wire goes to beacons"))
     loops = summary["loops"]
     longest = loops["longest_ms"]
-    note = (
-        f"forwarding loops, the longest {words.stood_words(longest)}"
-        if longest is not None
-        else "forwarding loops"
-    )
-    found.append((f"{loops['episodes']:,}", note))
+    note = "" if longest is None else f", the longest {words.stood_words(longest)}"
+    found.append((f"{loops['episodes']:,}", f"forwarding loops{note}"))
     done_s = summary.get("interrupted_at_s", summary["duration_s"])
     return [*found, page.took(summary, done_s)]
 

@@ -1,7 +1,5 @@
 """Where the cells and interface ports of a skin lie on a drawing."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -24,45 +22,34 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 
 class Sheet:
-    """Places of a graph's cells and ports inside a box, in px.
-
-    Attributes:
-        width, height: of the drawing, at most the box.
-        wide: much wider than high; its box then is WIDE where it would be TALL.
-        points: (cells, 2) centres of cells.
-        pitch: px between neighbours.
-        scale: px per mm.
-        margin: px round the cells.
-        ports: place of every interface port's plug.
-        corners: of a cell's hexagon, relative to its centre.
-    """
+    """Places of a graph's cells and ports inside a box, in px."""
 
     def __init__(self, graph: Graph, box: Point = TALL, margin: float = MARGIN) -> None:
         self.graph = graph
-        self.margin = margin
+        self.margin = margin  # px round the cells
         places = np.array(cell_places(graph), np.float64).reshape(-1, 2)
         low = places.min(axis=0)
         extent = places.max(axis=0) - low
         pitch_mm = _pitch(places)
-        self.wide = bool(extent[0] > 1.4 * extent[1])
+        self.wide = bool(extent[0] > 1.4 * extent[1])  # its box then is WIDE where it would be TALL
         if self.wide and box == TALL:
             box = WIDE
-        self.scale = min(
+        self.scale = min(  # px per mm
             (box[0] - 2 * margin) / max(extent[0], pitch_mm),
             (box[1] - 2 * margin) / max(extent[1], pitch_mm),
             PITCH_MAX / pitch_mm,
         )
-        self.pitch = float(self.scale * pitch_mm)
+        self.pitch = float(self.scale * pitch_mm)  # px between neighbours
         self.width = float(extent[0] * self.scale + 2 * margin)
         self.height = float(extent[1] * self.scale + 2 * margin)
         self._low = low
-        self.points: Floats = (places - low) * self.scale + margin
+        self.points: Floats = (places - low) * self.scale + margin  # (cells, 2), centres
         radius = 0.96 * self.pitch / math.sqrt(3)
-        self.corners = [
+        self.corners = [  # of a cell's hexagon, relative to its centre
             (radius * math.sin(i * math.pi / 3), -radius * math.cos(i * math.pi / 3))
             for i in range(6)
         ]
-        self.ports = self._place_ports() if margin >= MARGIN else []
+        self.ports = self._place_ports() if margin >= MARGIN else []  # where plugs are
 
     def of_mm(self, x_mm: float, y_mm: float) -> Point:
         """A place of the layout on the drawing."""

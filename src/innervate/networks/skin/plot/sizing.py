@@ -38,14 +38,9 @@ def write(answer: Answer, folder: Path) -> Path:
 def draw(
     columns: Columns, graph: Any, limits: tuple[float, float], title: str, what: str = MEANS
 ) -> Figure:
-    """Three panels.
+    """Loss and recovery of the answer's table, and a map of the graph of one number of ports.
 
-    Args:
-        columns: of the answer's table.
-        graph: the cells and cables of the number of ports that is shown.
-        limits: (share lost, ms) that are allowed.
-        title: above the map.
-        what: the curves are.
+    `limits` are the share lost and the ms that are allowed; `what` the curves are.
     """
     with style.house():
         made, (loss, back, cells) = style.panels(style.WIDE_IN, 2.6, 1, 3)
@@ -63,13 +58,9 @@ def _curves(ax: Axes, columns: Columns, name: str, scale: float, limit: float) -
     rates = list(dict.fromkeys(columns["rate_hz"]))
     parts = [columns[f"{name}_{part}"] for part in ("mean", "low", "high")]
     for i, rate in enumerate(rates):
-        rows = [
-            (ports, *(scale * value for value in values))
-            for ports, other, *values in zip(
-                columns["ports"], columns["rate_hz"], *parts, strict=True
-            )
-            if other == rate and None not in values
-        ]
+        some = zip(columns["ports"], columns["rate_hz"], *parts, strict=True)
+        rows = [(ports, *(scale * value for value in values))
+                for ports, of, *values in some if of == rate and None not in values]  # fmt: skip
         if not rows:
             continue
         ports, mean, low, high = zip(*rows, strict=True)
@@ -79,8 +70,7 @@ def _curves(ax: Axes, columns: Columns, name: str, scale: float, limit: float) -
         ax.fill_between(ports, low, high, color=color, alpha=0.18, lw=0)
     ax.axhline(scale * limit, color=style.INK, lw=0.9, ls="--")
     ax.set_xticks(sorted(set(columns["ports"])))
-    ax.set_ylim(bottom=0)
-    ax.set_xlabel("interface ports (dashed: limit)")
+    ax.set(ylim=(0, None), xlabel="interface ports (dashed: limit)")
     if len(rates) > 1:
         ax.legend()
 
@@ -106,5 +96,4 @@ def _map(ax: Axes, graph: Any) -> None:
         ax.annotate(str(port), flat[cell], fontsize=5.5, **look)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
-    ax.set_xlabel(f"{AXES[across]} (mm), slanted by {AXES[along]}")
-    ax.set_ylabel(f"{AXES[up]} (mm)")
+    ax.set(xlabel=f"{AXES[across]} (mm), slanted by {AXES[along]}", ylabel=f"{AXES[up]} (mm)")

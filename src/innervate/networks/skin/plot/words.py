@@ -1,13 +1,12 @@
 """Events of a skin and what came of them, in plain words."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from innervate.plot.words import ms_words, number_of, share_words
-from innervate.scenario.actions.cables import CUT, KILL, LOOSE, LOSE, RESTART, RESTORE, REVIVE
-from innervate.scenario.cables import LOSS_ONE, Fault
+from innervate.plot.happened import NODES, cable_words
+from innervate.plot.words import ms_words, number_of
+from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.cables import Fault
 from innervate.topology import PORTS, Graph
 
 LOST = {
@@ -53,18 +52,11 @@ def end_words(graph: Graph, end: int) -> str:
 
 def fault_words(graph: Graph, fault: Fault) -> str:
     """What happened: "cable to interface 1 cut"."""
+    action = ACTIONS[fault.action]
     if fault.end >= 0:
-        cable = end_words(graph, fault.end)
-        percent = share_words(fault.loss_q15 / LOSS_ONE)
-        return {
-            CUT: f"{cable} cut",
-            RESTORE: f"{cable} put back",
-            LOOSE: f"{cable} loose, losing {percent}" if fault.loss_q15 else f"{cable} tight again",
-            LOSE: f"{cable} loses {number_of(fault.frames, 'frame')}",
-        }[fault.action]
+        return f"{end_words(graph, fault.end)} {cable_words(action, fault)}"
     node = "the PC" if fault.node == graph.sink else f"cell {graph.label(fault.node)}"
-    verb = {KILL: "switched off", REVIVE: "switched on again", RESTART: "restarted"}
-    return f"{node} {verb[fault.action]}"
+    return f"{node} {NODES[action]}"
 
 
 def headline(graph: Graph, fault: Fault, recovery: Mapping[str, Any], still: str = "") -> str:
