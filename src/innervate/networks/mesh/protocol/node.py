@@ -342,7 +342,7 @@ def on_tick(node, gate, params, now, out):
         beacon(node, params, now, out)
     if not node.leading:
         node.quiet = min(node.quiet + 1, 65_535)
-        if not node.known and node.quiet & (node.quiet - 1) == 0:
+        if not node.known and node.quiet > 1 and node.quiet & (node.quiet - 1) == 0:
             ask_round(node, now, out)
     if node.rank >= 0:
         tick(node, gate, params, now, out)
