@@ -150,7 +150,7 @@ def channel_nodes(is_plain):
 
 
 def explored_cells():
-    world = skin_system.world_of(skin_system.SkinModel(graphs.parse("pair")), True)
+    world = skin_system.SkinModel(graphs.parse("pair")).world(True)
 
     def speaks():
         world.found[0] = skin_verify.FINE

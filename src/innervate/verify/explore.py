@@ -11,18 +11,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from innervate.kernel import compilation, tables
 from innervate.kernel.clock import wall_s
 from innervate.verify import search as s
 from innervate.verify.errors import VerifyError
+from innervate.verify.table import Table
 from innervate.verify.tally import Tally
 
 MEMORY = 2 << 30
 CHUNK = 20_000
 PLAIN_CHUNK = 500
-SLOTS = 1 << 18
 EVERY_S = 0.5
 
 ENDS = {s.DONE: "complete", s.FULL: "memory", s.FOUND: "broken", s.GOING: "interrupted"}
@@ -102,7 +100,7 @@ def explore(
     while True:
         status = driver.advance()
         if status == s.GROW:
-            driver.grow()
+            driver.known.grow()
             continue
         now = wall_s()
         driver.count(tally, now - started)
@@ -131,14 +129,13 @@ def wander(
     """So many random walks of at most `length` events, for budgets too large to exhaust."""
     system = model.system()
     driver = _Driver(model, system, plain, 64 << 20, length + 2)
-    walk = s.build(system).wander if plain else compiled_engine(model.compiled_parts).wander
-    run = driver.search.run
+    run, walk = driver.run, driver.engine.wander
     run[s.RANDOM], run[s.NEXT] = seed * 2_654_435_761 + 97, 0
-    walk(driver.seen_world, driver.seen_search, 0, length)  # compiles
+    walk(driver.seen_world, driver.known.seen, 0, length)  # compiles
     tally, started = Tally(depth=length), wall_s()
     while int(run[s.NEXT]) < walks and not int(run[s.BROKEN]):
         batch = min(20 if plain else 2000, walks - int(run[s.NEXT]))
-        walk(driver.seen_world, driver.seen_search, batch, length)
+        walk(driver.seen_world, driver.known.seen, batch, length)
         tally.states = tally.expanded = int(run[s.NEXT])
         tally.generated, tally.wall_s = int(run[s.GENERATED]), wall_s() - started
         if progress is not None and progress(tally):
@@ -148,64 +145,36 @@ def wander(
 
 
 class _Driver:
-    """A search and the tables it works on."""
+    """A search and what it works on."""
 
     def __init__(self, model: Any, system: Any, plain: bool, memory: int, states: int) -> None:
-        self.model, self.plain = model, plain
-        self.lay = model.layout()
-        self.world = model.world(plain)
-        words = self.lay.width // 8
+        self.model, self.lay = model, model.layout()
         # A row, its link backward, and 2 places of the table (at most 70 % full, then doubled).
-        limit = memory // (8 * words + 4 + 2 * 12)
+        limit = memory // (self.lay.width + 4 + 2 * 12)
         limit = min(limit, states + 2 * s.MARGIN if states else limit)
         if limit < 2 * s.MARGIN:
             raise VerifyError("memory for the states is too small; give at least 64 MB")
         if plain:
             limit = min(limit, max(states, 1 << 18) + 2 * s.MARGIN)
-        self.search = self._tables(words, limit)
-        run = self.search.run
-        run[s.LIMIT], run[s.SLOTS] = limit, SLOTS
-        run[s.MOVES], run[s.WORDS] = len(self.lay.moves()), words
-        run[s.WIDTH], run[s.IMAGES] = self.lay.width, len(self.lay.images()) // self.lay.width
-        if plain:
-            engine = s.build(system)
-            self.expand, insert = engine.expand, s.insert
-            self.refill: Any = s.refill
-        else:
-            engine = compiled_engine(model.compiled_parts)
-            insert, self.refill = engine.insert, compiled_refill(model.compiled_parts)
-            self.expand = engine.expand
-        first = model.first_row(system)
-        for i, value in enumerate(first):
+        self.engine = s.build(system) if plain else compiled_engine(model.compiled_parts)
+        refill = s.refill if plain else compiled_refill(model.compiled_parts)
+        self.known = Table(self.lay, plain, limit, self.lay.body(), refill)
+        self.run = self.known.search.run
+        self.run[s.MOVES] = len(self.lay.moves())
+        self.world = model.world(plain)
+        for i, value in enumerate(model.first_row(system)):
             self.world.work[i] = value
         self.seen_world = self.world if plain else tables.borrowed(self.world)
-        self.seen_search = self.search if plain else tables.borrowed(self.search)
-        insert(self.seen_world, self.seen_search, -1)
-        self.expand(self.seen_world, self.seen_search, 0)  # compiles, or loads what was compiled
+        self.engine.insert(self.seen_world, self.known.seen, -1)
+        self.engine.expand(self.seen_world, self.known.seen, 0)  # compiles, or loads what was
         self.levels = [0, 1]
         self.chunk = PLAIN_CHUNK if plain else CHUNK
 
-    def _tables(self, words: int, limit: int) -> s.Search:
-        if self.plain:
-
-            def longs(count: int) -> Any:
-                return memoryview(bytearray(8 * count)).cast("q")
-
-            return s.Search(longs(s.NUMBERS), longs(limit * words), longs(SLOTS), longs(limit),
-                            body_words(self.lay.body(), True))  # fmt: skip
-        return s.Search(
-            run=np.zeros(s.NUMBERS, np.int64),
-            rows=np.empty(limit * words, np.int64),
-            table=np.zeros(SLOTS, np.int64),
-            before=np.empty(limit, np.int32),
-            body=body_words(self.lay.body(), False),
-        )
-
     def advance(self) -> int:
         """Another stretch of the search, at most to the end of the present depth."""
-        run = self.search.run
+        run = self.run
         budget = min(self.chunk, self.levels[-1] - int(run[s.NEXT]))
-        self.expand(self.seen_world, self.seen_search, max(budget, 1))
+        self.engine.expand(self.seen_world, self.known.seen, max(budget, 1))
         if int(run[s.NEXT]) == self.levels[-1] and int(run[s.COUNT]) > self.levels[-1]:
             self.levels.append(int(run[s.COUNT]))
         status = int(run[s.STATUS])
@@ -213,50 +182,27 @@ class _Driver:
             return s.DONE
         return status
 
-    def grow(self) -> None:
-        """A table with twice the places."""
-        run = self.search.run
-        slots = 2 * int(run[s.SLOTS])
-        run[s.SLOTS] = slots
-        empty = memoryview(bytearray(8 * slots)).cast("q") if self.plain else np.zeros(slots, "i8")
-        self.search = self.search._replace(table=empty)
-        self.seen_search = self.search if self.plain else tables.borrowed(self.search)
-        self.refill(self.seen_search)
-
     def count(self, tally: Tally, took_s: float) -> None:
         """Bring a tally up to date."""
-        run = self.search.run
+        run = self.run
         tally.states, tally.expanded = int(run[s.COUNT]), int(run[s.NEXT])
         tally.generated, tally.wall_s = int(run[s.GENERATED]), took_s
         tally.left_out = int(run[s.LEFT_OUT])
         tally.depth = len(self.levels) - 2
 
-    def row(self, index: int) -> bytes:
-        """The state of this index, as bytes."""
-        words = self.lay.width // 8
-        part = self.search.rows[index * words : (index + 1) * words]
-        return bytes(part.tobytes())
-
     def result(self, tally: Tally) -> Result:
         """What came of the search: counts, and the path to what is broken."""
-        run = self.search.run
-        count, words = int(run[s.COUNT]), self.lay.width // 8
-        kept = self.search.rows[: count * words]
+        run, known = self.run, self.known
+        kept = known.search.rows[: known.count * known.words]
         done = Result(self.model, tally, int(run[s.BROKEN]), rows=kept)
         if done.broken:
             index, word = int(run[s.BROKEN_AT]), int(run[s.BROKEN_MOVE])
             done.last = unpacked(word)
             while index >= 0:
-                done.path.append(self.row(index))
-                index = int(self.search.before[index])
+                done.path.append(known.row(index))
+                index = int(known.search.before[index])
             done.path.reverse()
         return done
-
-
-def body_words(mask: list[int], plain: bool) -> Any:
-    """A mask of bytes as words, in the form that a search works on."""
-    data = bytearray(mask)
-    return memoryview(data).cast("q") if plain else np.frombuffer(data, np.int64)
 
 
 def unpacked(word: int) -> tuple[int, int, int]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from innervate.verify import search as s
-from innervate.verify.explore import body_words
+from innervate.verify.table import body_words, zeros
 
 
 @dataclass(slots=True)
@@ -29,7 +29,7 @@ class Twin:
         self.lay = model.layout()
         self.moves = self.lay.moves()
         self.world = model.world(True)
-        run = memoryview(bytearray(8 * s.NUMBERS)).cast("q")
+        run = zeros(s.NUMBERS, True)
         run[s.WORDS], run[s.WIDTH] = self.lay.width // 8, self.lay.width
         run[s.IMAGES] = len(self.lay.images()) // self.lay.width
         self.search = s.Search(run, None, None, None, body_words(self.lay.body(), True))

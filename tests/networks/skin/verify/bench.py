@@ -1,13 +1,12 @@
 """What tests of the explorer share."""
 
 from innervate.networks.skin.verify import check as skin_check
-from innervate.networks.skin.verify import system as skin_system
 
 
 def parents_of(model, rows):
     """The set of (parent port or -1 of every cell) over all states of a search."""
-    lay = skin_system.layout(model)
-    world = skin_system.world_of(model, plain=True)
+    lay = model.layout()
+    world = model.world(plain=True)
     data = bytes(memoryview(rows).cast("B"))
     found = set()
     nodes = model.graph.node_of

@@ -23,12 +23,12 @@ class Cover:
     """
 
     def __init__(self, model, plain=False, any_ticks=False):
-        self.lean = model.changed(lean=True, capacity=skin_system.layout(model).capacity)
+        self.lean = model.changed(lean=True, capacity=model.layout().capacity)
         if any_ticks:
             self.lean = self.lean.changed(budget=replace(model.budget, ticks=skin_system.ANY))
         self.whole_result = explore.explore(model, plain=plain)
         self.lean_result = explore.explore(self.lean, plain=plain)
-        self.lay = skin_system.layout(self.lean)
+        self.lay = self.lean.layout()
         self.twin = Twin(self.lean, skin_system.system_of())
         body = self.lay.body()
         self.same = [i for i, mask in enumerate(body) if mask]

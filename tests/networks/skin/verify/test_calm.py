@@ -22,8 +22,8 @@ def kept(tiny, insert, index=0, among=1):
     """The states that an insertion keeps of one, beside others that are no matter."""
     here = tiny.twin.row()
     rows = np.frombuffer(here * among, np.int64).copy()
-    source = fair._Rows(tiny.model, True, rows.data, len(here) // 8, 1 << 20)
-    target = source.none()
+    source = fair._rows(tiny.model, True, 1 << 20, rows.data)
+    target = fair._rows(tiny.model, True, 1 << 20)
     insert(tiny.world, source.search, target.search, index)
     tiny.twin.put(here)
     return [target.row(i) for i in range(target.count)], list(target.search.before[: target.count])
@@ -112,9 +112,7 @@ def test_what_comes_before_a_round_is_told_by_a_number():
 
 def test_a_table_that_grows_still_knows_its_states():
     tiny = Tiny(3, keep=True)
-    row = tiny.twin.row()
-    given = np.frombuffer(row, np.int64).copy()
-    rows = fair._Rows(tiny.model, True, given.data, len(row) // 8, 1 << 20).none()
+    rows = fair._rows(tiny.model, True, 1 << 20)
     assert s.insert(tiny.world, rows.search, 0)
     slots = len(rows.search.table)
     rows.grow()
@@ -199,8 +197,8 @@ def test_what_rounds_had_no_room_for_is_added_up():
 
     tiny = Tiny()
     given = np.frombuffer(tiny.twin.row(), np.int64).copy()
-    source = fair._Rows(tiny.model, True, given.data, len(given), 1 << 20)
-    player = fair._Player(tiny.model, True, play, fair.Fair(bound=9), None)
+    source = fair._rows(tiny.model, True, 1 << 20, given.data)
+    player = fair._Player(tiny.model, True, play, fair.Fair(bound=9), None, 1 << 20)
     for _ in range(2):
         player.round(source, player.nodes)
     assert (player.fair.left_out, player.fair.played) == (6, 10)

@@ -2,8 +2,8 @@ import pytest
 
 from innervate.networks.skin.verify import graphs
 from innervate.networks.skin.verify.cases import budget_of
-from innervate.networks.skin.verify.system import Budget, SkinModel, first_row, layout, system_of
-from innervate.verify import explore, search
+from innervate.networks.skin.verify.system import Budget, SkinModel, system_of
+from innervate.verify import explore, search, table
 from innervate.verify.errors import VerifyError
 from tests.networks.skin.verify.bench import parents_of
 
@@ -38,7 +38,7 @@ def test_compiled_and_plain_find_the_same(name):
 def test_a_search_grows_its_table_and_loses_nothing(monkeypatch):
     made = model("triangle", budget=Budget(faults=1))
     roomy = explore.explore(made)
-    monkeypatch.setattr(explore, "SLOTS", 1 << 15)
+    monkeypatch.setattr(table, "SLOTS", 1 << 15)
     grown = explore.explore(made)
     assert grown.tally.states == roomy.tally.states > 1 << 15
     assert grown.tally.generated == roomy.tally.generated
@@ -49,21 +49,21 @@ def test_a_small_table_grows_as_often_as_it_must(monkeypatch):
     """It is doubled before the states and one's successors fill seven tenths of it."""
     made = CASES["two in a line"]
     roomy = explore.explore(made, plain=True)
-    monkeypatch.setattr(explore, "SLOTS", 256)
+    monkeypatch.setattr(table, "SLOTS", 256)
     monkeypatch.setattr(search, "MARGIN", 64)
     driver = explore._Driver(made, made.system(), True, 1 << 24, 0)
     slots = []
     while (status := driver.advance()) in (search.GOING, search.GROW):
         if status == search.GROW:
-            driver.grow()
-            slots.append((int(driver.search.run[search.SLOTS]), len(driver.search.table)))
-    count = int(driver.search.run[search.COUNT])
+            driver.known.grow()
+            slots.append((int(driver.run[search.SLOTS]), len(driver.known.search.table)))
+    count = int(driver.run[search.COUNT])
     assert (status, count) == (search.DONE, roomy.tally.states)
     doubled = [256 << k for k in range(1, 12) if (256 << k - 1) * 7 < 10 * (count + 64)]
     assert slots == [(places, places) for places in doubled]
     assert len(slots) > 1
     words = count * made.layout().width // 8
-    assert bytes(driver.search.rows[:words]) == bytes(roomy.rows)
+    assert bytes(driver.known.search.rows[:words]) == bytes(roomy.rows)
 
 
 @pytest.mark.parametrize("rule", ["feasible", "strict"])
@@ -102,7 +102,7 @@ def test_a_search_ends_where_it_is_told_to_and_says_so(monkeypatch):
 def test_a_state_takes_its_row_a_way_back_and_two_places_that_are_doubled_in_time(memory):
     made = model("triangle")
     driver = explore._Driver(made, made.system(), True, memory, 1 << 30)
-    assert driver.search.run[search.LIMIT] == memory // (made.layout().width + 4 + 2 * 12)
+    assert driver.run[search.LIMIT] == memory // (made.layout().width + 4 + 2 * 12)
 
 
 @pytest.mark.slow  # the longest of all in this room; test_finds.py has small walks
@@ -153,6 +153,6 @@ def test_budgets_are_read():
 
 def test_a_first_row_holds_the_budgets():
     made = model("pair")
-    row = first_row(made, system_of())
-    assert len(row) == layout(made).width
+    row = made.first_row(system_of())
+    assert len(row) == made.layout().width
     assert row.count(2) >= 2

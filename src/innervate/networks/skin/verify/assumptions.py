@@ -155,7 +155,7 @@ def _refused(rule: str) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
 
 def _put(twin: Twin, way: int, fd: tuple[int, int], route: tuple[int, int]) -> None:
     """A cell that lost its route, and a beacon with another on its way to it."""
-    twin.put(bytes(system.first_row(twin.model, twin.system)))
+    twin.put(bytes(twin.model.first_row(twin.system)))
     row, at, queue = twin.world.work, twin.lay.cell_at[0], twin.lay.queue_at[way]
     row[at + w.FLAGS] = skin_row.SQ_KNOWN | skin_row.FD_KNOWN | skin_row.HAS_TICKED
     row[at + w.SQ_OWN], row[at + w.FD_SQ], row[at + w.FD_DIST] = fd[0], *fd

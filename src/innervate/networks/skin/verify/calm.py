@@ -1,33 +1,20 @@
 """A skin without further faults: what a fair schedule starts from, and what it has to guess."""
 
 from innervate.networks.skin.protocol.constants import INFINITY, NONE
+from innervate.networks.skin.verify import row as rows
+from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.check import measure_depths, parent_port
-from innervate.networks.skin.verify.reduction import drop_one
-from innervate.networks.skin.verify.row import spend
-from innervate.networks.skin.verify.world import (
-    BUDGET_AT,
-    BUDGETS,
-    CELLS,
-    DIRECTIONS,
-    DRAWS,
-    HELD,
-    HOLD,
-    LOSS,
-    PC_AT,
-    PC_COUNTS,
-    TICKS,
-)
 from innervate.verify import search
 
 
 def forget_budgets(world):
     """Nothing more happens to the network; nobody stops."""
     row = world.work
-    for c in range(world.at[CELLS]):
-        row[world.cell_at[c] + TICKS] = 1
-    row[world.at[PC_AT] + PC_COUNTS] = 1
-    for i in range(BUDGETS):
-        row[world.at[BUDGET_AT] + i] = 0
+    for c in range(world.at[w.CELLS]):
+        row[world.cell_at[c] + w.TICKS] = 1
+    row[world.at[w.PC_AT] + w.PC_COUNTS] = 1
+    for i in range(w.BUDGETS):
+        row[world.at[w.BUDGET_AT] + i] = 0
 
 
 def draw_first(world):
@@ -39,11 +26,11 @@ def draw_first(world):
 def draw_otherwise(world):
     """The next way in which the draws that were made can turn out; 0 if this was the last."""
     draws = world.draws
-    place = min(draws[0], DRAWS)
+    place = min(draws[0], w.DRAWS)
     draws[0] = 0
     while place > 0:
         draws[place] += 1
-        if draws[place] < draws[DRAWS + place]:
+        if draws[place] < draws[w.DRAWS + place]:
             return True
         draws[place] = 0
         place -= 1
@@ -56,13 +43,13 @@ def insert_lost(world, source, target, index):
     A search in which ticks take beacons in leaves a lost one under way (moves.py); the fair
     schedule would deliver it.
     """
-    for way in range(-1, world.at[DIRECTIONS]):
+    for way in range(-1, world.at[w.DIRECTIONS]):
         search.fetch_row(world, source, index)
         if way >= 0:
             at = world.queue_at[way]
-            if world.work[at] == 0 or not spend(world, LOSS):
+            if world.work[at] == 0 or not rows.spend(world, w.LOSS):
                 continue
-            drop_one(world.work, at, world.work[at] - 1)
+            rows.drop_one(world.work, at, world.work[at] - 1)
         search.insert(world, target, index)
 
 
@@ -70,14 +57,14 @@ def insert_expiring(world, source, target, index):
     """Keep a state, with every choice of cells that forget their feasible distance in the next
     round: where the search has forgotten how long a cell had no route, it may be one of them.
     """
-    for chosen in range(1 << world.at[CELLS]):
+    for chosen in range(1 << world.at[w.CELLS]):
         search.fetch_row(world, source, index)
         measure_depths(world)
         is_possible = True
-        for c in range(world.at[CELLS]):
+        for c in range(world.at[w.CELLS]):
             if (chosen >> c) & 1:
                 is_possible = is_possible and may_expire(world, c)
-                world.work[world.cell_at[c] + HOLD] = world.params[0].hold_periods - 1
+                world.work[world.cell_at[c] + w.HOLD] = world.params[0].hold_periods - 1
         if is_possible:
             search.insert(world, target, index)
 
@@ -89,5 +76,5 @@ def may_expire(world, c):
     """
     if world.depth[c] == INFINITY or parent_port(world, c) != NONE:
         return False
-    most = world.work[world.cell_at[c] + HOLD] + world.at[HELD] - 1
+    most = world.work[world.cell_at[c] + w.HOLD] + world.at[w.HELD] - 1
     return most + 1 >= world.params[0].hold_periods

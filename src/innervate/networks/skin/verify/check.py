@@ -5,25 +5,15 @@ A state is the row of bytes `world.work` (see world.py).
 
 from innervate.networks.skin.invariants import is_worse
 from innervate.networks.skin.protocol.constants import INFINITY, NONE, PORTS
-from innervate.networks.skin.verify.row import IS_PARENT, is_up, load_cell
-from innervate.networks.skin.verify.world import (
-    BROKEN_LOOP,
-    BROKEN_ORDER,
-    CELLS,
-    DIRECTIONS,
-    DIST,
-    FEASIBLE,
-    FINE,
-    MAY_LOOP,
-    SAYS,
-)
+from innervate.networks.skin.verify import row as rows
+from innervate.networks.skin.verify import world as w
 
 
 def parent_port(world, c):
     """A cell's parent port, or NONE."""
     for p in range(PORTS):
         slot = world.port_at[PORTS * c + p]
-        if slot >= 0 and world.work[slot + SAYS] & IS_PARENT:
+        if slot >= 0 and world.work[slot + w.SAYS] & rows.IS_PARENT:
             return p
     return NONE
 
@@ -34,42 +24,42 @@ def next_hop(world, c):
     if p == NONE:
         return NONE
     way = world.out_way[PORTS * c + p]
-    if not is_up(world, world.way_link[way]):
+    if not rows.is_up(world, world.way_link[way]):
         return NONE
-    return min(world.way_end[way] // PORTS, world.at[CELLS])
+    return min(world.way_end[way] // PORTS, world.at[w.CELLS])
 
 
 def check(world):
     """What is broken in the row, or FINE [skin 6]."""
-    cells = world.at[CELLS]
+    cells = world.at[w.CELLS]
     for c in range(cells):
         hop = next_hop(world, c)
         if hop == NONE or hop == cells:
             continue
-        if world.at[FEASIBLE]:
-            load_cell(world, c, 0)
-            load_cell(world, hop, 1)
+        if world.at[w.FEASIBLE]:
+            rows.load_cell(world, c, 0)
+            rows.load_cell(world, hop, 1)
             if not is_worse(world.cells[0], world.cells[1]):
-                return BROKEN_ORDER
-        if world.at[MAY_LOOP] == 0:
+                return w.BROKEN_ORDER
+        if world.at[w.MAY_LOOP] == 0:
             steps = 0
             while hop != NONE and hop != cells and steps < cells:
                 hop = next_hop(world, hop)
                 steps = steps + 1
             if steps == cells:
-                return BROKEN_LOOP
-    return FINE
+                return w.BROKEN_LOOP
+    return w.FINE
 
 
 def measure_depths(world):
     """Hops of every cell to the PC over live cables into world.depth; INFINITY without a way."""
-    cells = world.at[CELLS]
+    cells = world.at[w.CELLS]
     for c in range(cells):
         world.depth[c] = INFINITY
     world.depth[cells] = 0
     for _ in range(cells):
-        for way in range(world.at[DIRECTIONS]):
-            if is_up(world, world.way_link[way]):
+        for way in range(world.at[w.DIRECTIONS]):
+            if rows.is_up(world, world.way_link[way]):
                 here = min(world.way_end[way] // PORTS, cells)
                 there = min(world.way_end[way ^ 1] // PORTS, cells)
                 if world.depth[there] + 1 < world.depth[here]:
@@ -81,7 +71,7 @@ def is_settled(world):
     neighbours are: without faults it stays so.
     """
     measure_depths(world)
-    for c in range(world.at[CELLS]):
+    for c in range(world.at[w.CELLS]):
         if world.depth[c] < INFINITY and not is_cell_settled(world, c):
             return False
     return True
@@ -92,12 +82,12 @@ def is_cell_settled(world, c):
     p = parent_port(world, c)
     if p == NONE or next_hop(world, c) == NONE:
         return False
-    if world.work[world.port_at[PORTS * c + p] + DIST] + 1 != world.depth[c]:
+    if world.work[world.port_at[PORTS * c + p] + w.DIST] + 1 != world.depth[c]:
         return False
     for q in range(PORTS):
         way = world.in_way[PORTS * c + q]
-        if way != NONE and is_up(world, world.way_link[way]):
-            there = min(world.way_end[way ^ 1] // PORTS, world.at[CELLS])
-            if world.work[world.port_at[PORTS * c + q] + DIST] != world.depth[there]:
+        if way != NONE and rows.is_up(world, world.way_link[way]):
+            there = min(world.way_end[way ^ 1] // PORTS, world.at[w.CELLS])
+            if world.work[world.port_at[PORTS * c + q] + w.DIST] != world.depth[there]:
                 return False
     return True

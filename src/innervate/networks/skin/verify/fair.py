@@ -7,9 +7,9 @@ are not settled yet, by every order of the nodes; the set has to be empty after 
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache, partial
 from itertools import permutations
 from typing import Any
 
@@ -20,8 +20,10 @@ from innervate.kernel.clock import wall_s
 from innervate.networks.skin.verify import calm as skin_calm
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as w
+from innervate.sim.tables import Tables
 from innervate.verify import explore as ex
 from innervate.verify import search as s
+from innervate.verify.table import Table
 
 CHUNK = 2_000
 PLAIN_CHUNK = 50
@@ -130,7 +132,7 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
     return calm, round_of, play
 
 
-@functools.cache
+@cache
 def _compiled() -> Callable[..., None]:
     engine = ex.compiled_engine(skin_system.compiled_parts)
     system = skin_system.compiled_parts()
@@ -155,11 +157,10 @@ def check(
     progress: Callable[[Fair], bool] | None = None,
 ) -> Fair:
     """Play the fair schedule from all states of a search, or from `starts` evenly spaced ones."""
-    rows, words = _starts(result, starts)
-    fair = Fair(bound_of(result.model), starts=len(rows) // words, of=result.tally.states)
+    first = _rows(result.model, plain, memory, _starts(result, starts, plain))
+    fair = Fair(bound_of(result.model), starts=first.count, of=result.tally.states)
     play = build(system or skin_system.system_of())[-1] if plain else _compiled()
-    player = _Player(result.model, plain, play, fair, progress)
-    _settle(player, _Rows(result.model, plain, rows, words, memory))
+    _settle(_Player(result.model, plain, play, fair, progress, memory), first)
     return fair
 
 
@@ -171,21 +172,24 @@ class _Player:
         chain: the states before each round that was played.
     """
 
-    def __init__(self, model: Any, plain: bool, play: Any, fair: Fair, progress: Any) -> None:
-        self.model, self.fair, self.chain = model, fair, list[_Rows]()
+    def __init__(
+        self, model: Any, plain: bool, play: Any, fair: Fair, progress: Any, memory: int
+    ) -> None:
+        self.model, self.fair, self.chain = model, fair, list[Table]()
+        self.none = partial(_rows, model, plain, memory)
         self.nodes = int(model.graph.nodes)
         self._play, self._progress, self._begun = play, progress, wall_s()
         flat = [node for order in permutations(range(self.nodes)) for node in order]
-        world = skin_system.world_of(model.changed(keep=True), plain)
-        world = world._replace(orders=w.Forms(plain).numbers(flat))
-        _put(world.at, w.FAIR, 1)
+        world = model.changed(keep=True).world(plain)
+        world = world._replace(orders=Tables(plain).given(flat, np.int32))
+        world.at[w.FAIR] = 1
         self.held = int(world.at[w.HELD])
         self._world = world if plain else tables.borrowed(world)
         self._made = world  # what is borrowed lives as long
 
-    def round(self, source: _Rows, nodes: int) -> _Rows | None:
+    def round(self, source: Table, nodes: int) -> Table | None:
         """What one round from all rows of `source` leaves; None if it was ended early."""
-        target, fair = source.none(), self.fair
+        target, fair = self.none(), self.fair
         at, chunk = 0, PLAIN_CHUNK if target.plain else CHUNK
         while at < source.count:
             end = min(at + chunk, source.count)
@@ -207,10 +211,10 @@ class _Player:
         return target
 
 
-def _settle(player: _Player, source: _Rows) -> None:
+def _settle(player: _Player, source: Table) -> None:
     """Round after round, until nothing is left that is not settled, or too many were played."""
     model, fair = player.model, player.fair
-    here: _Rows | None = source
+    here: Table | None = source
     for _ in range(model.budget.loss if model.merges else 0):
         here = here and player.round(here, LOST)
     for turn in range(fair.bound + 1):
@@ -235,7 +239,7 @@ def _settle(player: _Player, source: _Rows) -> None:
         fair.path = _way_to(here, player.chain) if here.count else []
 
 
-def _way_to(last: _Rows, chain: list[_Rows]) -> list[bytes]:
+def _way_to(last: Table, chain: list[Table]) -> list[bytes]:
     """The rows that lead to the first of the last ones."""
     path, index = [], 0
     for place in [last, *reversed(chain)]:
@@ -245,76 +249,20 @@ def _way_to(last: _Rows, chain: list[_Rows]) -> list[bytes]:
     return path
 
 
-def _starts(result: ex.Result, starts: int) -> tuple[Any, int]:
-    words = skin_system.layout(result.model).width // 8
+def _starts(result: ex.Result, starts: int, plain: bool) -> Any:
+    words = result.model.layout().width // 8
     count = len(result.rows) // words
     if not starts or starts >= count:
-        return result.rows, words
-    picked = [count * i // starts for i in range(starts)]
-    if isinstance(result.rows, np.ndarray):
-        return result.rows.reshape(-1, words)[picked].reshape(-1), words
-    flat = [word for i in picked for word in result.rows[i * words : (i + 1) * words]]
-    view = memoryview(bytearray(8 * len(flat))).cast("q")
-    for i, word in enumerate(flat):
-        view[i] = word
-    return view, words
+        return result.rows
+    places = [count * i // starts for i in range(starts)]
+    picked = np.asarray(result.rows).reshape(-1, words)[places].reshape(-1)
+    return picked.data if plain else picked
 
 
-def _put(table: Any, place: int, value: int) -> None:
-    table[place] = value
-
-
-class _Rows:
-    """The states of a round."""
-
-    def __init__(self, model: Any, plain: bool, rows: Any, words: int, memory: int) -> None:
-        self.plain, self.words = plain, words
-        self._model, self._memory = model, memory
-        lay = skin_system.layout(model)
-        given = len(rows) // words
-        limit = given or memory // (8 * words + 32)
-        forms = w.Forms(plain)
-        limit = min(limit, 1 << 19) if plain and not given else limit
-        self.search = s.Search(
-            run=forms.longs(s.NUMBERS),
-            rows=rows if given else self._room(limit * words),
-            table=forms.longs(ex.SLOTS),
-            before=self._room(limit),
-            body=ex.body_words([255] * lay.width, plain),
-        )
-        run = self.search.run
-        run[s.COUNT], run[s.LIMIT], run[s.SLOTS] = given, limit, ex.SLOTS
-        run[s.WORDS], run[s.WIDTH] = words, lay.width
-        run[s.IMAGES] = len(lay.images()) // lay.width
-        self.seen = self.search if plain else tables.borrowed(self.search)
-
-    def _room(self, count: int) -> Any:
-        if self.plain:
-            return np.zeros(max(count, 1), np.int64).data
-        return np.empty(count, np.int64)
-
-    def none(self) -> _Rows:
-        """A table for the states of the next round, with none in it yet."""
-        return _Rows(self._model, self.plain, self.search.rows[:0], self.words, self._memory)
-
-    @property
-    def count(self) -> int:
-        """How many states were found."""
-        return int(self.search.run[s.COUNT])
-
-    def row(self, index: int) -> bytes:
-        """The state of this index, as bytes."""
-        part = self.search.rows[index * self.words : (index + 1) * self.words]
-        return bytes(part.tobytes())
-
-    def grow(self) -> None:
-        """A table with twice the places."""
-        run = self.search.run
-        run[s.SLOTS] = 2 * int(run[s.SLOTS])
-        table = w.Forms(self.plain).longs(int(run[s.SLOTS]))
-        self.search = self.search._replace(table=table)
-        self.seen = self.search if self.plain else tables.borrowed(self.search)
-        if self.plain:
-            s.refill(self.search)
-        else:
-            ex.compiled_refill(skin_system.compiled_parts)(self.seen)
+def _rows(model: Any, plain: bool, memory: int, rows: Any = None) -> Table:
+    """The states of a round, with none in it yet unless they are given."""
+    lay = model.layout()
+    limit = memory // (lay.width + 32) if rows is None else len(rows) // (lay.width // 8)
+    limit = min(limit, 1 << 19) if plain and rows is None else limit
+    refill = s.refill if plain else ex.compiled_refill(skin_system.compiled_parts)
+    return Table(lay, plain, limit, [255] * lay.width, refill, rows)

@@ -22,56 +22,24 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.protocol.constants import SOON as SOON_TIMER
 from innervate.networks.skin.protocol.constants import TICK as TICK_TIMER
 from innervate.networks.skin.verify import row as rows
+from innervate.networks.skin.verify import world as w
+from innervate.networks.skin.verify.check import check, is_settled
 from innervate.networks.skin.verify.reduction import tidy
-from innervate.networks.skin.verify.row import is_up, load_cell, save_cell
-from innervate.networks.skin.verify.world import (
-    ANY,
-    BROKEN_OUTBOX,
-    BROKEN_RANGE,
-    BROKEN_WORSE,
-    CELLS,
-    CUT,
-    CUT_LINK,
-    DELIVER,
-    DIRECTIONS,
-    DIST,
-    FAIR,
-    FALSE,
-    FEASIBLE,
-    FINE,
-    FLAGS,
-    HEAL,
-    HEAL_LINK,
-    KEEP,
-    LEAN,
-    LINK_AT,
-    LOSE,
-    LOSS,
-    MERGE,
-    PC_AT,
-    PC_COUNTS,
-    PC_LISTEN,
-    PC_TICK,
-    PROMPT,
-    RESTART,
-    SAYS,
-    SOON,
-    TICK,
-    TICKS,
-)
 
 REFUSED = -1
 
 
-class Moves(NamedTuple):
-    """A skin as the explorer sees it (see search.py)."""
+class System(NamedTuple):
+    """A skin as the search (see search.py) and the fair schedule see it."""
 
     parts: tuple[Callable[..., Any], ...]
     start: Callable[..., Any]
     variants: Callable[..., Any]
     step: Callable[..., Any]
+    check: Callable[..., Any]
     settle: Callable[..., Any]
     turn: Callable[..., Any]
+    is_settled: Callable[..., Any]
 
 
 def queued(world, way):
@@ -81,7 +49,7 @@ def queued(world, way):
 
 def first_loaded(world):
     """The first direction with a frame in flight, or NONE."""
-    for way in range(world.at[DIRECTIONS]):
+    for way in range(world.at[w.DIRECTIONS]):
         if queued(world, way) > 0:
             return way
     return NONE
@@ -90,28 +58,28 @@ def first_loaded(world):
 def may_break(world, c, p):
     """1 if the next tick may find this port broken: the cable is cut, or a false detection."""
     slot = world.port_at[PORTS * c + p]
-    if (world.work[slot + SAYS] >> 2) & 3:
+    if (world.work[slot + w.SAYS] >> 2) & 3:
         return 0
     # Periodic cells look at a port in ticks only: without a route there nobody can tell, except
     # who counts the rounds until all is well again.
     is_periodic = world.params[0].updates == PERIODIC
-    if is_periodic and world.at[KEEP] == 0 and world.work[slot + DIST] == INFINITY:
+    if is_periodic and world.at[w.KEEP] == 0 and world.work[slot + w.DIST] == INFINITY:
         return 0
     link = world.way_link[world.in_way[PORTS * c + p]]
-    return 1 if not is_up(world, link) or rows.has_budget(world, FALSE) else 0
+    return 1 if not rows.is_up(world, link) or rows.has_budget(world, w.FALSE) else 0
 
 
 def options(world, c, p):
     """Ways in which a port can come into its cell's next tick: beacons taken in, or broken."""
     count = 1 + may_break(world, c, p)
-    if world.at[MERGE]:
+    if world.at[w.MERGE]:
         count = count + queued(world, world.in_way[PORTS * c + p])
     return count
 
 
 def tick_variants(world, c):
     """Ways in which a cell can tick."""
-    if world.work[world.cell_at[c] + TICKS] == 0:
+    if world.work[world.cell_at[c] + w.TICKS] == 0:
         return 0
     ways = 1
     for p in range(PORTS):
@@ -122,45 +90,45 @@ def tick_variants(world, c):
 
 def pc_variants(world):
     """Ways in which the PC can tick."""
-    at = world.at[PC_AT]
-    if world.work[at + PC_LISTEN] == 0 and world.work[at + PC_COUNTS] == 0:
+    at = world.at[w.PC_AT]
+    if world.work[at + w.PC_LISTEN] == 0 and world.work[at + w.PC_COUNTS] == 0:
         return 0
     ways = 1
-    if world.at[MERGE]:
+    if world.at[w.MERGE]:
         for p in range(world.pc.own[0].ports):
-            ways = ways * (1 + queued(world, world.in_way[PORTS * world.at[CELLS] + p]))
+            ways = ways * (1 + queued(world, world.in_way[PORTS * world.at[w.CELLS] + p]))
     return ways
 
 
 def variants(world, move):
     """In how many ways a move can be made; 0 if it cannot."""
     kind, arg = world.move_kind[move], world.move_arg[move]
-    if world.at[PROMPT]:
+    if world.at[w.PROMPT]:
         loaded = first_loaded(world)
-        if loaded != NONE and not ((kind == DELIVER or kind == LOSE) and arg == loaded):
+        if loaded != NONE and not ((kind == w.DELIVER or kind == w.LOSE) and arg == loaded):
             return 0
-    if kind == TICK:
+    if kind == w.TICK:
         return tick_variants(world, arg)
-    if kind == PC_TICK:
+    if kind == w.PC_TICK:
         return pc_variants(world)
-    if kind == SOON:
-        return 1 if world.work[world.cell_at[arg] + FLAGS] & rows.IS_SOON else 0
-    if kind == DELIVER:
+    if kind == w.SOON:
+        return 1 if world.work[world.cell_at[arg] + w.FLAGS] & rows.IS_SOON else 0
+    if kind == w.DELIVER:
         return 1 if queued(world, arg) > 0 else 0
-    if kind == LOSE:
-        return 1 if queued(world, arg) > 0 and rows.has_budget(world, LOSS) else 0
-    if kind == CUT_LINK:
-        return 1 if is_up(world, arg) and rows.has_budget(world, CUT) else 0
-    if kind == HEAL_LINK:
-        return 1 if not is_up(world, arg) and rows.has_budget(world, HEAL) else 0
+    if kind == w.LOSE:
+        return 1 if queued(world, arg) > 0 and rows.has_budget(world, w.LOSS) else 0
+    if kind == w.CUT_LINK:
+        return 1 if rows.is_up(world, arg) and rows.has_budget(world, w.CUT) else 0
+    if kind == w.HEAL_LINK:
+        return 1 if not rows.is_up(world, arg) and rows.has_budget(world, w.HEAL) else 0
     # A PC that never sends again is as dead as before; in the fair schedule it does.
-    sends = world.at[KEEP] or world.work[world.at[PC_AT] + PC_COUNTS] > 0
-    return 1 if sends and rows.has_budget(world, RESTART) else 0
+    sends = world.at[w.KEEP] or world.work[world.at[w.PC_AT] + w.PC_COUNTS] > 0
+    return 1 if sends and rows.has_budget(world, w.RESTART) else 0
 
 
 def change_link(world, link, down):
     """Cut a cable, with all frames on it, or mend it."""
-    world.work[world.at[LINK_AT] + link] = down
+    world.work[world.at[w.LINK_AT] + link] = down
     way = world.link_way[link]
     rows.clear(world, way)
     rows.clear(world, way + 1)
@@ -169,16 +137,16 @@ def change_link(world, link, down):
 def check_range(world):
     """Note a value of scratch record 0 that is outside its declared range."""
     if not within(world.words[0], world.low, world.high):
-        world.found[0] = BROKEN_RANGE
+        world.found[0] = w.BROKEN_RANGE
 
 
 def check_feasible(world, known, sq, dist, forgot):
     """Note a feasible distance that got worse without being forgotten; numbers do not wrap here."""
     cell = world.cells[0]
-    if world.at[FEASIBLE] == 0 or forgot or known == 0:
+    if world.at[w.FEASIBLE] == 0 or forgot or known == 0:
         return
     if cell.fd_known == 0 or cell.fd_sq < sq or (cell.fd_sq == sq and cell.fd_dist > dist):
-        world.found[0] = BROKEN_WORSE
+        world.found[0] = w.BROKEN_WORSE
 
 
 def drain(world, first_end):
@@ -189,26 +157,27 @@ def drain(world, first_end):
         act = out.action[i]
         if act.kind == SEND:
             way = world.out_way[first_end + act.a]
-            if way != NONE and is_up(world, world.way_link[way]):
+            if way != NONE and rows.is_up(world, world.way_link[way]):
                 rows.push(world, way, out.frame[i])
         elif act.kind == REPORT and act.a == REPORT_FORGET:
             forgot = 1
     out.count[0] = 0
     if out.overflow[0]:
-        world.found[0] = BROKEN_OUTBOX
+        world.found[0] = w.BROKEN_OUTBOX
     return forgot
 
 
-def finish_cell(world, c, known, sq, dist, has_ticked):
+def finish_cell(world, c, has_ticked):
     """After a handler of a cell: check it, put it back, send what it sends; draws it asked for."""
-    cell = world.cells[0]
+    cell, row, at = world.cells[0], world.work, world.cell_at[c]
+    known, sq, dist = row[at + w.FLAGS] & rows.FD_KNOWN, row[at + w.FD_SQ], row[at + w.FD_DIST]
     asked = max(cell.asked, 1)
-    if asked > 1 and world.at[FAIR]:
+    if asked > 1 and world.at[w.FAIR]:
         rows.note_draw(world, asked)
     cell.asked = 0
     cell.choice = 0
     check_range(world)
-    save_cell(world, c, has_ticked)
+    rows.save_cell(world, c, has_ticked)
     forgot = drain(world, PORTS * c)
     check_feasible(world, known, sq, dist, forgot)
     return asked
@@ -219,10 +188,10 @@ def bind(skin, skin_sink):
 
     def start(world):
         """Everything is switched on, and the PC has listened for its period."""
-        for c in range(world.at[CELLS]):
-            load_cell(world, c, 0)
+        for c in range(world.at[w.CELLS]):
+            rows.load_cell(world, c, 0)
             skin.on_start(world.cells[0], world.params[0], 0, 0, world.out)
-            finish_cell(world, c, 0, 0, 0, 0)
+            finish_cell(world, c, 0)
         skin_sink.on_start(world.pc, world.params[0], 0, 0, world.out)
         while world.pc.own[0].listen > 0:
             skin_sink.on_timer(world.pc, world.params[0], 0, TICK_TIMER, world.out)
@@ -233,44 +202,43 @@ def bind(skin, skin_sink):
         """The oldest frame of a direction arrives."""
         end = world.way_end[way]
         rows.take(world, way, 0)
-        first = PORTS * world.at[CELLS]
+        first = PORTS * world.at[w.CELLS]
         if end >= first:
             rows.load_pc(world)
-            params = world.params[world.at[FAIR]]
+            params = world.params[world.at[w.FAIR]]
             skin_sink.on_frame(world.pc, params, 0, end - first, world.frame[0], world.out)
             rows.save_pc(world)
             drain(world, first)
             return 1
         c = end // PORTS
-        load_cell(world, c, 0)
+        rows.load_cell(world, c, 0)
         cell = world.cells[0]
         cell.choice = choice
-        known, sq, dist = cell.fd_known, cell.fd_sq, cell.fd_dist
-        params = world.params[world.at[FAIR]]
+        params = world.params[world.at[w.FAIR]]
         skin.on_frame(cell, params, 0, end - PORTS * c, world.frame[0], world.out)
-        return finish_cell(world, c, known, sq, dist, 0)
+        return finish_cell(world, c, 0)
 
     def attend(world, c, variant):
         """What reaches a cell right before its tick; 0 if this cannot be."""
-        cell, params = world.cells[0], world.params[world.at[FAIR]]
+        cell, params = world.cells[0], world.params[world.at[w.FAIR]]
         for p in range(PORTS):
             slot = world.port_at[PORTS * c + p]
             if slot < 0:
                 continue
             way = world.in_way[PORTS * c + p]
-            up = is_up(world, world.way_link[way])
+            up = rows.is_up(world, world.way_link[way])
             count = options(world, c, p)
             chosen = variant % count
             variant = variant // count
-            if world.at[FAIR]:
+            if world.at[w.FAIR]:
                 cell.heard[p] = up
                 continue
             if may_break(world, c, p) and chosen == count - 1:
                 cell.heard[p] = 0
-                if up and not rows.spend(world, FALSE):
+                if up and not rows.spend(world, w.FALSE):
                     return False
                 continue
-            if world.at[MERGE]:
+            if world.at[w.MERGE]:
                 for _ in range(chosen):
                     rows.take(world, way, 0)
                     skin.on_frame(cell, params, 0, p, world.frame[0], world.out)
@@ -280,35 +248,33 @@ def bind(skin, skin_sink):
 
     def tick(world, c, variant, choice):
         """A cell's period is over."""
-        load_cell(world, c, 0)
+        rows.load_cell(world, c, 0)
         cell = world.cells[0]
-        known, sq, dist = cell.fd_known, cell.fd_sq, cell.fd_dist
         if not attend(world, c, variant):
             return REFUSED
-        if world.at[FAIR] == 0 and world.work[world.cell_at[c] + TICKS] != ANY:
-            world.work[world.cell_at[c] + TICKS] -= 1
+        if world.at[w.FAIR] == 0 and world.work[world.cell_at[c] + w.TICKS] != w.ANY:
+            world.work[world.cell_at[c] + w.TICKS] -= 1
         cell.choice = choice
-        skin.on_timer(cell, world.params[world.at[FAIR]], 0, TICK_TIMER, world.out)
-        asked = finish_cell(world, c, known, sq, dist, rows.HAS_TICKED)
-        if world.at[MERGE]:
+        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, TICK_TIMER, world.out)
+        asked = finish_cell(world, c, rows.HAS_TICKED)
+        if world.at[w.MERGE]:
             rows.trim(world, c)
         return asked
 
     def soon(world, c, choice):
         """A cell's timer for news fires."""
-        load_cell(world, c, 0)
+        rows.load_cell(world, c, 0)
         cell = world.cells[0]
         cell.choice = choice
-        known, sq, dist = cell.fd_known, cell.fd_sq, cell.fd_dist
-        skin.on_timer(cell, world.params[world.at[FAIR]], 0, SOON_TIMER, world.out)
-        return finish_cell(world, c, known, sq, dist, 0)
+        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, SOON_TIMER, world.out)
+        return finish_cell(world, c, 0)
 
     def pc_tick(world, variant):
         """The PC's period is over."""
-        params = world.params[world.at[FAIR]]
+        params = world.params[world.at[w.FAIR]]
         rows.load_pc(world)
-        first = PORTS * world.at[CELLS]
-        if world.at[MERGE]:
+        first = PORTS * world.at[w.CELLS]
+        if world.at[w.MERGE]:
             for p in range(world.pc.own[0].ports):
                 way = world.in_way[first + p]
                 count = 1 + queued(world, way)
@@ -316,8 +282,8 @@ def bind(skin, skin_sink):
                     rows.take(world, way, 0)
                     skin_sink.on_frame(world.pc, params, 0, p, world.frame[0], world.out)
                 variant = variant // count
-        if world.pc.own[0].listen == 0 and world.at[FAIR] == 0:
-            world.work[world.at[PC_AT] + PC_COUNTS] -= 1
+        if world.pc.own[0].listen == 0 and world.at[w.FAIR] == 0:
+            world.work[world.at[w.PC_AT] + w.PC_COUNTS] -= 1
         skin_sink.on_timer(world.pc, params, 0, TICK_TIMER, world.out)
         rows.save_pc(world)
         drain(world, first)
@@ -326,33 +292,33 @@ def bind(skin, skin_sink):
     def step(world, move, variant, choice):
         """Make a move in the row; out of how many the draw it asked for was, or REFUSED."""
         asked = make(world, move, variant, choice)
-        if world.at[LEAN]:
+        if world.at[w.LEAN]:
             tidy(world)
         return asked
 
     def make(world, move, variant, choice):
         """Carry out a move, without asking what it may cost: FINE, or what is broken."""
-        world.found[0] = FINE
+        world.found[0] = w.FINE
         kind, arg = world.move_kind[move], world.move_arg[move]
-        if kind == TICK:
+        if kind == w.TICK:
             return tick(world, arg, variant, choice)
-        if kind == PC_TICK:
+        if kind == w.PC_TICK:
             return pc_tick(world, variant)
-        if kind == SOON:
+        if kind == w.SOON:
             return soon(world, arg, choice)
-        if kind == DELIVER:
+        if kind == w.DELIVER:
             return hear(world, arg, choice)
-        if kind == LOSE:
-            rows.spend(world, LOSS)
+        if kind == w.LOSE:
+            rows.spend(world, w.LOSS)
             rows.drop(world, arg)
-        elif kind == CUT_LINK:
-            rows.spend(world, CUT)
+        elif kind == w.CUT_LINK:
+            rows.spend(world, w.CUT)
             change_link(world, arg, 1)
-        elif kind == HEAL_LINK:
-            rows.spend(world, HEAL)
+        elif kind == w.HEAL_LINK:
+            rows.spend(world, w.HEAL)
             change_link(world, arg, 0)
         else:
-            rows.spend(world, RESTART)
+            rows.spend(world, w.RESTART)
             rows.load_pc(world)
             skin_sink.on_start(world.pc, world.params[0], 0, MEMORY_LOST, world.out)
             world.out.count[0] = 0
@@ -363,12 +329,12 @@ def bind(skin, skin_sink):
         """Everything in flight arrives, and what that sets off; 0 if it never ends."""
         for _ in range(200):
             moved = False
-            for way in range(world.at[DIRECTIONS]):
+            for way in range(world.at[w.DIRECTIONS]):
                 while queued(world, way) > 0:
                     hear(world, way, rows.next_draw(world))
                     moved = True
-            for c in range(world.at[CELLS]):
-                if world.work[world.cell_at[c] + FLAGS] & rows.IS_SOON:
+            for c in range(world.at[w.CELLS]):
+                if world.work[world.cell_at[c] + w.FLAGS] & rows.IS_SOON:
                     soon(world, c, rows.next_draw(world))
                     moved = True
             if not moved:
@@ -377,11 +343,11 @@ def bind(skin, skin_sink):
 
     def turn(world, node):
         """A node ticks in the fair schedule, and is heard before the next one does."""
-        if node == world.at[CELLS]:
+        if node == world.at[w.CELLS]:
             pc_tick(world, 0)
         else:
             tick(world, node, 0, rows.next_draw(world))
         return settle(world)
 
     parts = (hear, attend, tick, soon, pc_tick, make, step, settle, turn)
-    return Moves(parts, start, variants, step, settle, turn)
+    return System(parts, start, variants, step, check, settle, turn, is_settled)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from innervate.networks.skin.verify import reduction
 from innervate.networks.skin.verify import row as skin_row
 from innervate.networks.skin.verify import system as skin_system
-from innervate.networks.skin.verify.world import LEAN
+from innervate.networks.skin.verify import world as w
 from innervate.verify.explore import Result
 from innervate.verify.twin import Twin
 
@@ -25,7 +25,7 @@ def retrace(found: Result) -> Result | None:
     There may be none: equal beacons in a row count as one, and that one may be lost.
     """
     system = skin_system.system_of()
-    room = skin_system.layout(found.model).capacity
+    room = found.model.layout().capacity
     whole = Twin(found.model.changed(lean=False, capacity=room), system)
     lean = Twin(found.model, system)
     before: dict[bytes, bytes] = {}
@@ -84,7 +84,7 @@ def reduced(lean: Twin, row: bytes) -> bytes:
     if lean.model.merges:
         for c in range(lean.model.graph.cells):
             skin_row.trim(lean.world, c)
-    if lean.world.at[LEAN]:
+    if lean.world.at[w.LEAN]:
         reduction.tidy(lean.world)
     return lean.image()
 

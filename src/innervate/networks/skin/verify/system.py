@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
 
 from innervate.kernel import records
 from innervate.networks.skin.protocol import cell as skin
@@ -22,12 +24,14 @@ from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import moves as skin_moves
 from innervate.networks.skin.verify import reduction
 from innervate.networks.skin.verify import row as skin_row
-from innervate.networks.skin.verify import world as skin_world
 from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.layout import Layout
 from innervate.networks.skin.verify.layout import hold_periods as hold_periods
+from innervate.networks.skin.verify.moves import System as System
+from innervate.sim.tables import Tables, put
 from innervate.topology import Graph
 from innervate.verify.errors import VerifyError
+from innervate.verify.table import row
 
 RULES = ("feasible", "strict", "paper", "paper-lax")
 UPDATES = ("periodic", "triggered")
@@ -115,46 +119,79 @@ class SkinModel:
 
     def layout(self) -> Layout:
         """Where in a row everything stands."""
-        return layout(self)
+        return Layout(self)
 
     def world(self, plain: bool) -> w.SkinWorld:
-        """Empty tables to work in."""
-        return world_of(self, plain)
+        """Tables to work in, all bytes of their row 0.
+
+        Raises:
+            VerifyError: there is no such rule, or no such kind of updates.
+        """
+        if self.rule not in RULES or self.updates not in UPDATES:
+            raise VerifyError(
+                f"rule is one of {', '.join(RULES)} and updates one of {', '.join(UPDATES)}"
+            )
+        lay, tables = self.layout(), Tables(plain)
+        numbers = partial(tables.given, kind=np.int32)
+        rows = {}
+        for name in ("work", "trial", "best"):
+            rows[name], rows[f"{name}_words"] = row(lay.width, plain)
+        cells = tables.states(skin_fields.CELL, 2)
+        low, high = records.bounds(skin_fields.CELL)
+        moves, graph = lay.moves(), self.graph
+        world = w.SkinWorld(
+            at=numbers(lay.settings()),
+            cell_at=numbers(lay.cell_at),
+            port_at=numbers(lay.port_at),
+            out_way=numbers(lay.out_way),
+            in_way=numbers(lay.in_way),
+            way_end=numbers(lay.way_end),
+            way_link=numbers([way // 2 for way in range(lay.ways)]),
+            queue_at=numbers(lay.queue_at),
+            link_way=numbers(range(0, lay.ways, 2)),
+            depth=tables.numbers(graph.nodes),
+            orders=numbers([]),
+            move_kind=numbers([kind for kind, _ in moves]),
+            move_arg=numbers([arg for _, arg in moves]),
+            image=numbers(lay.images()),
+            params=tables.states(skin_fields.PARAMS, 2),
+            cells=cells,
+            words=tables.words(cells, skin_fields.CELL),
+            low=numbers(low),
+            high=numbers(high),
+            pc=w.Sink(tables.states(skin_fields.SINK, 1), tables.numbers(graph.interfaces)),
+            out=tables.outbox(w.OUTBOX, skin_fields.FRAME),
+            frame=tables.states(skin_fields.FRAME, 1),
+            found=tables.numbers(1),
+            draws=tables.numbers(1 + 2 * w.DRAWS),
+            **rows,
+        )
+        for i, seq_every in enumerate((1, SETTLED_M)):
+            put(world.params, i, **_parameters(self, seq_every))
+        put(world.pc.own, 0, ports=graph.interfaces)
+        return world
 
     def first_row(self, system: System) -> list[int]:
-        """The state that everything begins with."""
-        return first_row(self, system)
-
-
-class System(NamedTuple):
-    """What the search needs of a protocol (see search.py)."""
-
-    parts: tuple[Callable[..., Any], ...]
-    start: Callable[..., Any]
-    variants: Callable[..., Any]
-    step: Callable[..., Any]
-    check: Callable[..., Any]
-    settle: Callable[..., Any]
-    turn: Callable[..., Any]
-    is_settled: Callable[..., Any]
+        """The bytes of the state in which everything has just been switched on."""
+        world, lay, budget = self.world(plain=True), self.layout(), self.budget
+        for at in lay.cell_at:
+            world.work[at + w.TICKS] = budget.ticks
+        world.work[lay.pc_at + w.PC_COUNTS] = budget.counts
+        given = [getattr(budget, name) for name in FAULTS] + [budget.faults]
+        for i, count in enumerate(given):
+            world.work[lay.budget_at + i] = count if budget.faults else 0
+        system.start(world)
+        if world.at[w.LEAN]:
+            reduction.tidy(world)
+        return list(world.work)
 
 
 def system_of(cell: Any = skin, sink: Any = skin_sink) -> System:
     """The skin's system; of a copy of the protocol if modules are given."""
-    moves = skin_moves.bind(cell, sink)
-    return System(
-        moves.parts,
-        moves.start,
-        moves.variants,
-        moves.step,
-        skin_check.check,
-        moves.settle,
-        moves.turn,
-        skin_check.is_settled,
-    )
+    return skin_moves.bind(cell, sink)
 
 
-@functools.cache
+@cache
 def compiled_parts() -> System:
     """The system with all its functions registered for the compiler."""
     from innervate.dialect import arith, outbox, rng
@@ -169,80 +206,9 @@ def compiled_parts() -> System:
     plain = [f for f in vars(skin_moves).values() if callable(f)]
     own = [f for f in plain if getattr(f, "__module__", "") == skin_moves.__name__]
     system = system_of()
-    helpers = [f for f in own if f not in (skin_moves.bind, skin_moves.Moves)]
+    helpers = [f for f in own if f not in (skin_moves.bind, System)]
     compilation.register_functions(*helpers, *system.parts, hot=False)
     return system
-
-
-def world_of(model: SkinModel, plain: bool) -> w.SkinWorld:
-    """The world of a model, all bytes of its row 0.
-
-    Raises:
-        VerifyError: a number does not fit.
-    """
-    if model.rule not in RULES or model.updates not in UPDATES:
-        raise VerifyError(
-            f"rule is one of {', '.join(RULES)} and updates one of {', '.join(UPDATES)}"
-        )
-    forms = w.Forms(plain)
-    lay = Layout(model)
-    work, work_words = forms.row(lay.width)
-    trial, trial_words = forms.row(lay.width)
-    best, best_words = forms.row(lay.width)
-    cells = forms.states(skin_fields.CELL, 2)
-    low, high = records.bounds(skin_fields.CELL)
-    world = w.SkinWorld(
-        at=forms.numbers(lay.settings()),
-        cell_at=forms.numbers(lay.cell_at),
-        port_at=forms.numbers(lay.port_at),
-        out_way=forms.numbers(lay.out_way),
-        in_way=forms.numbers(lay.in_way),
-        way_end=forms.numbers(lay.way_end),
-        way_link=forms.numbers(way // 2 for way in range(lay.ways)),
-        queue_at=forms.numbers(lay.queue_at),
-        link_way=forms.numbers(range(0, lay.ways, 2)),
-        depth=forms.numbers([0] * model.graph.nodes),
-        orders=forms.numbers([]),
-        move_kind=forms.numbers(kind for kind, _ in lay.moves()),
-        move_arg=forms.numbers(arg for _, arg in lay.moves()),
-        image=forms.numbers(lay.images()),
-        params=forms.states(skin_fields.PARAMS, 2),
-        cells=cells,
-        words=forms.words(cells, skin_fields.CELL),
-        low=forms.numbers(low.tolist()),
-        high=forms.numbers(high.tolist()),
-        pc=w.Sink(forms.states(skin_fields.SINK, 1), forms.numbers([0] * model.graph.interfaces)),
-        out=forms.outbox(),
-        frame=forms.states(skin_fields.FRAME, 1),
-        found=forms.numbers([0]),
-        draws=forms.numbers([0] * (1 + 2 * w.DRAWS)),
-        work=work,
-        work_words=work_words,
-        trial=trial,
-        trial_words=trial_words,
-        best=best,
-        best_words=best_words,
-    )
-    for i, seq_every in enumerate((1, SETTLED_M)):
-        _put(world.params, i, **_parameters(model, seq_every))
-    _put(world.pc.own, 0, ports=model.graph.interfaces)
-    return world
-
-
-def first_row(model: SkinModel, system: System) -> list[int]:
-    """The bytes of the state in which everything has just been switched on."""
-    world = world_of(model, plain=True)
-    lay = Layout(model)
-    for c in range(model.graph.cells):
-        world.work[lay.cell_at[c] + w.TICKS] = model.budget.ticks
-    world.work[lay.pc_at + w.PC_COUNTS] = model.budget.counts
-    given = [getattr(model.budget, name) for name in FAULTS] + [model.budget.faults]
-    for i, count in enumerate(given):
-        world.work[lay.budget_at + i] = count if model.budget.faults else 0
-    system.start(world)
-    if world.at[w.LEAN]:
-        reduction.tidy(world)
-    return list(world.work)
 
 
 def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
@@ -264,19 +230,3 @@ def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
         "forward_min_us": 0,
         "forward_max_us": 0,
     }
-
-
-def _put(table: Any, place: int, **values: int) -> None:
-    for name, value in values.items():
-        if isinstance(table, list):
-            setattr(table[place], name, value)
-        else:
-            table[name][place] = value
-
-
-def layout(model: SkinModel) -> Layout:
-    """Where things lie in a row of this model."""
-    return Layout(model)
-
-
-__all__ = ["Budget", "SkinModel", "System", "first_row", "layout", "skin_world", "system_of"]

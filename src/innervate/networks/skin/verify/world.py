@@ -9,11 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from innervate.dialect import plain
-from innervate.kernel import records
-from innervate.networks.skin.protocol import fields as skin_fields
+from innervate.sim.tables import Out
 
 # Places in `SkinWorld.at`.
 CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
@@ -55,16 +51,6 @@ class Sink(NamedTuple):
     size: Any
 
 
-class Out(NamedTuple):
-    """The outbox, as tables that are compiled with (see dialect/outbox.py)."""
-
-    count: Any
-    limit: Any
-    overflow: Any
-    action: Any
-    frame: Any
-
-
 class SkinWorld(NamedTuple):
     """All of it; the tables of numbers are fixed but `found`, `work`, `trial`, `best`."""
 
@@ -98,55 +84,3 @@ class SkinWorld(NamedTuple):
     trial_words: Any
     best: Any
     best_words: Any
-
-
-class Forms:
-    """Makes tables of one form: compiled (arrays) or plain (lists and memory views)."""
-
-    def __init__(self, is_plain: bool) -> None:
-        self.is_plain = is_plain
-
-    def numbers(self, values: Any) -> Any:
-        """Whole numbers, as a list or as 32-bit integers."""
-        return list(values) if self.is_plain else np.array(list(values), np.int32)
-
-    def longs(self, count: int) -> Any:
-        """`count` 64-bit numbers; arrays are not initialised before they are used."""
-        if self.is_plain:
-            return memoryview(bytearray(8 * count)).cast("q")
-        return np.zeros(count, np.int64)
-
-    def row(self, width: int) -> tuple[Any, Any]:
-        """`width` bytes, and the same memory as 64-bit words."""
-        if self.is_plain:
-            view = memoryview(bytearray(width))
-            return view, view.cast("q")
-        memory = np.zeros(width, np.uint8)
-        return memory, memory.view(np.int64)
-
-    def states(self, declaration: Any, count: int) -> Any:
-        """`count` records of a declaration."""
-        if self.is_plain:
-            make = plain.make("State", declaration)
-            return [make() for _ in range(count)]
-        return records.zeros(declaration, count)
-
-    def words(self, states: Any, declaration: Any) -> Any:
-        """The states as rows of words."""
-        if self.is_plain:
-            return [records.Words(state, declaration) for state in states]
-        return states.view(np.int32).reshape(len(states), -1)
-
-    def outbox(self) -> Out:
-        """An outbox with nothing in it and room for OUTBOX actions."""
-        fields = ("kind", "a", "b", "c")
-        action = tuple((name, 0, 0, 0, "", "") for name in fields)
-        limit = self.longs(1)
-        limit[0] = OUTBOX
-        return Out(
-            count=self.longs(1),
-            limit=limit,
-            overflow=self.longs(1),
-            action=self.states(action, OUTBOX),
-            frame=self.states(skin_fields.FRAME, OUTBOX),
-        )
