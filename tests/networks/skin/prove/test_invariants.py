@@ -62,7 +62,7 @@ def put(stage, store, record, values):
 
 def cell_of(cell=(), ghosts=(), updates=PERIODIC, frame=()):
     """A cell with the values of SOUND but for these."""
-    made = Cell(Stage({}, fields.FRAME, ROOM), RULE_FEASIBLE)
+    made = Cell({}, RULE_FEASIBLE)
     stage = made.stage
     put(stage, stage.store, made.cell, {**SOUND, **dict(cell)})
     put(stage, stage.store, made.frame, dict(frame))

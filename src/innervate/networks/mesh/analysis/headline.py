@@ -10,13 +10,7 @@ import numpy as np
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
 from innervate.analysis.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing
-from innervate.networks.mesh.analysis.messages import (
-    DELIVERED,
-    NEVER,
-    UNASKED,
-    Messages,
-    counted,
-)
+from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
 from innervate.networks.mesh.analysis.reach import Ways
 from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 

@@ -13,18 +13,7 @@ import numpy as np
 from innervate.analysis.percentiles import percentiles as percentiles_of
 from innervate.analysis.summary_common import Percentiles
 from innervate.networks.mesh.analysis.broadcasts import missed
-from innervate.networks.mesh.protocol.constants import (
-    ALL,
-    DATA,
-    END_TO_END,
-    NO_ACK,
-    NO_ROOM,
-    NO_ROUTE,
-    PUT_OUT,
-    REPORT_ACCEPTED,
-    REPORT_EXPIRED,
-    REPORT_FULL,
-)
+from innervate.networks.mesh.protocol import constants as const
 from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
@@ -34,7 +23,12 @@ NEVER = -1
 SETTLE_US = 1_000_000  # an unreliable message takes no longer
 SAME_US = 60_000_000  # the same number this much later is another packet
 HANDLES = 1 << 16
-REASONS = {NO_ROUTE: "no_route", NO_ACK: "no_ack", PUT_OUT: "put_out", NO_ROOM: "no_room"}
+REASONS = {
+    const.NO_ROUTE: "no_route",
+    const.NO_ACK: "no_ack",
+    const.PUT_OUT: "put_out",
+    const.NO_ROOM: "no_room",
+}
 
 # States of a message.
 DELIVERED, IN_FLIGHT, LOST, REFUSED, UNASKED = range(5)
@@ -85,7 +79,7 @@ def messages(result: Any) -> Messages:
         for name in ("at_us", "node", "dest", "flow")
     )
     seq, answer = _accepted(result, at, node)
-    given = np.flatnonzero(result.delivered["kind"] == DATA)
+    given = np.flatnonzero(result.delivered["kind"] == const.DATA)
     of = _offers_of(result.delivered[given], at, node, seq)
     first = _first_deliveries(result, at, node, seq, given, of)
     rows = result.delivered[np.maximum(first, 0)] if len(result.delivered) else None
@@ -99,7 +93,7 @@ def messages(result: Any) -> Messages:
 
     state = _states(result, at, came, answer)
     young = at + timeout_us(result.plan) > result.ended_us
-    broadcast = dest == ALL
+    broadcast = dest == const.ALL
     judged = np.flatnonzero(broadcast & ~young & (state != UNASKED))
     partial = np.zeros(len(at), np.bool_)
     partial[judged] = missed(result, at, node, judged, of, timeout_us(result.plan))
@@ -122,7 +116,7 @@ def messages(result: Any) -> Messages:
 def _accepted(result: Any, at: Numbers, node: Numbers) -> tuple[Numbers, Numbers]:
     """Per offer the seq it went out as, and the code of the node's answer (0: none)."""
     rows = result.rows
-    answers = rows[(rows["code"] == REPORT_ACCEPTED) | (rows["code"] == REPORT_FULL)]
+    answers = rows[(rows["code"] == const.REPORT_ACCEPTED) | (rows["code"] == const.REPORT_FULL)]
     # A node answers in the handler call that hands the message down: at the very same time.
     key = _key(answers["time"], answers["node"], answers["a"])
     order = np.argsort(key, kind="stable")
@@ -133,7 +127,7 @@ def _accepted(result: Any, at: Numbers, node: Numbers) -> tuple[Numbers, Numbers
         found = order[np.minimum(place, len(order) - 1)]
         mine = key[found] == wanted
         answer[mine] = answers["code"][found[mine]]
-        taken = mine & (answer == REPORT_ACCEPTED)
+        taken = mine & (answer == const.REPORT_ACCEPTED)
         seq[taken] = answers["b"][found[taken]]
     return seq, answer
 
@@ -195,14 +189,14 @@ def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
     state = np.full(len(at), LOST, np.int64)
     state[at + timeout_us(result.plan) > result.ended_us] = IN_FLIGHT
     state[_kept(result, at, answer)] = IN_FLIGHT
-    rows = result.rows[result.rows["code"] == REPORT_EXPIRED]
+    rows = result.rows[result.rows["code"] == const.REPORT_EXPIRED]
     for row in rows:
         # The offer of that handle which was there last.
         newest = int(np.searchsorted(at, row["time"], "right")) - 1
         given_up = newest - (newest - int(row["a"])) % HANDLES
         if given_up >= 0:
             state[given_up] = LOST
-    state[answer == REPORT_FULL] = REFUSED
+    state[answer == const.REPORT_FULL] = REFUSED
     state[answer == 0] = UNASKED
     state[came] = DELIVERED
     return state
@@ -221,8 +215,11 @@ def _kept(result: Any, at: Numbers, answer: Numbers) -> Flags:
     for fault in plan.faults:
         if fault.action in (KILL, RESTART) and fault.at_us < result.ended_us:
             forgot[fault.node] = max(forgot[fault.node], fault.at_us)
-    safe = [bool(offer.flags & END_TO_END) and offer.at_us > forgot[offer.node] for offer in offers]
-    kept: Flags = np.array(safe, np.bool_) & (answer == REPORT_ACCEPTED)
+    safe = [
+        bool(offer.flags & const.END_TO_END) and offer.at_us > forgot[offer.node]
+        for offer in offers
+    ]
+    kept: Flags = np.array(safe, np.bool_) & (answer == const.REPORT_ACCEPTED)
     return kept
 
 
@@ -262,7 +259,7 @@ def give_ups(result: Any) -> dict[str, int]:
     """How many messages their senders gave up or refused, by reason."""
     rows = result.rows
     found = dict.fromkeys(REASONS.values(), 0)
-    for code in (REPORT_EXPIRED, REPORT_FULL):
+    for code in (const.REPORT_EXPIRED, const.REPORT_FULL):
         for reason in rows["b"][rows["code"] == code].tolist():
             name = REASONS.get(reason, f"reason_{reason}")
             found[name] = found.get(name, 0) + 1

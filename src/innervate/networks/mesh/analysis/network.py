@@ -8,39 +8,21 @@ import numpy as np
 
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary_keys import Airtime, Discovery, Gateway, Suspects
-from innervate.networks.mesh.protocol.constants import (
-    ACK,
-    ACTIVATE,
-    ALARM,
-    DATA,
-    E2E_ACK,
-    GRAPH,
-    POSITION,
-    REPORT_GATEWAY,
-    REPORT_GRAPH,
-    REPORT_ROUND,
-    REPORT_SUSPECT,
-    REPORT_TABLE,
-    REQUEST,
-    RESPONSE,
-    TABLE,
-    TABLE_ACK,
-    TABLE_FREE,
-)
+from innervate.networks.mesh.protocol import constants as const
 from innervate.scenario.actions.field import KILL, RESTART
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
-FINDING = (REQUEST, RESPONSE)
-TABLING = (TABLE, TABLE_ACK, ACTIVATE, GRAPH)
+FINDING = (const.REQUEST, const.RESPONSE)
+TABLING = (const.TABLE, const.TABLE_ACK, const.ACTIVATE, const.GRAPH)
 CONTROL = (*FINDING, *TABLING)
 # What airtime is spent on; an ack of a hop belongs to the packet that it acknowledges.
 USES = {
     "discovery": FINDING,
     "tables": TABLING,
-    "messages": (DATA, E2E_ACK),
-    "alarms": (ALARM,),
-    "beacons": (POSITION,),
+    "messages": (const.DATA, const.E2E_ACK),
+    "alarms": (const.ALARM,),
+    "beacons": (const.POSITION,),
 }
 
 
@@ -51,8 +33,8 @@ def acked_kinds(sent: Any) -> Numbers:
     """
     kinds: Numbers = sent["kind"].astype(np.int64)
     name = sent["origin"].astype(np.int64) << 16 | sent["seq"]
-    packets = np.flatnonzero(kinds != ACK)
-    acks = np.flatnonzero(kinds == ACK)
+    packets = np.flatnonzero(kinds != const.ACK)
+    acks = np.flatnonzero(kinds == const.ACK)
     if len(packets) == 0 or len(acks) == 0:
         return kinds
     order = packets[np.lexsort((sent["end"][packets], name[packets]))]
@@ -74,17 +56,17 @@ def airtime_us(sent: Any) -> Numbers:
 def discovery(result: Any, kinds: Numbers) -> Discovery:
     """The summary's part on the first discovery round; `kinds` as acked_kinds() has them."""
     rows = result.rows
-    begun = rows["time"][rows["code"] == REPORT_ROUND]
+    begun = rows["time"][rows["code"] == const.REPORT_ROUND]
     if len(begun) == 0:
         return {
             "recall": None, "complete_s": None, "tables_s": None, "airtime_s": None,
             "rounds": None, "responses_s": None, "tables_airtime_s": None, "with_tables": None,
         }  # fmt: skip
     first, ended = int(begun[0]), int(begun[1]) if len(begun) > 1 else result.ended_us
-    graphs = rows["time"][rows["code"] == REPORT_GRAPH]
+    graphs = rows["time"][rows["code"] == const.REPORT_GRAPH]
     sent, spent = result.sent, airtime_us(result.sent)
     round_ = (sent["time"] >= first) & (sent["time"] < ended)
-    answers = sent["end"][round_ & (sent["kind"] == RESPONSE) & (sent["receivers"] > 0)]
+    answers = sent["end"][round_ & (sent["kind"] == const.RESPONSE) & (sent["receivers"] > 0)]
     collected = int(graphs[0]) if len(graphs) else None
     in_time = answers[answers <= collected] if collected is not None else answers
     known = result.rounds[:1]
@@ -109,11 +91,11 @@ def tables(result: Any, since_us: int) -> tuple[int | None, int | None]:
     The second is None if one that was on all the time never got one; both without tables.
     """
     plan, rows = result.plan, result.rows
-    if plan.params["mode"] == TABLE_FREE:
+    if plan.params["mode"] == const.TABLE_FREE:
         return None, None
-    made = rows[(rows["code"] == REPORT_TABLE) & (rows["time"] >= since_us)]
+    made = rows[(rows["code"] == const.REPORT_TABLE) & (rows["time"] >= since_us)]
     nodes, first = np.unique(made["node"], return_index=True)
-    leads = set(rows["node"][rows["code"] == REPORT_ROUND].tolist())
+    leads = set(rows["node"][rows["code"] == const.REPORT_ROUND].tolist())
     off = {fault.node for fault in plan.faults if fault.action in (KILL, RESTART)}
     off |= {node for node in range(plan.nodes) if plan.absent[node]}
     missing = set(range(plan.nodes)) - set(nodes.tolist()) - off - leads
@@ -125,8 +107,8 @@ def tables(result: Any, since_us: int) -> tuple[int | None, int | None]:
 def gateways(result: Any) -> list[Gateway]:
     """Who became gateway, when; how long later the last node that was on had tables of it."""
     rows = result.rows
-    led = rows[(rows["code"] == REPORT_GATEWAY) & (rows["a"] == rows["node"])]
-    made = rows[rows["code"] == REPORT_TABLE]
+    led = rows[(rows["code"] == const.REPORT_GATEWAY) & (rows["a"] == rows["node"])]
+    made = rows[rows["code"] == const.REPORT_TABLE]
     ground = Ground(result.plan)
     found: list[Gateway] = []
     for row in led:
@@ -189,7 +171,7 @@ def control_bytes(result: Any, kinds: Numbers) -> int:
 
 def suspects(result: Any) -> Suspects:
     """How often nodes gave up on a neighbour; `wrong`: one that was switched on."""
-    rows = result.rows[result.rows["code"] == REPORT_SUSPECT]
+    rows = result.rows[result.rows["code"] == const.REPORT_SUSPECT]
     ground = Ground(result.plan)
     wrong = 0
     for low, high in zip(ground.times, [*ground.times[1:], 1 << 62], strict=True):

@@ -17,13 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.analysis.ways import NOWHERE, Flags, Numbers, follow, reach
-from innervate.networks.mesh.protocol.constants import (
-    ALTERNATE,
-    PATH_MAX,
-    SEARCH,
-    TABLE_FREE,
-    TABLES,
-)
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
 from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE
@@ -113,7 +107,7 @@ def ways(known: Choices, carries: Flags, on: Flags, off: Flags, leads: Flags) ->
     over = (named != NOWHERE) & live[nodes[:, None], np.maximum(named, 0)]
     first = np.where(over.any(axis=1), named[nodes, over.argmax(axis=1)], NOWHERE)
     root, depth = follow(first, leads)
-    there = leads | ((root != NOWHERE) & (root == known.gateway) & (depth <= PATH_MAX))
+    there = leads | ((root != NOWHERE) & (root == known.gateway) & (depth <= const.PATH_MAX))
     rest = np.flatnonzero(on & ~there & (known.gateway != NOWHERE))
     if len(rest):
         there[rest] = _searched(known, live, leads, over, rest)
@@ -145,7 +139,7 @@ def _searched(known: Choices, live: Flags, leads: Flags, over: Flags, rest: Numb
             if leads[gateway]:
                 start = np.arange(count) == gateway
                 mine = known.gateway[rest] == gateway
-                found |= mine & reach(hands.T, start, PATH_MAX)[rest]
+                found |= mine & reach(hands.T, start, const.PATH_MAX)[rest]
         return found
     return np.array([_walks(known, live, leads, node) for node in rest.tolist()], np.bool_)
 
@@ -155,7 +149,7 @@ def _walks(known: Choices, live: Flags, leads: Flags, node: int) -> bool:
     gateway, path = int(known.gateway[node]), [node]
     if not leads[gateway]:
         return False
-    while path[-1] != gateway and len(path) <= PATH_MAX:
+    while path[-1] != gateway and len(path) <= const.PATH_MAX:
         here = path[-1]
         order = [*known.named[here].tolist(), *np.flatnonzero(known.neighbours[here]).tolist()]
         fits = (to for to in order if to != NOWHERE and to not in path and live[here, to])
@@ -209,16 +203,16 @@ def choices(world: Any, plan: Any) -> Choices:
 
     strong = ((near == gateway[:, None]) & (nodes["rssi"] >= 4 * params["min_rssi"])).any(axis=1)
     named = [np.where(strong, usable(gateway), NOWHERE)]
-    if params["mode"] == TABLES:
+    if params["mode"] == const.TABLES:
         place = nodes["bank"] * params["width"] + np.minimum(gateway, params["width"] - 1)
-        tables = ("next", "alt") if params["failover"] >= ALTERNATE else ("next",)
+        tables = ("next", "alt") if params["failover"] >= const.ALTERNATE else ("next",)
         for table in tables:
             way = nodes[table][who, place]
             named.append(np.where(gateway != FREE, usable(way), NOWHERE))
     named.extend(_uplinks(nodes, params, near, suspect))
-    goes_back = params["mode"] != TABLE_FREE and params["failover"] == SEARCH
+    goes_back = params["mode"] != const.TABLE_FREE and params["failover"] == const.SEARCH
     # With the document's failover anybody takes the place of a next hop that does not answer.
-    others = goes_back or (params["mode"] == TABLES and params["failover"] < ALTERNATE)
+    others = goes_back or (params["mode"] == const.TABLES and params["failover"] < const.ALTERNATE)
     is_near = np.zeros((count, count + 1), np.bool_)
     if others:
         is_near[who[:, None], np.minimum(near, count)] = True

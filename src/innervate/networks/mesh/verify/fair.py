@@ -10,14 +10,8 @@ from typing import NamedTuple
 
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.standby import IN_VAIN
+from innervate.networks.mesh.verify import local
 from innervate.networks.mesh.verify import model as mesh_model
-from innervate.networks.mesh.verify.local import (
-    BROKEN_DEPOSED,
-    BROKEN_ENDLESS,
-    BROKEN_GATEWAYS,
-    BROKEN_UNHEARD,
-    NONE,
-)
 from innervate.networks.mesh.verify.net import DEAD, EVENTS_MAX, Net, Nets
 
 IN_USE = (const.DATA, const.E2E_ACK, const.ALARM)
@@ -42,13 +36,13 @@ class Fair:
     def check(self, net: Net) -> int:
         """What a state's calm future breaks; 0 nothing."""
         if self.nets.model.beats:
-            return BROKEN_DEPOSED if self._is_deposed(net) else self._one_gateway(net)
+            return local.BROKEN_DEPOSED if self._is_deposed(net) else self._one_gateway(net)
         wanted = self._wanted(net)
         end = self._end(net)
         self.longest = max(self.longest, end.events)
         if end.broken:
             return end.broken
-        return 0 if wanted <= self.nets.sets[end.got] else BROKEN_UNHEARD
+        return 0 if wanted <= self.nets.sets[end.got] else local.BROKEN_UNHEARD
 
     def _wanted(self, net: Net) -> set[tuple[int, int, int, int]]:
         """Messages that their origins will send again, to recipients that are connected to these.
@@ -86,11 +80,11 @@ class Fair:
                 return self._note(rows, End(0, calm.got, -1))
             step = self.nets.steady(calm)
             if step is None:  # nobody does anything any more
-                return self._note(rows, End(BROKEN_ENDLESS, calm.got, -1))
+                return self._note(rows, End(local.BROKEN_ENDLESS, calm.got, -1))
             _, calm, broken = step
             if broken:
                 return self._note(rows, End(broken, calm.got, -1))
-        return self._note(rows, End(BROKEN_ENDLESS, calm.got, 0))
+        return self._note(rows, End(local.BROKEN_ENDLESS, calm.got, 0))
 
     def _note(self, rows: list[bytes], end: End) -> End:
         for row in reversed(rows):
@@ -120,7 +114,7 @@ class Fair:
         end = self._last_quarrel(net)
         self.longest = max(self.longest, end.events)
         late = self.nets.calm_beats() * self.nets.locals.params.tick_us
-        return end.broken or (BROKEN_GATEWAYS if end.events > late else 0)
+        return end.broken or (local.BROKEN_GATEWAYS if end.events > late else 0)
 
     def _is_deposed(self, net: Net) -> bool:
         """True if another leads, too, though nobody died and fewer frames than questions failed."""
@@ -132,7 +126,7 @@ class Fair:
 
     def _last_quarrel(self, net: Net) -> End:
         rows: list[tuple[bytes, int, bool]] = []
-        calm, end = net._replace(left=(0, 0, 0, 0)), End(0, 0, NONE)
+        calm, end = net._replace(left=(0, 0, 0, 0)), End(0, 0, local.NONE)
         while len(rows) < EVENTS_MAX:
             row = self.nets.pack(calm)
             known = self.ends.get(row)
@@ -148,10 +142,10 @@ class Fair:
                 end = End(step[2], 0, 0)
                 break
         else:
-            end = End(BROKEN_ENDLESS, 0, 0)
+            end = End(local.BROKEN_ENDLESS, 0, 0)
         for row, wait, quarrels in reversed(rows):
             later = end.events
-            here = wait + later if later != NONE else wait if quarrels else NONE
+            here = wait + later if later != local.NONE else wait if quarrels else local.NONE
             end = self.ends[row] = end._replace(events=here)
         return end
 

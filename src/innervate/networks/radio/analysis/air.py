@@ -11,20 +11,14 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from innervate.dialect.access import REPORT_LEFT
-from innervate.networks.radio.protocol.constants import (
-    CRR,
-    DATA,
-    OPEN,
-    REPORT_COLLISION,
-    REPORT_STOPPED,
-)
+from innervate.networks.radio.protocol import constants as const
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # Frames that may carry packets; where one of them overlaps something, there was a collision.
-CARRYING = (DATA, OPEN)
+CARRYING = (const.DATA, const.OPEN)
 FOREVER = 1 << 62
 
 
@@ -104,7 +98,7 @@ def air(result: Any) -> Air:
 
 def _stop(rows: Any, node: Numbers, start: Numbers, end: Numbers) -> None:
     """Cut the transmissions that their senders broke off."""
-    stops = rows[rows["code"] == REPORT_STOPPED]
+    stops = rows[rows["code"] == const.REPORT_STOPPED]
     if len(stops) == 0:
         return
     cut = _latest(node, start, stops)
@@ -118,7 +112,7 @@ def _faded(faults: Any, node: Numbers, kind: Numbers, decided: Numbers) -> Flags
     for station in {fault.node for fault in spoilers}:
         mine = [fault for fault in spoilers if fault.node == station]
         left, seen = {GARBLE: 0, FADE: 0}, 0
-        for place in np.flatnonzero((node == station) & (kind == CRR)).tolist():
+        for place in np.flatnonzero((node == station) & (kind == const.CRR)).tolist():
             while seen < len(mine) and mine[seen].at_us < decided[place]:
                 left[mine[seen].action] = mine[seen].value
                 seen += 1
@@ -153,7 +147,7 @@ def taken_for_collided(result: Any) -> int:
     Mostly since nobody answered: a sender cannot tell that from a collision.
     """
     on_air = air(result)
-    told = result.rows[result.rows["code"] == REPORT_COLLISION]
+    told = result.rows[result.rows["code"] == const.REPORT_COLLISION]
     if len(told) == 0 or len(on_air.start) == 0:
         return 0
     sent = np.unique(_latest(on_air.node, on_air.start, told, "left"))  # the next may begin now

@@ -14,13 +14,8 @@ from typing import Any
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import SEND
+from innervate.networks.radio.protocol import constants as const
 from innervate.networks.radio.protocol import fields
-from innervate.networks.radio.protocol.constants import (
-    NONE,
-    POSITIONS,
-    WIDE_MOST,
-    WINDOWS,
-)
 from innervate.networks.radio.protocol.modes import TURN
 from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart
 from innervate.prove.answers import Answers
@@ -66,7 +61,7 @@ def steps(known: Source) -> tuple[Callable[[], Step], ...]:
         partial(_taken, known),
         *(
             partial(_alone, known, wide, late)
-            for wide in range(WIDE_MOST + 1)
+            for wide in range(const.WIDE_MOST + 1)
             for late in (False, True)
         ),
     )
@@ -76,7 +71,7 @@ def _stage(known: dict[str, Any], *names: str) -> tuple[Stage, list[Record], Rec
     stage = Stage(known, fields.FRAME, ROOM)
     stations = [stage.record(name, STATION) for name in names]
     for other in stations[1:]:
-        for k in range(POSITIONS):
+        for k in range(const.POSITIONS):
             stage.store[other, "live", k] = stage.store[stations[0], "live", k]
     return stage, stations, stage.record("params", fields.PARAMS)
 
@@ -104,8 +99,8 @@ def _named(known: dict[str, Any]) -> Step:
     stage, (a, b), params = _stage(known, "a", "b")
     t, frame = stage.terms, stage.record("frame", fields.FRAME)
     sender, behind = (stage.store[frame, name, None] for name in ("pos", "next"))
-    names = t.all(t.less(behind, t.number(WINDOWS)), t.negated(t.same(behind, sender)),
-                  t.less(sender, t.number(POSITIONS)))  # fmt: skip
+    names = t.all(t.less(behind, t.number(const.WINDOWS)), t.negated(t.same(behind, sender)),
+                  t.less(sender, t.number(const.POSITIONS)))  # fmt: skip
     before, turns, machines = dict(stage.store), [], []
     after = dict(before)
     for one in (a, b):
@@ -113,10 +108,12 @@ def _named(known: dict[str, Any]) -> Step:
         given = [one, params, t.unknown(f"{one.name}.now", 0, MASK30), frame, machine.out]
         after, _ = machine.run("hear_data", given, after, t.true)
         kept = t.any(*(t.same(after[one, "pos", None], value)
-                       for value in (before[one, "pos", None], t.number(NONE))))  # fmt: skip
+                       for value in (before[one, "pos", None], t.number(const.NONE))))  # fmt: skip
         turns.append(kept)
         machines.append(machine)
-    live = t.all(*(t.same(after[a, "live", k], after[b, "live", k]) for k in range(POSITIONS)))
+    live = t.all(
+        *(t.same(after[a, "live", k], after[b, "live", k]) for k in range(const.POSITIONS))
+    )
     goals = [
         Goal("R4 nobody gets another's place", t.all(*turns)),
         Goal("R5 they have the same record of the round", live),
@@ -130,7 +127,7 @@ def _taken(known: dict[str, Any]) -> Step:
     stage, (a,), params = _stage(known, "a")
     t = stage.terms
     stage.machine = Answers(known, t, stage.out, LOOKED_UP)
-    place = t.unknown("place", 0, POSITIONS - 1)
+    place = t.unknown("place", 0, const.POSITIONS - 1)
     step = stage.play("a place's turn comes", "enter_turn",
                       [a, params, stage.clock(), place, stage.out], [])  # fmt: skip
     mine = t.same(step.before[a, "pos", None], place)
@@ -138,7 +135,7 @@ def _taken(known: dict[str, Any]) -> Step:
     waits = t.all(t.same(step.after[a, "mode", None], t.number(TURN)),
                   t.same(step.after[a, "act", None], t.number(1)))  # fmt: skip
     own = t.any(*(t.same(step.after[a, "pos", None], value)
-                  for value in (step.before[a, "pos", None], t.number(NONE))))  # fmt: skip
+                  for value in (step.before[a, "pos", None], t.number(const.NONE))))  # fmt: skip
     step.goals = [
         Goal("R6 only who has the place takes the turn", t.implies(t.any(sends, waits), mine)),
         Goal("R7 it keeps its place or gives it up", own),

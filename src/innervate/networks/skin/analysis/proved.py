@@ -5,30 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from innervate.networks.skin.sim.proved import (
-    FIRST_START,
-    HOLD,
-    NUMBERS,
-    ORDER,
-    OUTSIDE,
-    PC_STAYS,
-    RESTART,
-)
+from innervate.networks.skin.sim import proved
 
 STILL = "takes a route although {other} has an old one of it still"
 WORDS = {
-    RESTART: f"{{node}}, which was restarted, {STILL} (Restart)",
-    HOLD: f"{{node}}, which forgot its feasible distance, {STILL} (FD_HOLD)",
-    NUMBERS: "numbers in use do not lie within half of all, the oldest at {node} (Numbers)",
-    FIRST_START: "{node} is switched on as if it never was before (First start)",
-    PC_STAYS: "under rule strict the PC is restarted",
-    ORDER: "under rule strict a beacon from {other} comes to {node} behind a newer one (Order)",
+    proved.RESTART: f"{{node}}, which was restarted, {STILL} (Restart)",
+    proved.HOLD: f"{{node}}, which forgot its feasible distance, {STILL} (FD_HOLD)",
+    proved.NUMBERS: "numbers in use do not lie within half of all, the oldest at {node} (Numbers)",
+    proved.FIRST_START: "{node} is switched on as if it never was before (First start)",
+    proved.PC_STAYS: "under rule strict the PC is restarted",
+    proved.ORDER: "under rule strict a beacon from {other} comes to {node} behind a newer one "
+    "(Order)",
 }
 
 
 def outside(rows: Any, label: Callable[[int], str]) -> list[str]:
     """A sentence for each assumption that was left, the first time."""
-    found = rows[rows["code"] == OUTSIDE]
+    found = rows[rows["code"] == proved.OUTSIDE]
     return [sentence(int(at), what, label(node), label(other) if other >= 0 else "")
             for at, node, _code, what, other in found.tolist()]  # fmt: skip
 

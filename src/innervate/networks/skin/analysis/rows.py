@@ -15,14 +15,7 @@ from innervate.networks.skin.protocol.constants import (
     REPORT_BROKEN,
     REPORT_PARENT,
 )
-from innervate.networks.skin.sim.observer import (
-    APART,
-    CUT_OFF,
-    JOINED,
-    LOOP_CLOSED,
-    LOOP_OPEN,
-    UNROUTED,
-)
+from innervate.networks.skin.sim import observer
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 NEVER = -1
@@ -135,19 +128,19 @@ def parent_changes(result: Any) -> ParentChanges:
 
 def unrouted_steps(result: Any) -> UnroutedSteps:
     """How many cells that are physically connected to the PC had no route, over time."""
-    at, part = _coded(result, UNROUTED)
+    at, part = _coded(result, observer.UNROUTED)
     return UnroutedSteps(at, part["time"], part["a"])
 
 
 def apart_steps(result: Any) -> ApartSteps:
     """How many cells were cut off, over time."""
-    at, part = _coded(result, APART)
+    at, part = _coded(result, observer.APART)
     return ApartSteps(at, part["time"], part["a"], part["b"])
 
 
 def joined_steps(result: Any) -> JoinedSteps:
     """How many cells live cables joined with the PC, over time."""
-    at, part = _coded(result, JOINED)
+    at, part = _coded(result, observer.JOINED)
     return JoinedSteps(at, part["time"], part["a"])
 
 
@@ -165,7 +158,7 @@ def broken_changes(result: Any) -> BrokenChanges:
 
 def marks(result: Any) -> Marks:
     """The beginning and the scenario's events."""
-    at, part = _coded(result, CUT_OFF)
+    at, part = _coded(result, observer.CUT_OFF)
     return Marks(at, part["time"], part["a"], part["b"])
 
 
@@ -173,12 +166,12 @@ def loop_episodes(result: Any) -> LoopEpisodes:
     """All forwarding loops: a ring of parents over live cables."""
     rows = result.rows
     code = rows["code"]
-    at = np.flatnonzero((code == LOOP_OPEN) | (code == LOOP_CLOSED))
+    at = np.flatnonzero((code == observer.LOOP_OPEN) | (code == observer.LOOP_CLOSED))
     part = rows[at]
     # The rows of one ring's cell alternate: opened, closed, opened ...
     order = np.argsort(part["node"], kind="stable")
     node, time = part["node"][order], part["time"][order]
-    opened = part["code"][order] == LOOP_OPEN
+    opened = part["code"][order] == observer.LOOP_OPEN
     closed_us = np.full(len(order), NEVER, np.int64)
     follows = (node[1:] == node[:-1]) & opened[:-1] & ~opened[1:]
     closed_us[:-1][follows] = time[1:][follows]

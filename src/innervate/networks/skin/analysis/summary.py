@@ -14,11 +14,7 @@ from innervate.networks.skin.analysis.load import balance_factor, port_loads
 from innervate.networks.skin.analysis.proved import outside
 from innervate.networks.skin.analysis.reach import reach, skin_facts
 from innervate.networks.skin.analysis.recovery import recoveries, start_up
-from innervate.networks.skin.analysis.rows import (
-    NEVER,
-    broken_changes,
-    loop_episodes,
-)
+from innervate.networks.skin.analysis.rows import NEVER, broken_changes, loop_episodes
 from innervate.networks.skin.analysis.summary_keys import BrokenPort, Loops, SkinSummary
 from innervate.networks.skin.protocol.constants import ONE, PORTS
 from innervate.networks.skin.scenario.warnings import warnings

@@ -12,30 +12,9 @@ from typing import Any
 
 from innervate.dialect.outbox import REPORT
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    COMMAND,
-    DATA,
-    INFINITY,
-    MEMORY_LOST,
-    NONE,
-    PORTS,
-    REPORT_FORGET,
-    RULE_FEASIBLE,
-    SAMPLE,
-    SOON,
-    TICK,
-    TIMERS,
-)  # fmt: skip
-from innervate.networks.skin.prove.neighbours import (
-    ROOM,
-    Cell,
-    View,
-    invariants,
-    true_ghosts,
-)  # fmt: skip
-from innervate.prove.steps import Goal, Stage, Step, own_goals, sent
+from innervate.networks.skin.protocol import constants as const
+from innervate.networks.skin.prove.neighbours import Cell, View, invariants, true_ghosts
+from innervate.prove.steps import Goal, Step, own_goals, sent
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
 
@@ -43,57 +22,62 @@ ENTRY = "innervate.networks.skin.protocol.cell"
 Known = dict[str, Any]
 
 
+OTHERS = {  # kinds of frames that are no beacons
+    "a cell is given data": (const.DATA, const.DATA),
+    "a cell is given a command": (const.COMMAND, const.COMMAND),
+    "a cell is given something unknown": (const.COMMAND + 1, 15),
+}
+
+
 def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """All that can happen to a cell."""
     known = source(ENTRY, change)
-    events = (start, hear, tick, soon, data, command, unknown, sample)
-    return tuple(partial(make, known) for make in events)
+    return (
+        *(partial(make, known) for make in (start, hear, tick, soon)),
+        *(partial(other, known, name) for name in OTHERS),
+        partial(sample, known),
+    )
 
 
-def _cell(known: Known) -> Cell:
-    return Cell(Stage(known, fields.FRAME, ROOM), RULE_FEASIBLE)
-
-
-def facts(cell: Cell) -> list[Term]:
+def facts(view: View) -> list[Term]:
     """What is known of a cell before any event."""
-    view = cell.view(cell.stage.store)
     return [goal.holds for goal in invariants(view)] + [view.windowed(), true_ghosts(view)]
 
 
 def start(known: Known) -> Step:
     """Switched on, for the first time or anew."""
-    cell = _cell(known)
-    stage, t = cell.stage, cell.stage.terms
-    cause = t.unknown("cause", 0, 1)
-    view = cell.view(stage.store)
-    step = stage.play("a cell is switched on", "on_start",
-                      [cell.cell, cell.params, stage.clock(), cause, stage.out],
-                      [view.windowed(), true_ghosts(view)])  # fmt: skip
+    cell = Cell(known, const.RULE_FEASIBLE)
+    t, view = cell.stage.terms, cell.view(cell.stage.store)
+    assumed = [view.windowed(), true_ghosts(view)]
+    step = cell.play("a cell is switched on", "on_start", ["cause"], assumed)
     after = cell.view(step.after)
     k = after.param("k")
     least = t.add(t.add(k, t.number(3)), t.div(k, t.number(8)))
-    waits = t.implies(view.is_(cause, MEMORY_LOST), t.at_most(least, after.wait))
+    again = view.is_(t.unknown("cause", 0, 1), const.MEMORY_LOST)
     step.goals = [
         *_always(cell, step),
-        Goal("W1 after a restart it waits for k + 3 + k/8 periods", waits),
+        Goal("W1 after a restart it waits for k + 3 + k/8 periods",
+             t.implies(again, t.at_most(least, after.wait))),
         Goal("W2 it knows nothing", t.all(view.is_(after.fd_known, 0), view.is_(after.hold, 0),
-                                          view.is_(after.parent, NONE))),
+                                          view.is_(after.parent, const.NONE))),
     ]  # fmt: skip
+    return step
+
+
+def _played(cell: Cell, name: str, handler: str, told: list[Any], *more: Term) -> Step:
+    """A handler is run that keeps the feasible distance; `more` is known than of any event."""
+    known = [*facts(cell.view(cell.stage.store)), *more]
+    step = cell.play(name, handler, told, known)
+    step.goals = [*_always(cell, step), *_kept(cell, step)]
     return step
 
 
 def hear(known: Known) -> Step:
     """A beacon comes in on any port, of those that its sender ever may have sent."""
-    cell = _cell(known)
-    stage, t = cell.stage, cell.stage.terms
-    port = t.unknown("port", 0, PORTS - 1)
-    stage.fix(cell.frame, "kind", BEACON)
-    may = said_by(cell, port)
-    step = stage.play("a cell hears a beacon", "on_frame",
-                      [cell.cell, cell.params, stage.clock(), port, cell.frame, stage.out],
-                      [*facts(cell), may])  # fmt: skip
-    step.goals = [*_always(cell, step), *_kept(cell, step)]
-    return step
+    cell = Cell(known, const.RULE_FEASIBLE)
+    cell.stage.fix(cell.frame, "kind", const.BEACON)
+    may = said_by(cell, cell.port)
+    return _played(cell, "a cell hears a beacon", "on_frame", ["port", "frame"], may)
 
 
 def said_by(cell: Cell, port: Term) -> Term:
@@ -101,7 +85,7 @@ def said_by(cell: Cell, port: Term) -> Term:
     stage = cell.stage
     t, view = stage.terms, cell.view(stage.store)
     route = stage.store[cell.frame, "sq", None], stage.store[cell.frame, "dist", None]
-    finite = t.less(route[1], t.number(INFINITY))
+    finite = t.less(route[1], t.number(const.INFINITY))
     parts = [t.implies(finite, view.in_window(route[0]))]
     for p, ghost in enumerate(cell.ghosts):
         here = t.all(view.is_(port, p), finite)
@@ -113,11 +97,10 @@ def said_by(cell: Cell, port: Term) -> Term:
 
 def tick(known: Known) -> Step:
     """A cell's beacon period ends."""
-    cell = _cell(known)
+    cell = Cell(known, const.RULE_FEASIBLE)
     stage = cell.stage
-    step = stage.play("a cell's period ends", "on_timer",
-                      [cell.cell, cell.params, stage.clock(), TICK, stage.out],
-                      facts(cell))  # fmt: skip
+    step = cell.play("a cell's period ends", "on_timer", [const.TICK],
+                     facts(cell.view(stage.store)))  # fmt: skip
     before, after = cell.view(step.before), cell.view(step.after)
     t = stage.terms
     lost = t.negated(before.has_parent())
@@ -136,57 +119,24 @@ def tick(known: Known) -> Step:
 
 def soon(known: Known) -> Step:
     """The timer for a beacon that had to keep the gap."""
-    cell = _cell(known)
-    stage = cell.stage
-    view = cell.view(stage.store)
-    step = stage.play("a cell announces what is new", "on_timer",
-                      [cell.cell, cell.params, stage.clock(), SOON, stage.out],
-                      [*facts(cell), view.is_(view.soon, 1)])  # fmt: skip
-    step.goals = [*_always(cell, step), *_kept(cell, step)]
-    return step
+    cell = Cell(known, const.RULE_FEASIBLE)
+    view = cell.view(cell.stage.store)
+    is_due = view.is_(view.soon, 1)
+    return _played(cell, "a cell announces what is new", "on_timer", [const.SOON], is_due)
 
 
-def data(known: Known) -> Step:
-    """A data frame comes in on any port."""
-    cell = _cell(known)
-    cell.stage.fix(cell.frame, "kind", DATA)
-    return _other(cell, "a cell is given data")
-
-
-def unknown(known: Known) -> Step:
-    """A frame of a type that this rule does not know."""
-    cell = _cell(known)
-    kind = cell.stage.terms.unknown("frame.kind", COMMAND + 1, 15)
+def other(known: Known, name: str) -> Step:
+    """A frame that is no beacon comes in on any port."""
+    cell = Cell(known, const.RULE_FEASIBLE)
+    kind = cell.stage.terms.unknown("frame.kind", *OTHERS[name])
     cell.stage.store[cell.frame, "kind", None] = kind
-    return _other(cell, "a cell is given something unknown")
-
-
-def command(known: Known) -> Step:
-    """A command of the PC."""
-    cell = _cell(known)
-    cell.stage.fix(cell.frame, "kind", COMMAND)
-    return _other(cell, "a cell is given a command")
-
-
-def _other(cell: Cell, name: str) -> Step:
-    stage = cell.stage
-    port = stage.terms.unknown("port", 0, PORTS - 1)
-    step = stage.play(name, "on_frame",
-                      [cell.cell, cell.params, stage.clock(), port, cell.frame, stage.out],
-                      facts(cell))  # fmt: skip
-    step.goals = [*_always(cell, step), *_kept(cell, step)]
-    return step
+    return _played(cell, name, "on_frame", ["port", "frame"])
 
 
 def sample(known: Known) -> Step:
     """A cell's own sensors were read."""
-    cell = _cell(known)
-    stage = cell.stage
-    step = stage.play("a cell reads its sensors", "on_input",
-                      [cell.cell, cell.params, stage.clock(), SAMPLE, cell.frame, stage.out],
-                      facts(cell))  # fmt: skip
-    step.goals = [*_always(cell, step), *_kept(cell, step)]
-    return step
+    cell = Cell(known, const.RULE_FEASIBLE)
+    return _played(cell, "a cell reads its sensors", "on_input", [const.SAMPLE, "frame"])
 
 
 def _always(cell: Cell, step: Step) -> list[Goal]:
@@ -194,7 +144,7 @@ def _always(cell: Cell, step: Step) -> list[Goal]:
     after = cell.view(step.after)
     t = step.terms
     return [
-        *own_goals(step, ("cell",), TIMERS, PORTS),
+        *own_goals(step, ("cell",), const.TIMERS, const.PORTS),
         *invariants(after),
         Goal("N no handler makes a number of its own", after.windowed()),
         Goal("B no beacon is nearer than its sender's fd", t.all(*_beacons(after, step))),
@@ -207,16 +157,16 @@ def _told(after: View, step: Step) -> list[Term]:
     return [
         t.implies(guard, t.same(
             t.same(step.after[frame, "parent", None], t.number(1)), t.same(port, after.parent)))
-        for guard, port, frame in sent(step, BEACON)
+        for guard, port, frame in sent(step, const.BEACON)
     ]  # fmt: skip
 
 
 def _beacons(after: View, step: Step) -> list[Term]:
     t = step.terms
     found = []
-    for guard, _port, frame in sent(step, BEACON):
+    for guard, _port, frame in sent(step, const.BEACON):
         route = step.after[frame, "sq", None], step.after[frame, "dist", None]
-        finite = t.less(route[1], t.number(INFINITY))
+        finite = t.less(route[1], t.number(const.INFINITY))
         may = t.all(
             after.is_(after.fd_known, 1),
             t.negated(after.nearer(route, after.fd())),
@@ -256,6 +206,6 @@ def _kept(cell: Cell, step: Step, may_forget: Term | None = None) -> list[Goal]:
 def forgotten(step: Step) -> Term:
     """The cell reports that it has forgotten."""
     t = step.terms
-    told = [t.all(action.guard, t.same(action.a, t.number(REPORT_FORGET)))
+    told = [t.all(action.guard, t.same(action.a, t.number(const.REPORT_FORGET)))
             for action in step.machine.out.actions if action.kind == REPORT]  # fmt: skip
     return t.any(*told)

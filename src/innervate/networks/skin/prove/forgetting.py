@@ -15,17 +15,8 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.source import Change, Function
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import (
-    INFINITY,
-    NONE,
-    ONE,
-    PERIODIC,
-    PORTS,
-    RULE_FEASIBLE,
-    SOON,
-    TICK,
-)
 from innervate.networks.skin.prove.feasible import ENTRY
 from innervate.networks.skin.prove.neighbours import ANY_RULE, ROOM
 from innervate.networks.skin.prove.reductions import STORED, Bare
@@ -87,7 +78,7 @@ class Asked(Machine):
     def draw(self, many: Term, state: State, call: Call) -> Term:
         """The same draw of both runs returns the same number."""
         t = self.terms
-        drawn = t.unknown(f"{self.event}: draw {len(self.draws)}", 0, PORTS - 1)
+        drawn = t.unknown(f"{self.event}: draw {len(self.draws)}", 0, const.PORTS - 1)
         under = t.all(call.under, state.path, t.at_most(t.number(1), many))
         self.facts.append(t.implies(under, t.less(drawn, many)))
         self.draws.append((drawn, many, under))
@@ -99,7 +90,7 @@ def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], 
     known = source(ENTRY, change)
     return tuple(
         partial(_dead, known, rule, PORT, parent, why)
-        for parent in (NONE, PORT, PORT + 1)
+        for parent in (const.NONE, PORT, PORT + 1)
         for why in ((SAID, BROKEN) if rule == ANY_RULE else (REFUSED,))
         if parent != PORT or why == SAID
     )
@@ -122,8 +113,8 @@ class Runs:
         self.t, self.stage, self.cell = self.pair.t, self.pair.stage, self.pair.cell
         self.stage.fix(self.cell.cell, "parent", parent)
         if parent == p:  # only until the next tick
-            self.stage.fix(self.cell.params, "updates", PERIODIC)
-        if parent != NONE:
+            self.stage.fix(self.cell.params, "updates", const.PERIODIC)
+        if parent != const.NONE:
             self.stage.fix(self.cell.cell, "wait", 0)  # I2
         self.goals: list[Term] = []
 
@@ -131,24 +122,26 @@ class Runs:
         """Who says this is dead, unless a feasible distance is forgotten."""
         t, view = self.t, self.pair.view(self.stage.store)
         if self.why == SAID:
-            return t.any(view.is_(dist, INFINITY), view.is_(child, 1))
+            return t.any(view.is_(dist, const.INFINITY), view.is_(child, 1))
         if self.why == BROKEN:
             return t.negated(view.works(self.p))
-        asked = "nearer_than_fd" if self.rule == RULE_FEASIBLE else "later"
-        known = view.fd_known if self.rule == RULE_FEASIBLE else view.sq_known
-        args = [self.cell.cell, sq, dist] if self.rule == RULE_FEASIBLE else [sq, view.sq_own]
+        asked = "nearer_than_fd" if self.rule == const.RULE_FEASIBLE else "later"
+        known = view.fd_known if self.rule == const.RULE_FEASIBLE else view.sq_known
+        args = [self.cell.cell, sq, dist] if self.rule == const.RULE_FEASIBLE else [sq, view.sq_own]
         machine = Machine(self.known, t, Outbox(fields.FRAME, ROOM))
         _, better = machine.run(asked, args, self.stage.store, t.true)
         return t.all(view.is_(known, 1), t.negated(t.as_truth(better)))
 
     def forgotten(self, store: Store) -> Store:
         """The same where the port has said "no route"; of one that is broken, any penalty of it."""
-        words = {"dist": INFINITY, "sq": 0, "child": 0, "load": 0, "size": 0}
+        words = {"dist": const.INFINITY, "sq": 0, "child": 0, "load": 0, "size": 0}
         found = dict(store)
         for name, value in words.items():
             found[self.cell.cell, name, self.p] = self.t.number(value)
         if self.why == BROKEN:
-            found[self.cell.cell, "pf", self.p] = self.t.unknown("other penalty", ONE, 2 * ONE)
+            found[self.cell.cell, "pf", self.p] = self.t.unknown(
+                "other penalty", const.ONE, 2 * const.ONE
+            )
         return found
 
     def run(self, store: Store, handler: str, *told: Any) -> tuple[Store, Asked]:
@@ -183,7 +176,7 @@ def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> St
     view = pair.view(before)
     forgets = t.at_most(view.param("hold_periods"), t.add(view.hold, t.number(1)))
     now = two.dead(view.at("sq", p), view.at("dist", p), view.at("child", p))
-    ticks = [two.run(store, "on_timer", TICK) for store in (before, two.forgotten(before))]
+    ticks = [two.run(store, "on_timer", const.TICK) for store in (before, two.forgotten(before))]
     two.compare(*ticks)
     if why == REFUSED:
         two.goals = [t.any(forgets, one) for one in two.goals]
@@ -191,9 +184,9 @@ def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> St
         works = t.any(*(pair.view(after).works(p) for after, _ in ticks))
         two.goals = [t.any(works, one) for one in two.goals]
     if p != parent:
-        two.compare(*(two.run(store, "on_timer", SOON)
+        two.compare(*(two.run(store, "on_timer", const.SOON)
                       for store in (before, two.forgotten(before))))  # fmt: skip
-    for q in range(PORTS):
+    for q in range(const.PORTS):
         if q != p:
             two.compare(*(two.run(store, "on_frame", q, cell.frame)
                           for store in (before, two.forgotten(before))))  # fmt: skip

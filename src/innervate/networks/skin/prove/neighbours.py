@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import INFINITY, NONE, ONE, PERIODIC, PORTS
 from innervate.prove.express import chosen
 from innervate.prove.records import Array, Record, Store, name_of
-from innervate.prove.steps import Goal, Stage
+from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.terms import Term, Terms
 
 ROOM = 12  # a cell's outbox
@@ -148,10 +149,10 @@ class View:
         """Nothing is left here of what port p ever said, nor on its way."""
         return self.t.all(self.t.negated(self.has_route(p)), self.t.negated(self.is_parent(p)))
 
-    def windowed(self) -> Term:
-        """All numbers that may still be compared are among those in use."""
+    def windowed(self, known: str = "fd_known", sq: str = "fd_sq") -> Term:
+        """All numbers that may still be compared are among those in use: the cell's own, too."""
         t = self.t
-        parts = [t.implies(self.is_(self.fd_known, 1), self.in_window(self.fd_sq))]
+        parts = [t.implies(self.is_(getattr(self, known), 1), self.in_window(getattr(self, sq)))]
         for p, ghost in enumerate(self.ghosts):
             parts.append(t.implies(self.has_route(p), self.in_window(self.at("sq", p))))
             parts.append(t.implies(ghost.known, self.in_window(ghost.sq)))
@@ -214,15 +215,21 @@ def true_ghosts(view: View) -> Term:
 
 
 class Cell:
-    """A cell on a stage, with its parameters, a frame and its neighbours."""
+    """A cell on a stage, with its parameters, a frame, a port and its neighbours.
 
-    def __init__(self, stage: Stage, rule: int) -> None:
-        self.stage = stage
+    Args:
+        known: functions of the protocol.
+        rule: that it is under, or ANY_RULE.
+    """
+
+    def __init__(self, known: dict[str, Any], rule: int) -> None:
+        self.stage = stage = Stage(known, fields.FRAME, ROOM)
         self.cell = stage.record("cell", fields.CELL)
         self.params = stage.record("params", fields.PARAMS)
         self.frame = stage.record("frame", fields.FRAME)
         if rule != ANY_RULE:
             stage.fix(self.params, "rule", rule)
+        self.port = stage.terms.unknown("port", 0, PORTS - 1)
         self.ghosts = ghosts(stage)
         for record, name, length in NUMBERS:
             for index in range(length) if length else (None,):
@@ -233,6 +240,15 @@ class Cell:
         """The cell with these values."""
         return View(self.stage.terms, self.cell, self.params, store, self.ghosts)
 
+    def play(self, name: str, handler: str, told: list[Any], facts: list[Term]) -> Step:
+        """Run a handler; "cause", "port" and "frame" among what it is told are any."""
+        stage = self.stage
+        cause = stage.terms.unknown("cause", 0, 1)
+        given = {"cause": cause, "port": self.port, "frame": self.frame}
+        args = [given.get(one, one) for one in told]
+        whole = [self.cell, self.params, stage.clock(), *args, stage.out]
+        return stage.play(name, handler, whole, facts)
+
 
 Moves = Callable[[View, Ghost, Ghost, int], Term]
 
@@ -240,15 +256,31 @@ Moves = Callable[[View, Ghost, Ghost, int], Term]
 def ghosts_after(cell: Cell, moves: Moves) -> tuple[list[Ghost], list[Term]]:
     """The neighbours after the one on some port has moved, and what is known of that."""
     stage, t = cell.stage, cell.stage.terms
-    port = t.unknown("port", 0, PORTS - 1)
     view = cell.view(stage.store)
     after = ghosts(stage, "'")
     known = []
     for p, (old, new) in enumerate(zip(cell.ghosts, after, strict=True)):
-        here = view.is_(port, p)
+        here = view.is_(cell.port, p)
         known.append(t.implies(here, moves(view, old, new, p)))
         stays = t.all(t.same(old.known, new.known), t.same(old.sq, new.sq),
                       t.same(old.dist, new.dist), t.same(old.old, new.old))  # fmt: skip
         known.append(t.any(here, stays))
         known.append(t.implies(new.known, view.in_window(new.sq)))
     return after, known
+
+
+def moved(
+    name: str,
+    rule: int,
+    moves: Moves,
+    facts: Callable[[View], list[Term]],
+    invariants: Callable[[View], list[Goal]],
+) -> Step:
+    """What some neighbour has moves: a rule's invariants of this cell stand."""
+    cell = Cell({}, rule)
+    stage = cell.stage
+    after, known = ghosts_after(cell, moves)
+    now = View(stage.terms, cell.cell, cell.params, stage.store, after)
+    goals = [*invariants(now), Goal("what neighbours have is true", true_ghosts(now))]
+    assumed = [*facts(cell.view(stage.store)), *known]
+    return Step(name, stage.machine, stage.records, stage.store, stage.store, assumed, goals)

@@ -14,28 +14,20 @@ from typing import Any
 
 from innervate.dialect.outbox import SEND
 from innervate.dialect.source import Change
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    INFINITY,
-    PERIODIC,
-    PORTS,
-    RULE_FEASIBLE,
-    SOON,
-    TICK,
-)
 from innervate.networks.skin.prove import feasible, strict
 from innervate.networks.skin.prove.neighbours import ROOM, Cell, View
 from innervate.prove.execute import Machine
 from innervate.prove.records import Outbox, Store, name_of
-from innervate.prove.steps import Goal, Stage, Step
+from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
 
 LOADS = frozenset({"load", "size", "own_load"})
 STORED = frozenset({"dist", "sq", "load", "size", "child", "heard"})
-HANDLERS = {"a beacon": ("on_frame", "port", "frame"), "a period": ("on_timer", TICK),
-            "the timer for news": ("on_timer", SOON)}  # fmt: skip
+HANDLERS = {"a beacon": ("on_frame", "port", "frame"), "a period": ("on_timer", const.TICK),
+            "the timer for news": ("on_timer", const.SOON)}  # fmt: skip
 NOT_DRAWN = frozenset({"rng", "choice", "asked"})
 SAID = ("kind", "dist", "sq", "load", "size", "parent")
 
@@ -61,11 +53,11 @@ class Bare:
 
     def __init__(self, known: dict[str, Any], rule: int) -> None:
         self.known = known
-        self.cell = Cell(Stage(known, fields.FRAME, ROOM), rule)
+        self.cell = Cell(known, rule)
         self.stage = self.cell.stage
         self.t = self.stage.terms
-        self.stage.fix(self.cell.frame, "kind", BEACON)
-        self.port = self.t.unknown("port", 0, PORTS - 1)
+        self.stage.fix(self.cell.frame, "kind", const.BEACON)
+        self.port = self.cell.port
         self.clock = self.stage.clock()
         self.machines: list[Machine] = []
         self.facts: list[Term] = []
@@ -95,7 +87,7 @@ class Bare:
 
     def tick(self, store: Store) -> tuple[Store, Machine]:
         """The cell's beacon period ends."""
-        return self.run(store, "on_timer", TICK)
+        return self.run(store, "on_timer", const.TICK)
 
     def step(self, name: str, goals: list[Goal], more: Iterable[Term] = ()) -> Step:
         """The runs as a step with goals."""
@@ -103,6 +95,11 @@ class Bare:
         facts = [fact for machine in self.machines for fact in machine.facts]
         return Step(name, first, self.stage.records, self.stage.store, self.stage.store,
                     [*self.facts, *more, *facts], goals, others=others)  # fmt: skip
+
+    def quiet(self, machine: Machine) -> Goal:
+        """A run that sends nothing and sets no timer."""
+        nothing = (self.t.negated(action.guard) for action in machine.out.actions)
+        return Goal("nothing is sent", self.t.all(*nothing))
 
     def drawn_alike(self, a: Machine, b: Machine) -> list[Term]:
         """What two runs draw at the same place is the same."""
@@ -142,9 +139,9 @@ class Bare:
 
 def kept(bare: Bare, rule: int) -> list[Term]:
     """A rule's invariants of the cell's first state, and what it may be told on the port."""
-    if rule == RULE_FEASIBLE:
-        return [*feasible.facts(bare.cell), feasible.said_by(bare.cell, bare.port)]
     view = bare.view(bare.stage.store)
+    if rule == const.RULE_FEASIBLE:
+        return [*feasible.facts(view), feasible.said_by(bare.cell, bare.port)]
     return [*strict.facts(view), strict.said_by(bare.cell, bare.port)]
 
 
@@ -152,16 +149,15 @@ def _stored(known: dict[str, Any], rule: int) -> Step:
     """With periodic updates a beacon is stored, and that is all."""
     pair = Bare(known, rule)
     t, cell = pair.t, pair.cell
-    pair.stage.fix(cell.params, "updates", PERIODIC)
+    pair.stage.fix(cell.params, "updates", const.PERIODIC)
     after, machine = pair.hear(pair.stage.store)
-    quiet = t.all(*(t.negated(action.guard) for action in machine.out.actions))
 
     def may_differ(field: str, index: int | None) -> Term:
         if field in STORED and index is not None:
             return t.same(pair.port, t.number(index))
         return t.false
 
-    goals = [pair.same_state(pair.stage.store, after, may_differ), Goal("nothing is sent", quiet)]
+    goals = [pair.same_state(pair.stage.store, after, may_differ), pair.quiet(machine)]
     return pair.step("a beacon between ticks, periodic", goals)
 
 
@@ -170,16 +166,15 @@ def _no_news(known: dict[str, Any], rule: int) -> Step:
     pair = Bare(known, rule)
     t = pair.t
     view = pair.view(pair.stage.store)
-    after, machine = pair.run(pair.stage.store, "on_timer", SOON)
-    own = t.pick(view.has_parent(), view.own_route()[1], t.number(INFINITY))
+    after, machine = pair.run(pair.stage.store, "on_timer", const.SOON)
+    own = t.pick(view.has_parent(), view.own_route()[1], t.number(const.INFINITY))
     more = [
         t.same(own, view.sent_dist),
         t.same(view.parent, view.sent_parent),
         t.negated(view.is_(view.param("updates"), 2)),
     ]
-    quiet = t.all(*(t.negated(action.guard) for action in machine.out.actions))
     goals = [pair.same_state(pair.stage.store, after, lambda field, _: t.truth_of(field == "soon")),
-             Goal("nothing is sent", quiet)]  # fmt: skip
+             pair.quiet(machine)]  # fmt: skip
     return pair.step("the timer for news that are none", goals, more)
 
 

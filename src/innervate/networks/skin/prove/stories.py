@@ -13,17 +13,8 @@ from typing import Any
 
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.dialect.source import Change
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    INFINITY,
-    ONE,
-    PERIODIC,
-    PORTS,
-    RULE_PAPER,
-    RULE_STRICT,
-    TICK,
-)
 from innervate.networks.skin.prove.feasible import ENTRY
 from innervate.networks.skin.prove.neighbours import ROOM
 from innervate.prove.records import Record, Store
@@ -49,17 +40,17 @@ class Two:
     frame: Record
 
 
-def both_lose(change: Change | None = None, rule: int = RULE_PAPER) -> Callable[[], Step]:
+def both_lose(change: Change | None = None, rule: int = const.RULE_PAPER) -> Callable[[], Step]:
     """Both cells have the PC as parent and know of each other's route; both cables are cut."""
     return partial(_both_lose, source(ENTRY, change), rule)
 
 
-def goes_back(change: Change | None = None, rule: int = RULE_STRICT) -> Callable[[], Step]:
+def goes_back(change: Change | None = None, rule: int = const.RULE_STRICT) -> Callable[[], Step]:
     """B follows A and A the PC, whose next beacon has any number: then A's cable is cut."""
     return partial(_goes_back, source(ENTRY, change), rule, False)
 
 
-def rises(change: Change | None = None, rule: int = RULE_STRICT) -> Callable[[], Step]:
+def rises(change: Change | None = None, rule: int = const.RULE_STRICT) -> Callable[[], Step]:
     """The same where the PC's next number is no older."""
     return partial(_goes_back, source(ENTRY, change), rule, True)
 
@@ -74,13 +65,13 @@ def _two(known: dict[str, Any], rule: int) -> Two:
         stage.record("frame", fields.FRAME),
     )
     for name, value in (
-        ("rule", rule), ("updates", PERIODIC), ("k", 1), ("r_f", ONE), ("r_r", ONE),
-        ("max_depth", 64), ("balance_periods", 0), ("hold_periods", 129),
+        ("rule", rule), ("updates", const.PERIODIC), ("k", 1), ("r_f", const.ONE),
+        ("r_r", const.ONE), ("max_depth", 64), ("balance_periods", 0), ("hold_periods", 129),
     ):  # fmt: skip
         stage.fix(made.params, name, value)
     for cell in (made.a, made.b):
-        for name, values in (("dist", INFINITY), ("child", 0), ("pf", 0), ("heard", 1)):
-            for p in range(PORTS):
+        for name, values in (("dist", const.INFINITY), ("child", 0), ("pf", 0), ("heard", 1)):
+            for p in range(const.PORTS):
                 stage.fix(cell, name, values, p)
         for name, value in (("wait", 0), ("hold", 0), ("sq_known", 1), ("soon", 0)):
             stage.fix(cell, name, value)
@@ -102,7 +93,7 @@ def _ticks(two: Two, cell: Record, store: Store, heard: bool) -> Store:
     """A cell's period ends; whether a beacon of the PC came in it. The other's last comes again."""
     flags = {PC: int(heard), OTHER: 1}
     store = {**store, **{(cell, "heard", p): two.stage.number(flags[p]) for p in flags}}
-    args = [cell, two.params, two.stage.clock(), two.stage.number(TICK), two.stage.out]
+    args = [cell, two.params, two.stage.clock(), two.stage.number(const.TICK), two.stage.out]
     after, _ = two.stage.machine.run("on_timer", args, store, two.stage.terms.true)
     return after
 
@@ -138,7 +129,7 @@ def _goes_back(known: dict[str, Any], rule: int, only_rises: bool) -> Step:
     # What A keeps of B is from before B took A: B had a route of its own then.
     stage.fix(two.a, "dist", 1, OTHER)
     stage.store[two.a, "sq", OTHER] = early
-    stage.fix(two.frame, "kind", BEACON)
+    stage.fix(two.frame, "kind", const.BEACON)
     for name in ("dist", "load", "size", "parent"):
         stage.fix(two.frame, name, 0)
     new = stage.store[two.frame, "sq", None]

@@ -12,22 +12,11 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    INFINITY,
-    MEMORY_LOST,
-    PERIODIC,
-    PORTS,
-    RULE_STRICT,
-    SOON,
-    TICK,
-    TIMERS,
-)
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.prove.feasible import ENTRY, forgotten
-from innervate.networks.skin.prove.neighbours import ROOM, Cell, View, ghosts_after, true_ghosts
+from innervate.networks.skin.prove.neighbours import Cell, View, moved, true_ghosts
 from innervate.networks.skin.prove.system import again, forgets
-from innervate.prove.steps import Goal, Stage, Step, own_goals, sent
+from innervate.prove.steps import Goal, Step, own_goals, sent
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
 
@@ -40,9 +29,9 @@ def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     return (
         partial(_play, known, "a cell is switched on", "on_start", ["cause"]),
         partial(_play, known, "a cell hears a beacon", "on_frame", ["port", "frame"]),
-        partial(_play, known, "a cell's period ends", "on_timer", [TICK]),
-        partial(_play, known, "a cell announces what is new", "on_timer", [SOON]),
-        *(partial(_moved, name, how) for name, how in moves),
+        partial(_play, known, "a cell's period ends", "on_timer", [const.TICK]),
+        partial(_play, known, "a cell announces what is new", "on_timer", [const.SOON]),
+        *(partial(moved, name, const.RULE_STRICT, how, facts, invariants) for name, how in moves),
     )
 
 
@@ -50,11 +39,11 @@ def invariants(view: View) -> list[Goal]:
     """What holds of every cell between any two events, under `strict`."""
     t, known = view.t, view.is_(view.sq_known, 1)
     has = view.has_parent()
-    triggered = t.negated(view.is_(view.param("updates"), PERIODIC))
+    triggered = t.negated(view.is_(view.param("updates"), const.PERIODIC))
     taken, behind, kept, unheard = [], [], [], []
     for p, ghost in enumerate(view.ghosts):
         leads = view.is_parent(p)
-        finite = t.less(view.at("dist", p), t.number(INFINITY))
+        finite = t.less(view.at("dist", p), t.number(const.INFINITY))
         taken.append(t.implies(t.all(leads, finite), view.no_newer(view.sq_own, view.at("sq", p))))
         behind.append(t.implies(t.all(leads, ghost.known), view.no_newer(view.sq_own, ghost.sq)))
         kept.append(t.implies(t.all(view.has_route(p), ghost.known),
@@ -77,12 +66,7 @@ def invariants(view: View) -> list[Goal]:
 
 def windowed(view: View) -> Term:
     """All numbers that may still be compared are among those in use."""
-    t = view.t
-    parts = [t.implies(view.is_(view.sq_known, 1), view.in_window(view.sq_own))]
-    for p, ghost in enumerate(view.ghosts):
-        parts.append(t.implies(view.has_route(p), view.in_window(view.at("sq", p))))
-        parts.append(t.implies(ghost.known, view.in_window(ghost.sq)))
-    return t.all(*parts)
+    return view.windowed("sq_known", "sq_own")
 
 
 def facts(view: View) -> list[Term]:
@@ -91,24 +75,20 @@ def facts(view: View) -> list[Term]:
 
 
 def _play(known: dict[str, Any], name: str, handler: str, told: list[Any]) -> Step:
-    cell = Cell(Stage(known, fields.FRAME, ROOM), RULE_STRICT)
+    cell = Cell(known, const.RULE_STRICT)
     stage, t = cell.stage, cell.stage.terms
-    cause, port = t.unknown("cause", 0, 1), t.unknown("port", 0, PORTS - 1)
-    stage.fix(cell.frame, "kind", BEACON)
+    stage.fix(cell.frame, "kind", const.BEACON)
     view = cell.view(stage.store)
     assumed = [windowed(view), true_ghosts(view)]
     if handler != "on_start":
-        assumed = [*facts(view), *([said_by(cell, port)] if "frame" in told else [])]
-    given = {"cause": cause, "port": port, "frame": cell.frame}
-    args = [given.get(one, one) for one in told]
-    step = stage.play(
-        name, handler, [cell.cell, cell.params, stage.clock(), *args, stage.out], assumed
-    )
+        assumed = [*facts(view), *([said_by(cell, cell.port)] if "frame" in told else [])]
+    step = cell.play(name, handler, told, assumed)
     step.goals = _goals(cell, step)
     if handler == "on_start":
+        cause = t.unknown("cause", 0, 1)
         waits = t.less(t.number(0), cell.view(step.after).wait)
         step.goals += [Goal("W1 it waits after a restart",
-                            t.implies(view.is_(cause, MEMORY_LOST), waits))]  # fmt: skip
+                            t.implies(view.is_(cause, const.MEMORY_LOST), waits))]  # fmt: skip
     else:
         step.goals += _kept(cell, step)
     return step
@@ -119,7 +99,7 @@ def said_by(cell: Cell, port: Term) -> Term:
     stage = cell.stage
     t, view = stage.terms, cell.view(stage.store)
     sq, dist = stage.store[cell.frame, "sq", None], stage.store[cell.frame, "dist", None]
-    finite = t.less(dist, t.number(INFINITY))
+    finite = t.less(dist, t.number(const.INFINITY))
     parts = [t.implies(finite, view.in_window(sq))]
     for p, ghost in enumerate(cell.ghosts):
         here = t.all(view.is_(port, p), finite)
@@ -132,13 +112,13 @@ def said_by(cell: Cell, port: Term) -> Term:
 def _goals(cell: Cell, step: Step) -> list[Goal]:
     t, after = step.terms, cell.view(step.after)
     said = []
-    for guard, _port, frame in sent(step, BEACON):
+    for guard, _port, frame in sent(step, const.BEACON):
         route = step.after[frame, "sq", None], step.after[frame, "dist", None]
-        finite = t.all(guard, t.less(route[1], t.number(INFINITY)))
+        finite = t.all(guard, t.less(route[1], t.number(const.INFINITY)))
         own = t.all(t.same(route[0], after.sq_own), after.is_(after.sq_known, 1))
         said.append(t.implies(finite, own))
     return [
-        *own_goals(step, ("cell",), TIMERS, PORTS),
+        *own_goals(step, ("cell",), const.TIMERS, const.PORTS),
         *invariants(after),
         Goal("N no handler makes a number of its own", windowed(after)),
         Goal("B a route is announced with its sender's number", t.all(*said)),
@@ -162,18 +142,6 @@ def _kept(cell: Cell, step: Step) -> list[Goal]:
         Goal("R1 a new parent's number is newer than the cell's was",
              t.implies(switched, t.any(free, newer))),
     ]  # fmt: skip
-
-
-def _moved(name: str, moves: Callable[[View, Any, Any, int], Term]) -> Step:
-    """Some neighbour's number moves: this cell's invariants stand."""
-    cell = Cell(Stage({}, fields.FRAME, ROOM), RULE_STRICT)
-    stage, t = cell.stage, cell.stage.terms
-    view = cell.view(stage.store)
-    after, known = ghosts_after(cell, moves)
-    moved = View(t, cell.cell, cell.params, stage.store, after)
-    goals = [*invariants(moved), Goal("what neighbours have is true", true_ghosts(moved))]
-    assumed = [*facts(view), *known]
-    return Step(name, stage.machine, stage.records, stage.store, stage.store, assumed, goals)
 
 
 def _rises(view: View, old: Any, new: Any, p: int) -> Term:

@@ -9,23 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from innervate.dialect.arith import MASK16
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
 from innervate.networks.skin.prove.feasible import ENTRY, facts
-from innervate.networks.skin.prove.neighbours import (
-    ROOM,
-    Cell,
-    Ghost,
-    View,
-    ghosts_after,
-    invariants,
-    number,
-    true_ghosts,
-)
-from innervate.prove.steps import Goal, Stage, Step
+from innervate.networks.skin.prove.neighbours import Cell, Ghost, View, invariants, moved, number
+from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
 
@@ -33,25 +24,15 @@ from innervate.prove.theory import source
 def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """What neighbours do, and what makes a ring impossible."""
     known = source(ENTRY, change)
+    moves = (("a neighbour gets nearer", nearer),
+             ("a neighbour loses its memory, or forgets in time", forgets),
+             ("a neighbour has its first route", first),
+             ("a neighbour has a route again, after all gave it up", again))  # fmt: skip
     return (
-        partial(_moved, "a neighbour gets nearer", nearer),
-        partial(_moved, "a neighbour loses its memory, or forgets in time", forgets),
-        partial(_moved, "a neighbour has its first route", first),
-        partial(_moved, "a neighbour has a route again, after all gave it up", again),
+        *(partial(moved, name, RULE_FEASIBLE, how, facts, invariants) for name, how in moves),
         partial(compared, known),
         ring,
     )
-
-
-def _moved(name: str, moves: Callable[[View, Ghost, Ghost, int], Term]) -> Step:
-    """Some neighbour's feasible distance moves: this cell's invariants stand."""
-    cell = Cell(Stage({}, fields.FRAME, ROOM), RULE_FEASIBLE)
-    stage, t = cell.stage, cell.stage.terms
-    after, moved_facts = ghosts_after(cell, moves)
-    known = [*facts(cell), *moved_facts]
-    moved = View(t, cell.cell, cell.params, stage.store, after)
-    goals = [*invariants(moved), Goal("what neighbours have is true", true_ghosts(moved))]
-    return Step(name, stage.machine, stage.records, stage.store, stage.store, known, goals)
 
 
 def nearer(view: View, old: Ghost, new: Ghost, p: int) -> Term:
@@ -77,9 +58,9 @@ def again(view: View, old: Ghost, new: Ghost, p: int) -> Term:
     return view.t.all(view.is_settled(p), new.known, view.t.negated(new.old))
 
 
-def compared(known: dict[str, object]) -> Step:
+def compared(known: dict[str, Any]) -> Step:
     """The protocol's `later` is the order of numbers in use, however they wrap."""
-    cell = Cell(Stage(known, fields.FRAME, ROOM), RULE_FEASIBLE)
+    cell = Cell(known, RULE_FEASIBLE)
     stage, t = cell.stage, cell.stage.terms
     view = cell.view(stage.store)
     a, b = t.unknown("a", 0, MASK16), t.unknown("b", 0, MASK16)
@@ -92,7 +73,7 @@ def compared(known: dict[str, object]) -> Step:
 
 def ring() -> Step:
     """Nearer is an order: whoever follows parents from a cell never comes back to it."""
-    cell = Cell(Stage({}, fields.FRAME, ROOM), RULE_FEASIBLE)
+    cell = Cell({}, RULE_FEASIBLE)
     stage, t = cell.stage, cell.stage.terms
     view = cell.view(stage.store)
     fds = [(number(t, f"sq{i}"), t.unknown(f"dist{i}", 0, INFINITY)) for i in range(3)]

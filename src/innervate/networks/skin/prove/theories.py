@@ -7,12 +7,7 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol.constants import (
-    INFINITY,
-    RULE_FEASIBLE,
-    RULE_PAPER_LAX,
-    RULE_STRICT,
-)  # fmt: skip
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.prove import (
     feasible,
     forgetting,
@@ -111,7 +106,7 @@ def resting(rule: int, change: Change | None = None) -> list[Theory]:
             good, so that what it refuses is forgotten, too.
         change: a mistake to plant.
     """
-    own = feasible.steps if rule == RULE_FEASIBLE else strict.steps
+    own = feasible.steps if rule == const.RULE_FEASIBLE else strict.steps
     parts: list[tuple[str, Callable[..., Any]]] = [
         ("the rule", own),
         ("what the rule refuses", partial(forgetting.steps, rule)),
@@ -125,7 +120,7 @@ def resting(rule: int, change: Change | None = None) -> list[Theory]:
             ("what is not read", partial(unread.steps, rule)),
             ("ports are alike", partial(mirror.steps, rule)),
         ]
-    unreachable = UNREACHABLE_STRICT if rule == RULE_STRICT else UNREACHABLE
+    unreachable = UNREACHABLE_STRICT if rule == const.RULE_STRICT else UNREACHABLE
     return [Theory(name, "What the explorer forgets of a state decides nothing.", (),
                    steps(change=change),
                    unreachable if steps is own else unreachable | NOT_EXPLORED)
@@ -137,13 +132,14 @@ def _stories(change: Change | None) -> list[Theory]:
     lose, back = stories.BOTH_LOSE, stories.PC_GOES_BACK
     rows = (
         ("paper", "two cells close no ring", stories.both_lose(change), lose),
-        ("paper-lax", "two cells close no ring", stories.both_lose(change, RULE_PAPER_LAX), lose),
+        ("paper-lax", "two cells close no ring",
+         stories.both_lose(change, const.RULE_PAPER_LAX), lose),
         ("feasible, two cells", "both lose the PC and close no ring",
-         stories.both_lose(change, RULE_FEASIBLE), ""),
+         stories.both_lose(change, const.RULE_FEASIBLE), ""),
         ("strict, the PC restarts", "two cells close no ring", stories.goes_back(change), back),
         ("strict, the PC does not", "the same two close none", stories.rises(change), ""),
         ("feasible, the PC restarts", "the same two close none",
-         stories.goes_back(change, RULE_FEASIBLE), ""),
+         stories.goes_back(change, const.RULE_FEASIBLE), ""),
     )  # fmt: skip
     return [
         Theory(f"skin, rule {name}", claim[0].upper() + claim[1:] + ".", (), (step,),
@@ -160,7 +156,7 @@ def simple(step: Step) -> list[Term]:
         for key, low, high in record.places():
             value = step.before[key]
             if key[1] == "dist" and key[0].name == "cell":
-                wishes.append(t.same(value, t.number(INFINITY)))
+                wishes.append(t.same(value, t.number(const.INFINITY)))
             elif value.op == "wrap":
                 wishes.append(t.less(value.args[1], t.number(8)))  # type: ignore[arg-type]
             elif value.op == "var":

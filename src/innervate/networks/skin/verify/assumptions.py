@@ -16,12 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol.constants import (
-    INFINITY,
-    NONE,
-    RULE_FEASIBLE,
-    RULE_STRICT,
-)
+from innervate.networks.skin.protocol.constants import INFINITY, NONE, RULE_FEASIBLE, RULE_STRICT
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import graphs
 from innervate.networks.skin.verify import row as skin_row
