@@ -7,6 +7,7 @@ sweeps show what that function says; none of them judges by itself.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple, TypedDict
 
 OK, DEGRADED, DOWN, NO_DATA = "ok", "degraded", "down", "no data"
@@ -45,6 +46,20 @@ class Headline(NamedTuple):
 
 
 BEFORE_ALL = Headline(NO_DATA, "Nothing has happened yet.")
+
+
+PLURAL = {"is": "are", "was": "were", "has": "have", "does": "do", "waits": "wait"}
+
+
+def verb(count: int, one: str) -> str:
+    """A verb of so many: "is" of one, "are" of several."""
+    return one if count == 1 else PLURAL[one]
+
+
+def sentence(parts: Iterable[str]) -> str:
+    """Several parts as one sentence."""
+    text = "; ".join(parts)
+    return f"{text[0].upper()}{text[1:]}."
 
 
 def every(count: int, what: str) -> str:

@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.ways import Flags, Numbers
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.protocol.constants import DATA
 from innervate.scenario.actions.field import KILL, RESTART, REVIVE
-
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 
 def missed(

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
 from innervate.analysis.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
@@ -66,11 +66,11 @@ def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") 
         return Headline(NO_DATA, "No node leads as gateway yet.")
     said = [*_undelivered(traffic), *_apart(ways, absent), *_twice(traffic)]
     if not said:
-        return Headline(OK, _sentence([*_came(traffic, len(ways.on)), _reached(ways)]))
+        return Headline(OK, sentence([*_came(traffic, len(ways.on)), _reached(ways)]))
     about = np.flatnonzero(ways.without | ways.off).tolist()
     nodes = tuple(sorted({*about, *traffic.about}))
     level = DOWN if _is_down(ways, traffic) else DEGRADED
-    return Headline(level, _sentence([*said, *_came(traffic, len(ways.on))]), nodes)
+    return Headline(level, sentence([*said, *_came(traffic, len(ways.on))]), nodes)
 
 
 def _is_down(ways: Ways, traffic: Traffic) -> bool:
@@ -100,7 +100,7 @@ def _undelivered(traffic: Traffic) -> list[str]:
     if lost == decided > 1:
         found.append(f"none of {number_of(decided, 'message')} was delivered")
     elif lost:
-        found.append(f"{_part(lost, decided, 'message')} {_was(lost)} not delivered")
+        found.append(f"{_part(lost, decided, 'message')} {verb(lost, 'was')} not delivered")
     if traffic.partial:
         which = _part(traffic.partial, traffic.broadcasts, "broadcast")
         found.append(f"{which} did not reach every node that was on")
@@ -120,13 +120,15 @@ def _apart(ways: Ways, absent: str) -> list[str]:
             )
         cut, astray = int(ways.cut_off.sum()), int(ways.astray.sum())
         if cut:
-            found.append(f"{_part(cut, count, 'node')} {_is(cut)} cut off from the gateway: "
+            found.append(f"{_part(cut, count, 'node')} {verb(cut, 'is')} cut off from the gateway: "
                          f"no link that works leads to {'it' if cut == 1 else 'them'}")  # fmt: skip
         if astray:
-            found.append(f"{_part(astray, count, 'node')} {_has(astray)} no way to the gateway")
+            found.append(
+                f"{_part(astray, count, 'node')} {verb(astray, 'has')} no way to the gateway"
+            )
     off = int(ways.off.sum())
     if off:
-        found.append(f"{_part(off, count, 'node')} {_is(off)} {absent}")
+        found.append(f"{_part(off, count, 'node')} {verb(off, 'is')} {absent}")
     return found
 
 
@@ -147,7 +149,7 @@ def _came(traffic: Traffic, nodes: int) -> list[str]:
         said.append(f"the monitor learned of {which} of the fence")
     if traffic.decided and traffic.decided == traffic.delivered:
         which = _part(traffic.decided, traffic.decided, "message")
-        said.append(f"{which} {_was(traffic.decided)} delivered")
+        said.append(f"{which} {verb(traffic.decided, 'was')} delivered")
     if traffic.broadcasts and not traffic.partial and nodes > 1:
         which = _part(traffic.broadcasts, traffic.broadcasts, "broadcast")
         said.append(f"{which} reached every node that was on")
@@ -199,25 +201,8 @@ def traffic(
     )
 
 
-def _sentence(parts: list[str]) -> str:
-    text = "; ".join(parts)
-    return f"{text[0].upper()}{text[1:]}."
-
-
 def _part(part: int, whole: int, what: str) -> str:
     """'1 of 91 messages', 'the only crossing', 'both robots', 'all 30 nodes'."""
     if part < whole:
         return f"{part:,} of {number_of(whole, what)}"
     return every(whole, what)
-
-
-def _is(count: int) -> str:
-    return "is" if count == 1 else "are"
-
-
-def _was(count: int) -> str:
-    return "was" if count == 1 else "were"
-
-
-def _has(count: int) -> str:
-    return "has" if count == 1 else "have"

@@ -12,12 +12,10 @@ import numpy as np
 
 from innervate.analysis.percentiles import percentiles as percentiles_of
 from innervate.analysis.summary_common import Percentiles
+from innervate.analysis.ways import Flags, Numbers
 from innervate.networks.mesh.analysis.broadcasts import missed
 from innervate.networks.mesh.protocol import constants as const
 from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
-
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 NEVER = -1
 SETTLE_US = 1_000_000  # an unreliable message takes no longer

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.ways import Numbers
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary_keys import Airtime, Discovery, Gateway, Suspects
 from innervate.networks.mesh.protocol import constants as const
 from innervate.scenario.actions.field import KILL, RESTART
-
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
 FINDING = (const.REQUEST, const.RESPONSE)
 TABLING = (const.TABLE, const.TABLE_ACK, const.ACTIVATE, const.GRAPH)

@@ -10,12 +10,11 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from innervate.analysis.ways import Flags as Flags
+from innervate.analysis.ways import Numbers as Numbers
 from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.protocol import constants as const
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
-
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # Frames that may carry packets; where one of them overlaps something, there was a collision.
 CARRYING = (const.DATA, const.OPEN)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
-from innervate.analysis.words import figure_words
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
+from innervate.analysis.words import figure_words, number_of
 
 NAMED = 4  # so many robots are named one by one
 ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through
@@ -99,8 +99,7 @@ def headline(facts: RadioFacts, label: Callable[[int], str] = str, absent: str =
         was = "was" if facts.ended else "has been"
         return Headline(NO_DATA, f"No packet {was} offered to a robot that stayed.")
     level = DOWN if down else DEGRADED if worse else OK
-    words = "; ".join(said)
-    return Headline(level, f"{words[0].upper()}{words[1:]}.", tuple(sorted({*nodes, *more})))
+    return Headline(level, sentence(said), tuple(sorted({*nodes, *more})))
 
 
 def _down(facts: RadioFacts, label: Callable[[int], str]) -> tuple[list[str], tuple[int, ...]]:
@@ -112,7 +111,7 @@ def _down(facts: RadioFacts, label: Callable[[int], str]) -> tuple[list[str], tu
     if len(on) == 1:
         return [f"robot {label(on[0])} is alone: nobody can receive its packets"], (on[0],)
     if facts.pending and facts.still_ms > facts.timeout_ms:
-        waits = _count(facts.pending, "packet waits", "packets wait")
+        waits = f"{number_of(facts.pending, 'packet')} {verb(facts.pending, 'waits')}"
         return [
             f"nothing has been delivered for {_time(facts.still_ms)} although {waits}"
         ], facts.waiting
@@ -130,29 +129,30 @@ def _degraded(
     news: list[str] = []
     nodes: set[int] = set()
     if facts.lost_silently:
-        lost = _count(facts.lost_silently, "packet was", "packets were")
-        news.append(f"{lost} lost silently, taken for delivered by the sender")
+        lost = number_of(facts.lost_silently, "packet")
+        was = verb(facts.lost_silently, "was")
+        news.append(f"{lost} {was} lost silently, taken for delivered by the sender")
     if facts.off and len(facts.off) + len(facts.away) < facts.stations:
         left = 0 if facts.away else facts.abandoned  # else nobody can say whose they are
-        with_it = f" with {_count(left, 'packet', 'packets')} not sent" if left else ""
+        with_it = f" with {number_of(left, 'packet')} not sent" if left else ""
         news.append(f"{_robots(map(label, facts.off))} {absent}{with_it}")
         nodes |= set(facts.off)
     if facts.dropped:
-        news.append(f"{_count(facts.dropped, 'packet', 'packets')} found a full queue")
+        news.append(f"{number_of(facts.dropped, 'packet')} found a full queue")
     if facts.overdue and not told:
-        who = _count(facts.overdue, "packet", "packets")
-        ended = "was" if facts.overdue == 1 else "were"
-        news.append(f"{who} {ended} not delivered in time")
+        who = number_of(facts.overdue, "packet")
+        news.append(f"{who} {verb(facts.overdue, 'was')} not delivered in time")
         nodes |= set(facts.waiting)
     if facts.bounds is not None and not facts.hidden:  # what hidden frames end in is no delay
         news.append(_wrong(facts.bounds))
         nodes |= set(facts.stations_wrong)
     if facts.hidden:
-        pairs = _count(len(facts.hidden), "pair of robots does", "pairs of robots do")
+        count = len(facts.hidden)
+        pairs = f"{number_of(count, 'pair')} of robots {verb(count, 'does')}"
         news.append(f"{pairs} not hear each other")
         nodes |= {station for pair in facts.hidden for station in pair}
     if facts.partial:
-        missed = _count(facts.partial, "packet", "packets")
+        missed = number_of(facts.partial, "packet")
         news.append(f"{missed} did not reach every robot")
     return news, tuple(nodes)
 
@@ -164,16 +164,15 @@ def _counts(facts: RadioFacts) -> list[str]:
     expected = facts.offered - facts.abandoned
     if not facts.delivered:
         yet = "was delivered" if facts.ended else "has been delivered yet"
-        return [f"of {_count(expected, 'packet', 'packets')} none {yet}"] if expected else []
+        return [f"of {number_of(expected, 'packet')} none {yet}"] if expected else []
     if facts.delivered == expected:
         which = "the packet was" if expected == 1 else f"{every(expected, 'packet')} were"
         return [f"{which} delivered"] if expected else []
-    was = "was" if facts.delivered == 1 else "were"
-    share = f"{facts.delivered:,} of {_count(expected, 'packet', 'packets')} {was} delivered"
+    share = f"{facts.delivered:,} of {number_of(expected, 'packet')} "
+    share += f"{verb(facts.delivered, 'was')} delivered"
     fresh = facts.pending - facts.overdue
     if fresh > 0 and facts.pending < expected:
-        wait = "waits" if fresh == 1 else "wait"
-        share += f", {fresh:,} still waited" if facts.ended else f", {fresh:,} {wait}"
+        share += f", {fresh:,} {'still waited' if facts.ended else verb(fresh, 'waits')}"
     return [share]
 
 
@@ -197,10 +196,6 @@ def _robots(names: Iterable[str]) -> str:
     if len(who) > NAMED:
         return f"{len(who)} robots are"
     return f"robots {', '.join(who[:-1])} and {who[-1]} are"
-
-
-def _count(count: int, one: str, many: str) -> str:
-    return f"{count:,} {one if count == 1 else many}"
 
 
 def _time(value_ms: float) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import NamedTuple
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
 from innervate.analysis.words import share_words
 
 NAMED_MAX = 3
@@ -67,9 +67,9 @@ def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) ->
     with_way = 0 if facts.pc_off else facts.cells - len(troubled)
     said = [*_reasons(facts, label), *_before(facts), *_samples(facts), *_commands(facts)]
     ending = _others(facts, with_way, bool(troubled))
-    text = "; ".join([*said, ending] if said and ending else said or [ending])
+    text = sentence([*said, ending] if said and ending else said or [ending])
     level = DOWN if not with_way else DEGRADED if said else OK
-    return Headline(level, f"{text[0].upper()}{text[1:]}.", tuple(sorted(map(int, troubled))))
+    return Headline(level, text, tuple(sorted(map(int, troubled))))
 
 
 def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
@@ -80,38 +80,39 @@ def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
     elif facts.cut_off:
         first = "" if facts.at_once else ", the first"
         since = "" if facts.since_s is None else f"{first} since {facts.since_s:.3f} s"
-        who, verb, them = _who(facts, facts.cut_off, label)
+        who, them = _who(facts, facts.cut_off, label, "is"), _them(facts.cut_off)
         why = f"no cable joins {them} with the PC any more"
-        found.append(f"{who} {verb} cut off{since}: {why}")
+        found.append(f"{who} cut off{since}: {why}")
     old = [cell for cell in facts.seeking if cell not in set(facts.never)]
     if facts.never:
         none = len(facts.never) == facts.cells
-        who = "no cell ever" if none else f"{_who(facts, facts.never, label)[0]} never"
+        who = "no cell ever" if none else f"{_who(facts, facts.never, label)} never"
         found.append(f"{who} got a way to the PC")
     if old and not facts.pc_off:
-        who, verb, them = _who(facts, old, label)
-        have = "has" if verb == "is" else "have"
-        joined = "it with the PC" if them == "it" else "them with it"
-        found.append(f"{who} {have} no way to the PC, although cables join {joined}")
+        joined = "it with the PC" if _them(old) == "it" else "them with it"
+        who = _who(facts, old, label, "has")
+        found.append(f"{who} no way to the PC, although cables join {joined}")
     if facts.silent:
-        who, verb, _ = _who(facts, facts.silent, label)
-        found.append(f"{who} {'does' if verb == 'is' else 'do'} not answer")
+        found.append(f"{_who(facts, facts.silent, label, 'does')} not answer")
     if facts.off:
-        who, verb, _ = _who(facts, facts.off, label)
-        found.append(f"{who} {verb} switched off")
+        found.append(f"{_who(facts, facts.off, label, 'is')} switched off")
     return found
 
 
 def _who(
-    facts: SkinFacts, nodes: Collection[int], label: Callable[[int], str]
-) -> tuple[str, str, str]:
-    """(some cells in words, the verb, the pronoun): "2 of 20 cells (n1, n2)", "are", "them"."""
+    facts: SkinFacts, nodes: Collection[int], label: Callable[[int], str], does: str = ""
+) -> str:
+    """Some cells in words, and a verb of theirs if wanted: "2 of 20 cells (n1, n2) are"."""
+    does = f" {verb(len(nodes), does)}" if does else ""
     if len(nodes) == facts.cells:
-        return every(facts.cells, "cell"), *(("are", "them") if facts.cells > 1 else ("is", "it"))
+        return f"{every(facts.cells, 'cell')}{does}"
     names = ", ".join(label(node) for node in sorted(nodes))
     shown = f" ({names})" if len(nodes) <= NAMED_MAX else ""
-    verb, them = ("is", "it") if len(nodes) == 1 else ("are", "them")
-    return f"{len(nodes):,} of {facts.cells:,} cells{shown}", verb, them
+    return f"{len(nodes):,} of {facts.cells:,} cells{shown}{does}"
+
+
+def _them(nodes: Collection[int]) -> str:
+    return "it" if len(nodes) == 1 else "them"
 
 
 def _before(facts: SkinFacts) -> list[str]:
@@ -119,18 +120,18 @@ def _before(facts: SkinFacts) -> list[str]:
         return []
     few = f"{facts.cut_off_before:,} of {facts.cells:,} cells"
     who = every(facts.cells, "cell") if facts.cut_off_before == facts.cells else few
-    verb = "was" if facts.cut_off_before == 1 else "were"
+    was = verb(facts.cut_off_before, "was")
     if facts.cut_off:  # of those some still are
-        return [f"at the worst moment {who} {verb} cut off"]
-    return [f"{who} {verb} cut off from the PC for a time"]
+        return [f"at the worst moment {who} {was} cut off"]
+    return [f"{who} {was} cut off from the PC for a time"]
 
 
 def _samples(facts: SkinFacts) -> list[str]:
     if not facts.lost:
         return []
     shown = share_words(facts.lost / facts.sent if facts.sent else 1.0)
-    verb = "was" if facts.lost == 1 else "were"
-    return [f"{facts.lost:,} of {facts.sent:,} samples {verb} lost ({shown})"]
+    was = verb(facts.lost, "was")
+    return [f"{facts.lost:,} of {facts.sent:,} samples {was} lost ({shown})"]
 
 
 def _commands(facts: SkinFacts) -> list[str]:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from innervate.networks.skin.analysis.recovery import NOBODY, next_hops
-from innervate.networks.skin.analysis.rows import Numbers
+from innervate.analysis.ways import NOWHERE, Numbers, follow
+from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.sim.cables.world import ALIVE
 
@@ -40,19 +40,11 @@ def _parents(world: Any) -> Numbers:
 
 def interfaces_along(graph: Any, parent: Numbers) -> Numbers:
     """The same for given parent ports (-1 none), all cables live."""
-    cells = graph.cells
     hop = next_hops(graph, parent)
-    peer = np.frombuffer(graph.peer, np.int32)
-    ends = PORTS * np.arange(cells) + np.maximum(parent, 0)
-    # After the last jump a cell stands at the one that is cabled to the PC, or nowhere.
-    jump = np.where(hop == graph.sink, np.arange(cells), hop)
-    jump = np.append(jump, NOBODY)  # index -1: nowhere leads nowhere
-    for _ in range(max(1, int(cells).bit_length())):
-        jump = np.append(jump[jump[:-1]], NOBODY)
-    last = jump[:-1]
-    at_pc = (last != NOBODY) & (np.append(hop, NOBODY)[last] == graph.sink)
-    port = peer[ends[last]] - PORTS * cells
-    return np.where(at_pc, port, NO_PORT).astype(np.int64)
+    last, _ = follow(hop, hop == graph.sink)  # the cell that is cabled to the PC
+    ends = PORTS * last + parent[last]
+    port = np.frombuffer(graph.peer, np.int32)[ends] - PORTS * graph.cells
+    return np.where(last != NOWHERE, port, NO_PORT).astype(np.int64)
 
 
 def port_loads(result: Any) -> list[int]:

@@ -56,15 +56,7 @@ def world_facts(world: Any, cells: int) -> SkinFacts:
 
 
 def reach(result: Any, facts: SkinFacts | None) -> Reach:
-    """Entries of a summary on cells that have no way to the PC at the end of a run.
-
-    `cut_off`: cells that are on and that no cable joins with the PC any more: `cells` how many,
-    `labels` which (at most 100), `since_s` when the first of them was cut off, `most` how many
-    there were at the worst moment. `without_way`: cells that cables join with the PC but that have
-    no chain of parents to it; `never` of them never had one. `switched_off`: cells that are off.
-    `lost_at_start`: samples lost before their cell had a way for the first time. All None of a run
-    that nobody observed.
-    """
+    """Entries of a summary on cells that have no way to the PC at the end of a run; see `Reach`."""
     if facts is None:
         return {
             "cut_off": None, "without_way": None, "switched_off": None, "lost_at_start": None,

@@ -31,18 +31,8 @@ NOBODY = -1
 def recoveries(result: Any) -> list[Recovery]:
     """One entry per event of the scenario that happened, in order of time.
 
-    `at_s` and `action` say what happened. All `_ms` count from the event and look no further than
-    the next later one; None = it did not happen. Events of one moment share what came of it.
-    `detected_ms`: the first end of the link found it broken (p_f >= 1).
-    `converged_ms`: the last change of a parent, those for balancing left out.
-    `routed_ms`: since then every cell that is on had a chain of parents over live cables to the PC;
-    0.0 if none ever lacked one. None while any cell is cut off: no cable joins it with the PC.
-    `others_ms`: the same without the cells that are cut off; None if these are all there are.
-    `without_way`: cells that had none at the end of it although cables join them with the PC.
-    `cut_cells`: cells whose chain of parents used the link.
-    `cut_off`: cells that no cable joins with the PC since, those it switched on there included.
-    `cut_off_total`: those, and whoever was so before.
-    `joined_again`: cells that cables join with the PC again.
+    What follows an event is looked for until the next later one; events of one moment share what
+    came of it. For what the keys say see `Recovery`.
     """
     at = marks(result)
     changes = parent_changes(result)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from innervate.analysis.ways import Numbers as Numbers
 from innervate.networks.skin.protocol.constants import (
     PORTS,
     REPORT_BALANCE,
@@ -17,7 +18,6 @@ from innervate.networks.skin.protocol.constants import (
 )
 from innervate.networks.skin.sim import observer
 
-Numbers = np.ndarray[Any, np.dtype[np.int64]]
 NEVER = -1
 
 

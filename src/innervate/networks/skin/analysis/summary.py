@@ -62,11 +62,7 @@ def loops(result: Any) -> Loops:
 
 
 def broken_ports(result: Any) -> list[BrokenPort]:
-    """Ports that carry a cable and are broken at the end, at cells that are on.
-
-    `cell` and `port` say where, `to` is the far end of that cable, `since_s` when it was found
-    broken.
-    """
+    """Ports that carry a cable and are broken at the end, at cells that are on."""
     graph = result.plan.graph
     penalty = _penalties(result.world)
     peer = np.frombuffer(graph.peer, np.int32)[: PORTS * graph.cells]

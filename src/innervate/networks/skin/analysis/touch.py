@@ -6,11 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from innervate.analysis.ways import Flags
 from innervate.networks.skin.analysis.rows import NEVER, Numbers
 
 WINDOW_S = 0.05
-
-Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 
 class Image(NamedTuple):
