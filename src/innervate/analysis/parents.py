@@ -16,20 +16,15 @@ NOWHERE = -1
 
 @dataclass(slots=True)
 class Ways:
-    """A network whose next hops change and whose cables and nodes go down.
-
-    Attributes:
-        sink: the node that all want to reach.
-        steps: (when, how many nodes that are joined with the sink have no way to it), a step
-            function; only where it changes.
-        loops: when next hops closed a loop.
-    """
+    """A network whose next hops change and whose cables and nodes go down."""
 
     nodes: int
-    sink: int
+    sink: int  # the node that all want to reach
     cables: Sequence[Cable]
+    # (when, how many nodes that are joined with the sink have no way to it), a step function;
+    # only where it changes
     steps: list[tuple[int, int]] = field(default_factory=list)
-    loops: list[int] = field(default_factory=list)
+    loops: list[int] = field(default_factory=list)  # when next hops closed a loop
     _far: dict[tuple[int, int], int] = field(default_factory=dict)
     _hop: list[int] = field(default_factory=list)
     _port: list[int] = field(default_factory=list)

@@ -17,38 +17,23 @@ Way = tuple[str, int, bool]  # function, line, taken: one way of a branch
 
 @dataclass(slots=True)
 class Refuted:
-    """A goal that does not hold.
+    """A goal that does not hold."""
 
-    Attributes:
-        goal: its name.
-        values: of all unknowns before the step.
-        sentences: what happens with these values.
-    """
-
-    goal: str
-    values: dict[str, int]
-    sentences: list[str] = field(default_factory=list)
+    goal: str  # its name
+    values: dict[str, int]  # of all unknowns before the step
+    sentences: list[str] = field(default_factory=list)  # what happens with these values
 
 
 @dataclass(slots=True)
 class Checked:
-    """What came of a step.
+    """What came of a step."""
 
-    Attributes:
-        name: of the step.
-        goals: names of what was to hold.
-        refuted: those that do not.
-        reached: ways of branches that some state takes.
-        missed: ways that none takes in this step.
-        wall_s: how long it took.
-    """
-
-    name: str
-    goals: list[str]
-    refuted: list[Refuted] = field(default_factory=list)
-    reached: set[Way] = field(default_factory=set)
-    missed: set[Way] = field(default_factory=set)
-    wall_s: float = 0.0
+    name: str  # of the step
+    goals: list[str]  # names of what was to hold
+    refuted: list[Refuted] = field(default_factory=list)  # those that do not
+    reached: set[Way] = field(default_factory=set)  # ways of branches that some state takes
+    missed: set[Way] = field(default_factory=set)  # ways that none takes in this step
+    wall_s: float = 0.0  # how long it took
 
 
 Teller = Callable[[Step, Question, str], list[str]]

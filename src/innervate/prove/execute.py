@@ -46,18 +46,13 @@ class Demand:
 
 @dataclass(slots=True)
 class Call:
-    """A call that is being followed.
+    """A call that is being followed."""
 
-    Attributes:
-        function: that is called.
-        under: where it is called at all.
-        returned: (state, value) of its paths that have ended.
-        broken, continued: states of the innermost loop's paths that left a pass.
-    """
-
-    function: Function
-    under: Term
+    function: Function  # that is called
+    under: Term  # where it is called at all
+    # (state, value) of its paths that have ended
     returned: list[tuple[State, Any]] = field(default_factory=list)
+    # broken, continued: states of the innermost loop's paths that left a pass
     broken: list[State] = field(default_factory=list)
     continued: list[State] = field(default_factory=list)
 

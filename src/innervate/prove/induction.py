@@ -15,21 +15,13 @@ from innervate.prove.terms import Term, Terms
 
 @dataclass(slots=True)
 class Passes:
-    """A loop that was run so; what holds at its head is for who runs it to say.
+    """A loop that was run so; what holds at its head is for who runs it to say."""
 
-    Attributes:
-        at: how many passes are done.
-        is_pass: there is one more; else what follows is run.
-        entered: before the first.
-        head: when so many are done.
-        passed: when one more is.
-    """
-
-    at: Term
-    is_pass: Term
-    entered: State
-    head: State
-    passed: State
+    at: Term  # how many passes are done
+    is_pass: Term  # there is one more; else what follows is run
+    entered: State  # before the first
+    head: State  # when so many are done
+    passed: State  # when one more is
 
     def fits(self, terms: Terms) -> Term:
         """What is any value at the head is so in a range that the first has, and a pass keeps."""
@@ -62,16 +54,11 @@ class Induction(Machine):
 
     What holds before the first pass, and behind a pass wherever it held before it, holds behind the
     loop, too.
-
-    Attributes:
-        looped: the function's name; it runs one loop, once.
-        vary: gives whatever passes change any value.
-        passes: of the loop, once it was run.
     """
 
-    looped: str
-    vary: Callable[[State], None]
-    passes: Passes
+    looped: str  # the function's name; it runs one loop, once
+    vary: Callable[[State], None]  # gives whatever passes change any value
+    passes: Passes  # of the loop, once it was run
 
     def loop(self, node: ast.For, state: State, call: Call) -> State | None:
         """Any pass, from the head on; it goes on with what follows the last."""

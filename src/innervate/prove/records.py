@@ -111,17 +111,11 @@ class Outbox:
 
 @dataclass(slots=True)
 class State:
-    """The state on some of a function's paths.
+    """The state on some of a function's paths."""
 
-    Attributes:
-        names: its local names.
-        store: values of all records.
-        path: which of the function's paths.
-    """
-
-    names: dict[str, Any]
-    store: Store
-    path: Term
+    names: dict[str, Any]  # its local names
+    store: Store  # values of all records
+    path: Term  # which of the function's paths
 
     def fork(self, path: Term) -> State:
         """The same, to go on with by itself."""

@@ -28,31 +28,22 @@ class Goal:
 
 @dataclass(slots=True)
 class Step:
-    """A handler that was run.
+    """A handler that was run."""
 
-    Attributes:
-        name: for people: "hear a beacon".
-        machine: that ran it.
-        records: by their names in `before` and `after`.
-        before, after: all values.
-        facts: what is known of the values before.
-        goals: what has to hold; those of any protocol come by themselves.
-        result: what the function returned.
-        others: machines that have a part in it, too.
-        singly: goals are asked one by one: where each takes long, all at once take longer.
-        timers, ports: how many a node has, as `own_goals` was told.
-    """
-
-    name: str
-    machine: Machine
-    records: dict[str, Record]
+    name: str  # for people: "hear a beacon"
+    machine: Machine  # that ran it
+    records: dict[str, Record]  # by their names in `before` and `after`
+    # before, after: all values
     before: Store
     after: Store
-    facts: list[Term]
+    facts: list[Term]  # what is known of the values before
+    # what has to hold; those of any protocol come by themselves
     goals: list[Goal] = field(default_factory=list)
-    result: Any = None
-    others: Sequence[Machine] = ()
+    result: Any = None  # what the function returned
+    others: Sequence[Machine] = ()  # machines that have a part in it, too
+    # goals are asked one by one: where each takes long, all at once take longer
     singly: bool = False
+    # timers, ports: how many a node has, as `own_goals` was told
     timers: int = 0
     ports: int = 0
 

@@ -88,48 +88,31 @@ Progress = Callable[[str, int, int], bool]  # what, part, of; True to stop
 
 @dataclass(frozen=True, slots=True)
 class Theory:
-    """Something that is claimed of a protocol, for any number of nodes.
+    """Something that is claimed of a protocol, for any number of nodes."""
 
-    Attributes:
-        name: like "skin, rule feasible".
-        claim: what follows from its steps, in a sentence.
-        assumed: what it rests on besides the protocol, a sentence each.
-        steps: make its steps, one after the other.
-        unreachable: (function, part of the line, taken) of branches that no state takes, with why.
-        refuted_by: "" for one that holds, else the step that must refute it: a claim that is false.
-        is_example: it plays one story, so that branches are left out on purpose.
-        tell: says in sentences what happens with values that refute a goal.
-        simple: what counterexamples should keep to, of a step.
-    """
-
-    name: str
-    claim: str
-    assumed: tuple[str, ...]
-    steps: tuple[Callable[[], Step], ...]
+    name: str  # like "skin, rule feasible"
+    claim: str  # what follows from its steps, in a sentence
+    assumed: tuple[str, ...]  # what it rests on besides the protocol, a sentence each
+    steps: tuple[Callable[[], Step], ...]  # make its steps, one after the other
+    # (function, part of the line, taken) of branches that no state takes, with why
     unreachable: dict[tuple[str, str, bool], str] = field(default_factory=dict)
+    # "" for one that holds, else the step that must refute it: a claim that is false
     refuted_by: str = ""
-    is_example: bool = False
-    tell: Teller = changes
+    is_example: bool = False  # it plays one story, so that branches are left out on purpose
+    tell: Teller = changes  # says in sentences what happens with values that refute a goal
+    # what counterexamples should keep to, of a step
     simple: Callable[[Step], list[Term]] | None = None
 
 
 @dataclass(slots=True)
 class Outcome:
-    """What came of a theory.
+    """What came of a theory."""
 
-    Attributes:
-        theory: that was tried.
-        checked: its steps.
-        unreached: ways of branches that no step takes and that are not named as such.
-        named: those that are named.
-        ended: complete, or stopped.
-    """
-
-    theory: Theory
-    checked: list[Checked]
-    unreached: list[Way]
-    named: list[Way]
-    ended: str = "complete"
+    theory: Theory  # that was tried
+    checked: list[Checked]  # its steps
+    unreached: list[Way]  # ways of branches that no step takes and that are not named as such
+    named: list[Way]  # those that are named
+    ended: str = "complete"  # complete, or stopped
 
     @property
     def is_refuted(self) -> bool:

@@ -39,18 +39,12 @@ def only(name: str, options: Any, *takes: str) -> None:
 
 @dataclass
 class Story:
-    """A counterexample in sentences: how something breaks.
+    """A counterexample in sentences: how something breaks."""
 
-    Attributes:
-        title: what is broken, in one line.
-        sentences: one for each event.
-        scenario: the text of a scenario file that plays it; "" = none does.
-        events: the sentences without what an event changed, where a script takes them so.
-    """
-
-    title: str
-    sentences: list[str] = field(default_factory=list)
-    scenario: str = ""
+    title: str  # what is broken, in one line
+    sentences: list[str] = field(default_factory=list)  # one for each event
+    scenario: str = ""  # the text of a scenario file that plays it; "" = none does
+    # the sentences without what an event changed, where a script takes them so
     events: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
@@ -61,28 +55,18 @@ class Story:
 
 @dataclass(slots=True)
 class Case:
-    """One exploration and what came of it.
+    """One exploration and what came of it."""
 
-    Attributes:
-        lines: for people.
-        record: for --json.
-        is_broken: a property does not hold.
-        is_complete: everything was looked at, within what `but` says.
-        but: what of a complete exploration was not; "" = nothing.
-        sums_up: the last line counts it.
-        story: the counterexample, if it is told: title, sentences, scenario, lines().
-        play: makes the text of a scenario that plays it; "" = none does.
-        stem: what its files are called, before their number.
-    """
-
-    lines: list[str]
-    record: dict[str, Any]
-    is_broken: bool
-    is_complete: bool = True
-    sums_up: bool = True
-    story: Any = None
+    lines: list[str]  # for people
+    record: dict[str, Any]  # for --json
+    is_broken: bool  # a property does not hold
+    is_complete: bool = True  # everything was looked at, within what `but` says
+    sums_up: bool = True  # the last line counts it
+    story: Any = None  # the counterexample, if it is told: title, sentences, scenario, lines()
+    # makes the text of a scenario that plays it; "" = none does
     play: Callable[[], str] | None = None
-    stem: str = "counterexample"
+    # what of a complete exploration was not; "" = nothing
+    stem: str = "counterexample"  # what its files are called, before their number
     but: str = ""
 
 

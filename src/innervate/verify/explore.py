@@ -28,23 +28,15 @@ ENDS = {s.DONE: "complete", s.FULL: "memory", s.FOUND: "broken", s.GOING: "inter
 
 @dataclass(slots=True)
 class Result:
-    """What a search found.
+    """What a search of states found."""
 
-    Attributes:
-        model: what was explored.
-        tally: how much of it.
-        broken: what is broken, a number of the model's; 0 nothing.
-        path: the states from the start to the last one before it broke, as rows of bytes.
-        last: the move that broke it: (move, variant, choice).
-        rows: all states as rows of 64-bit words.
-    """
-
-    model: Any
-    tally: Tally
-    broken: int = 0
+    model: Any  # what was explored
+    tally: Tally  # how much of it
+    broken: int = 0  # what is broken, a number of the model's; 0 nothing
+    # the states from the start to the last one before it broke, as rows of bytes
     path: list[bytes] = field(default_factory=list)
-    last: tuple[int, int, int] = (0, 0, 0)
-    rows: Any = None
+    last: tuple[int, int, int] = (0, 0, 0)  # the move that broke it: (move, variant, choice)
+    rows: Any = None  # all states as rows of 64-bit words
 
 
 Progress = Callable[[Tally], bool]

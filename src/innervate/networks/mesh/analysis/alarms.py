@@ -26,37 +26,24 @@ Spans = tuple[int, int, tuple[int, int], int]
 
 
 class Crossing(NamedTuple):
-    """A robot leaves the fence.
+    """A robot leaves the fence."""
 
-    Attributes:
-        robot: its node.
-        crossed_us: when it truly did; 0 if it begins outside.
-        back_us: when it came back inside; the run's end if it did not.
-        raised_us: the sample at which somebody raised the alarm, NEVER if nobody did; with its
-            place rounded a robot can be outside just before it truly is.
-        raised_by: who that was: the robot, or a witness of its beacon.
-        accepted_us: when the monitor's user had the first alarm of it, NEVER if it did not.
-        row: that delivery, in `result.delivered`; NEVER.
-        flooded: it came by the flood, not by the routed copy.
-        hops: transmissions on its way.
-        warned_us: when the monitor had been told that the robot was about to cross, NEVER.
-        overrun_m: greatest distance outside until the alarm was accepted, else until the robot
-            was back or the run ended.
-        open: not accepted, but too shortly before the run's end to say that it was lost.
-    """
-
-    robot: int
-    crossed_us: int
-    back_us: int
+    robot: int  # its node
+    crossed_us: int  # when it truly did; 0 if it begins outside
+    back_us: int  # when it came back inside; the run's end if it did not
+    # the sample at which somebody raised the alarm, NEVER if nobody did; with its place
+    # rounded a robot can be outside just before it truly is
     raised_us: int
-    raised_by: int
-    accepted_us: int
-    row: int
-    flooded: bool
-    hops: int
-    warned_us: int
+    raised_by: int  # who that was: the robot, or a witness of its beacon
+    accepted_us: int  # when the monitor's user had the first alarm of it, NEVER if it did not
+    row: int  # that delivery, in `result.delivered`; NEVER
+    flooded: bool  # it came by the flood, not by the routed copy
+    hops: int  # transmissions on its way
+    warned_us: int  # when the monitor had been told that the robot was about to cross, NEVER
+    # greatest distance outside until the alarm was accepted, else until the robot was back or
+    # the run ended
     overrun_m: float
-    open: bool
+    open: bool  # not accepted, but too shortly before the run's end to say that it was lost
 
 
 def all_crossings(result: Any) -> list[Crossing]:

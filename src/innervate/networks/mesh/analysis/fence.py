@@ -17,15 +17,10 @@ CLOSE_CM = 1e-3  # overruns are right to this
 
 
 class Crossing(NamedTuple):
-    """A walk changes sides.
+    """A walk changes sides of a fence."""
 
-    Attributes:
-        time_us: when.
-        outward: True = it leaves, False = it comes back.
-    """
-
-    time_us: float
-    outward: bool
+    time_us: float  # when
+    outward: bool  # True = it leaves, False = it comes back
 
 
 def edges_of(plan: Any) -> list[Edge]:

@@ -18,30 +18,18 @@ __all__ = ["Traffic", "headline", "traffic"]
 
 
 class Traffic(NamedTuple):
-    """What became of messages and alarms; running nodes do not know, and leave it at nothing.
+    """What became of messages and alarms; running nodes do not know, and leave it at nothing."""
 
-    Attributes:
-        decided: messages to one node of which it is known what became of them.
-        delivered: of those, how many came.
-        crossings: of the fence, of which it is known whether the monitor learned of them.
-        learned: of those, of how many it did.
-        broadcasts: messages to all of which it is known whom they reached.
-        partial: of those, how many did not reach every other node that was on.
-        doubled: messages that came twice.
-        looped: packets that met a node twice on their way.
-        flows: something came since the newest fault, or there was no fault.
-        about: senders of what did not come, and robots that the monitor does not know are out.
-    """
-
-    decided: int = 0
-    delivered: int = 0
-    crossings: int = 0
-    learned: int = 0
-    broadcasts: int = 0
-    partial: int = 0
-    doubled: int = 0
-    looped: int = 0
-    flows: bool = False
+    decided: int = 0  # messages to one node of which it is known what became of them
+    delivered: int = 0  # of those, how many came
+    crossings: int = 0  # of the fence, of which it is known whether the monitor learned of them
+    learned: int = 0  # of those, of how many it did
+    broadcasts: int = 0  # messages to all of which it is known whom they reached
+    partial: int = 0  # of those, how many did not reach every other node that was on
+    doubled: int = 0  # messages that came twice
+    looped: int = 0  # packets that met a node twice on their way
+    flows: bool = False  # something came since the newest fault, or there was no fault
+    # senders of what did not come, and robots that the monitor does not know are out
     about: tuple[int, ...] = ()
 
 

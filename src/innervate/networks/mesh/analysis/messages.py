@@ -34,35 +34,23 @@ STATE_NAMES = ("delivered", "in flight", "lost", "refused", "sender off")
 
 
 class Messages(NamedTuple):
-    """Every offer of a run, in order of time, one entry each.
+    """Every offer of a run, in order of time, one entry each."""
 
-    Attributes:
-        offered_us: when it was handed down.
-        node, dest: who sends, and to whom: 255 all, 254 the monitor.
-        flow: which [[flow]] of the scenario it belongs to.
-        seq: the number of its packet, NEVER if the node took none.
-        delivered_us: when it first came to its recipient's user, NEVER if it did not.
-        receiver: who that was.
-        hops: transmissions on the way of the copy that came first.
-        state: DELIVERED, IN_FLIGHT (nobody gave it up when the run ended), LOST, REFUSED (the
-            node had no room or nobody to send it to), UNASKED (the node was switched off).
-        broadcast: to all.
-        partial: a broadcast that somebody missed who was on for as long as it could take.
-        young: offered so late that it could still be on its way when the run ended.
-    """
-
-    offered_us: Numbers
+    offered_us: Numbers  # when it was handed down
+    # node, dest: who sends, and to whom: 255 all, 254 the monitor
     node: Numbers
     dest: Numbers
-    flow: Numbers
-    seq: Numbers
-    delivered_us: Numbers
-    receiver: Numbers
-    hops: Numbers
+    flow: Numbers  # which [[flow]] of the scenario it belongs to
+    seq: Numbers  # the number of its packet, NEVER if the node took none
+    delivered_us: Numbers  # when it first came to its recipient's user, NEVER if it did not
+    receiver: Numbers  # who that was
+    hops: Numbers  # transmissions on the way of the copy that came first
+    # DELIVERED, IN_FLIGHT (nobody gave it up when the run ended), LOST, REFUSED (the node had
+    # no room or nobody to send it to), UNASKED (the node was switched off)
     state: Numbers
-    broadcast: Flags
-    partial: Flags
-    young: Flags
+    broadcast: Flags  # to all
+    partial: Flags  # a broadcast that somebody missed who was on for as long as it could take
+    young: Flags  # offered so late that it could still be on its way when the run ended
 
     def only(self, which: Any) -> Messages:
         """Those of them that `which` chooses."""

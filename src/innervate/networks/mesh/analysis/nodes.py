@@ -15,31 +15,19 @@ UNKNOWN = 255
 
 
 class Node(NamedTuple):
-    """A node at the end of a run.
+    """A node at the end of a run."""
 
-    Attributes:
-        node: its number.
-        on: it is switched on.
-        neighbours: good links to nodes that are on.
-        depth: hops to the gateway in the newest round, 0 the gateway; None before the first.
-        gateway: whom it follows; None nobody.
-        version: of its table, 0 none.
-        control_bytes: of discovery and tables that it sent, acks included.
-        forwarded: transmissions of other nodes' messages.
-        share: of the run that it was on the air.
-        suspected: how often its neighbours gave up on it.
-    """
-
-    node: int
-    on: bool
-    neighbours: int
+    node: int  # its number
+    on: bool  # it is switched on
+    neighbours: int  # good links to nodes that are on
+    # hops to the gateway in the newest round, 0 the gateway; None before the first
     depth: int | None
-    gateway: int | None
-    version: int
-    control_bytes: int
-    forwarded: int
-    share: float
-    suspected: int
+    gateway: int | None  # whom it follows; None nobody
+    version: int  # of its table, 0 none
+    control_bytes: int  # of discovery and tables that it sent, acks included
+    forwarded: int  # transmissions of other nodes' messages
+    share: float  # of the run that it was on the air
+    suspected: int  # how often its neighbours gave up on it
 
 
 def nodes(result: Any) -> list[Node]:

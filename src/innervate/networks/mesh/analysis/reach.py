@@ -31,45 +31,29 @@ HAS_WAY, ASTRAY, CUT_OFF = range(3)
 
 
 class Choices(NamedTuple):
-    """Whom nodes would hand a packet for the gateway, as far as they know; n nodes.
+    """Whom nodes would hand a packet for the gateway, as far as they know; n nodes."""
 
-    Attributes:
-        gateway: per node whom it follows, NOWHERE nobody.
-        named: (n, k), k at least 1, in order: the gateway if it is a strong neighbour, the table's
-            next hop and alternate, the uplinks; NOWHERE where there is none, or it is silent.
-        neighbours: (n, n) flags: neighbours that are tried after those.
-        goes_back: a packet that got stuck is given back, and tried another way from there.
-    """
-
-    gateway: Numbers
+    gateway: Numbers  # per node whom it follows, NOWHERE nobody
+    # (n, k), k at least 1, in order: the gateway if it is a strong neighbour, the table's
+    # next hop and alternate, the uplinks; NOWHERE where there is none, or it is silent
     named: Numbers
-    neighbours: Flags
-    goes_back: bool
+    neighbours: Flags  # (n, n) flags: neighbours that are tried after those
+    goes_back: bool  # a packet that got stuck is given back, and tried another way from there
 
 
 class Ways(NamedTuple):
-    """Who reaches a gateway; one entry per node.
+    """Who reaches a gateway; one entry per node."""
 
-    Attributes:
-        hop: whom the node would try first, NOWHERE nobody.
-        depth: hops of the way over first choices that carry frames; NOWHERE where that leads
-            nowhere and a packet has to search.
-        on: it is on.
-        off: it was on and is not any more.
-        leads: it is a gateway now.
-        joined: it follows a gateway, or is one.
-        cut_off: it is on, and no links that carry frames join it to a gateway.
-        astray: it is on and not cut off, and its packets do not get to its gateway.
-    """
-
-    hop: Numbers
+    hop: Numbers  # whom the node would try first, NOWHERE nobody
+    # hops of the way over first choices that carry frames; NOWHERE where that leads nowhere
+    # and a packet has to search
     depth: Numbers
-    on: Flags
-    off: Flags
-    leads: Flags
-    joined: Flags
-    cut_off: Flags
-    astray: Flags
+    on: Flags  # it is on
+    off: Flags  # it was on and is not any more
+    leads: Flags  # it is a gateway now
+    joined: Flags  # it follows a gateway, or is one
+    cut_off: Flags  # it is on, and no links that carry frames join it to a gateway
+    astray: Flags  # it is on and not cut off, and its packets do not get to its gateway
 
     @property
     def without(self) -> Flags:

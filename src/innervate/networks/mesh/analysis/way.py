@@ -13,24 +13,16 @@ from innervate.networks.mesh.scenario.plan import ONE
 
 
 class Hop(NamedTuple):
-    """A transmission of an alarm.
+    """A transmission of an alarm."""
 
-    Attributes:
-        start_us, end_us: when it was on the air.
-        node: who sent it.
-        to: for whom, 255 all.
-        flooded: a copy of the flood.
-        path_len: how many nodes had transmitted the copy, this one included.
-        receivers: how many decoded it.
-    """
-
+    # start_us, end_us: when it was on the air
     start_us: int
     end_us: int
-    node: int
-    to: int
-    flooded: bool
-    path_len: int
-    receivers: int
+    node: int  # who sent it
+    to: int  # for whom, 255 all
+    flooded: bool  # a copy of the flood
+    path_len: int  # how many nodes had transmitted the copy, this one included
+    receivers: int  # how many decoded it
 
 
 def copies(result: Any, crossing: Crossing) -> list[Hop]:

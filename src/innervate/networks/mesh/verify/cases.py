@@ -26,17 +26,11 @@ LOST_ACK = MeshBudget(deaths=0, frames=0, acks=1)
 
 @dataclass(slots=True)
 class MeshCase:
-    """One exploration and what came of it.
+    """One exploration and what came of it."""
 
-    Attributes:
-        name: what is explored, in words.
-        found: what came of it.
-        story: the counterexample, if something is broken.
-    """
-
-    name: str
-    found: Found
-    story: mesh_story.MeshStory | None = None
+    name: str  # what is explored, in words
+    found: Found  # what came of it
+    story: mesh_story.MeshStory | None = None  # the counterexample, if something is broken
 
     def as_dict(self) -> dict[str, Any]:
         """The case as `innervate verify mesh --json` prints it."""

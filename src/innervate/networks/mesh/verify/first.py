@@ -21,19 +21,12 @@ LAST = 12  # events of a round without end that its story tells
 
 
 class Begun(NamedTuple):
-    """Where an exploration begins, or what broke before it could.
+    """Where an exploration begins, or what broke before it could."""
 
-    Attributes:
-        net: switched on; where something is offered, after the first round, its tables in force.
-        broken: what that broke, a number of local.py; 0 nothing.
-        start: the state before `path`; if nothing broke, `net`.
-        path: the events that broke it.
-    """
-
-    net: Net
-    broken: int
-    start: Net
-    path: list[Successor]
+    net: Net  # switched on; where something is offered, after the first round, its tables in force
+    broken: int  # what that broke, a number of local.py; 0 nothing
+    start: Net  # the state before `path`; if nothing broke, `net`
+    path: list[Successor]  # the events that broke it
 
 
 def begin(nets: Nets) -> Begun:

@@ -54,23 +54,14 @@ class Packet(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What a call leaves.
+    """What a call of a handler leaves."""
 
-    Attributes:
-        state: the node's next one.
-        acks: numbers of frames that went out at once.
-        delivered: frames handed to the node's user.
-        reports: (code, a, b).
-        broken: what must not be, 0 nothing.
-        script: what its draws gave.
-    """
-
-    state: int
-    acks: tuple[int, ...]
-    delivered: tuple[int, ...]
-    reports: tuple[tuple[int, int, int], ...]
-    broken: int
-    script: tuple[int, ...]
+    state: int  # the node's next one
+    acks: tuple[int, ...]  # numbers of frames that went out at once
+    delivered: tuple[int, ...]  # frames handed to the node's user
+    reports: tuple[tuple[int, int, int], ...]  # (code, a, b)
+    broken: int  # what must not be, 0 nothing
+    script: tuple[int, ...]  # what its draws gave
 
 
 class State(NamedTuple):

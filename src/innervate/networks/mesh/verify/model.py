@@ -36,49 +36,33 @@ FENCE = {
 
 @dataclass(frozen=True, slots=True)
 class MeshBudget:
-    """How often what may fail.
+    """How often what may fail."""
 
-    Attributes:
-        deaths: nodes that die, with what they remember.
-        revivals: dead nodes that are switched on again.
-        frames: receptions that fail: of a frame by whom it is for, of a broadcast by one node.
-        acks: hop acks that are lost.
-        ticks: beats of every node, untimed only; a timed search counts them by its `beats`.
-    """
-
-    deaths: int = 1
-    revivals: int = 0
+    deaths: int = 1  # nodes that die, with what they remember
+    revivals: int = 0  # dead nodes that are switched on again
+    # receptions that fail: of a frame by whom it is for, of a broadcast by one node
     frames: int = 1
-    acks: int = 1
-    ticks: int = 0
+    acks: int = 1  # hop acks that are lost
+    ticks: int = 0  # beats of every node, untimed only; a timed search counts them by its `beats`
 
 
 @dataclass(frozen=True)
 class MeshModel:
-    """What is explored.
+    """What is explored of a mesh."""
 
-    Attributes:
-        links: who hears whom, both ways; nodes are numbered from 0, the gateway.
-        failover: as in a scenario; "random" takes the document's other reading, too: no retry.
-        offers: messages (from, to), offered in this order, at any moment.
-        robot: a node that finds itself outside the fence once, at any moment; -1 none.
-        standby: nodes that take over from a dead gateway, in order.
-        budget: how often what may fail.
-        settings: further keys of [protocol].
-        reliable: messages are kept until acknowledged.
-        overhear: frames for others are heard, too.
-        beats: 0 = untimed: any order. Else every node's clock runs alike, for so many seconds.
-    """
-
+    # who hears whom, both ways; nodes are numbered from 0, the gateway
     links: tuple[tuple[int, int], ...]
+    # as in a scenario; "random" takes the document's other reading, too: no retry
     failover: str = "search"
+    # messages (from, to), offered in this order, at any moment
     offers: tuple[tuple[int, int], ...] = ()
-    robot: int = -1
-    standby: tuple[int, ...] = ()
-    budget: MeshBudget = field(default_factory=MeshBudget)
-    settings: tuple[tuple[str, Any], ...] = ()
-    reliable: bool = True
-    overhear: bool = True
+    robot: int = -1  # a node that finds itself outside the fence once, at any moment; -1 none
+    standby: tuple[int, ...] = ()  # nodes that take over from a dead gateway, in order
+    budget: MeshBudget = field(default_factory=MeshBudget)  # how often what may fail
+    settings: tuple[tuple[str, Any], ...] = ()  # further keys of [protocol]
+    reliable: bool = True  # messages are kept until acknowledged
+    overhear: bool = True  # frames for others are heard, too
+    # 0 = untimed: any order. Else every node's clock runs alike, for so many seconds
     beats: int = 0
 
     @property

@@ -29,43 +29,25 @@ EVENTS_MAX = 5_000  # of a first round, and of a message's calm future; some hun
 
 
 class Move(NamedTuple):
-    """An event: what, at which node, and how.
+    """An event: what, at which node, and how."""
 
-    Attributes:
-        kind: OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE or, before all, SWITCH_ON.
-        node: who.
-        frame: AIR: the frame's number; FIRE: the timer; OFFER: which of the model's.
-        missed: AIR: nodes that did not receive it although they could.
-        deaf: AIR: 1 = its hop ack was lost.
-        script: what draws gave.
-    """
-
-    kind: int
-    node: int
-    frame: int = NONE
-    missed: tuple[int, ...] = ()
-    deaf: int = 0
-    script: tuple[int, ...] = ()
+    kind: int  # OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE or, before all, SWITCH_ON
+    node: int  # who
+    frame: int = NONE  # AIR: the frame's number; FIRE: the timer; OFFER: which of the model's
+    missed: tuple[int, ...] = ()  # AIR: nodes that did not receive it although they could
+    deaf: int = 0  # AIR: 1 = its hop ack was lost
+    script: tuple[int, ...] = ()  # what draws gave
 
 
 class Net(NamedTuple):
-    """A state: all numbers.
+    """A state of a mesh: all numbers."""
 
-    Attributes:
-        nodes: each node's state; DEAD.
-        lags: us since its last event; all 0 untimed.
-        left: deaths, revivals, frames and acks that may still be lost.
-        ticks: beats that each node may still have.
-        offered: how many of the model's messages, and of its alarm, were offered.
-        got: which set of deliveries (see Nets.sets).
-    """
-
-    nodes: tuple[int, ...]
-    lags: tuple[int, ...]
-    left: tuple[int, int, int, int]
-    ticks: tuple[int, ...]
-    offered: int
-    got: int
+    nodes: tuple[int, ...]  # each node's state; DEAD
+    lags: tuple[int, ...]  # us since its last event; all 0 untimed
+    left: tuple[int, int, int, int]  # deaths, revivals, frames and acks that may still be lost
+    ticks: tuple[int, ...]  # beats that each node may still have
+    offered: int  # how many of the model's messages, and of its alarm, were offered
+    got: int  # which set of deliveries (see Nets.sets)
 
 
 class Part(NamedTuple):

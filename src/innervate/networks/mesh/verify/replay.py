@@ -27,20 +27,14 @@ SEEDS = 40
 
 @dataclass(frozen=True, slots=True)
 class Loss:
-    """A frame or ack of the story that is lost.
+    """A frame or ack of the story that is lost."""
 
-    Attributes:
-        offer: after so many messages were offered.
-        sender, to: who sent it, who should have received it.
-        kind: its type.
-        nth: so many like it went out before, since that message.
-    """
-
-    offer: int
+    offer: int  # after so many messages were offered
+    # sender, to: who sent it, who should have received it
     sender: int
     to: int
-    kind: int
-    nth: int
+    kind: int  # its type
+    nth: int  # so many like it went out before, since that message
 
 
 def write(story: MeshStory) -> str:

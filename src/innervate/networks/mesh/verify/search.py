@@ -28,28 +28,18 @@ Progress = Callable[[Tally], bool]
 
 @dataclass(slots=True)
 class Found:
-    """What a search found.
+    """What a search of a mesh found."""
 
-    Attributes:
-        model: what was explored.
-        nets: its states' meaning.
-        tally: how much of it; `depth` in events.
-        calls: handler calls that were made; all others were remembered.
-        broken: what is broken, a number of local.py; 0 nothing.
-        path: the way there: (move, state after it, broken).
-        fair: states whose calm future was looked at.
-        longest: the most events that one of them took until everything was settled.
-    """
-
-    model: MeshModel
-    nets: Nets
-    tally: Tally
-    calls: int = 0
-    broken: int = 0
+    model: MeshModel  # what was explored
+    nets: Nets  # its states' meaning
+    tally: Tally  # how much of it; `depth` in events
+    calls: int = 0  # handler calls that were made; all others were remembered
+    broken: int = 0  # what is broken, a number of local.py; 0 nothing
+    # the way there: (move, state after it, broken)
     path: list[Successor] = field(default_factory=list)
     start: Net | None = None
-    fair: int = 0
-    longest: int = 0
+    fair: int = 0  # states whose calm future was looked at
+    longest: int = 0  # the most events that one of them took until everything was settled
 
     @property
     def wide(self) -> list[int]:

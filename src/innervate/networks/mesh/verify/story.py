@@ -50,37 +50,23 @@ TITLES = {
 
 @dataclass(slots=True)
 class Scene:
-    """The network after an event.
+    """The network after an event."""
 
-    Attributes:
-        hops: each node's next hop to the story's recipient in its table, -1 none.
-        dead: nodes that are.
-        actor: whose event it was.
-        sent: (from, to) of a frame that was received, or ().
-        lost: (from, to) of a frame or ack that was not, or ().
-    """
-
-    hops: list[int]
-    dead: list[int]
-    actor: int
-    sent: tuple[int, ...] = ()
-    lost: tuple[int, ...] = ()
+    hops: list[int]  # each node's next hop to the story's recipient in its table, -1 none
+    dead: list[int]  # nodes that are
+    actor: int  # whose event it was
+    sent: tuple[int, ...] = ()  # (from, to) of a frame that was received, or ()
+    lost: tuple[int, ...] = ()  # (from, to) of a frame or ack that was not, or ()
 
 
 @dataclass(kw_only=True)
 class MeshStory(cases.Story):
-    """How something breaks in a mesh.
+    """How something breaks in a mesh."""
 
-    Attributes:
-        found: the search that found it.
-        dest: the recipient that the pictures are about.
-        scenes: the network after each.
-        ring: two nodes that are each other's next hop to `dest`, if there are.
-    """
-
-    found: Found
-    dest: int
-    scenes: list[Scene] = field(default_factory=list)
+    found: Found  # the search that found it
+    dest: int  # the recipient that the pictures are about
+    scenes: list[Scene] = field(default_factory=list)  # the network after each
+    # two nodes that are each other's next hop to `dest`, if there are
     ring: list[int] = field(default_factory=list)
 
 

@@ -22,58 +22,38 @@ FOREVER = 1 << 62
 
 
 class Air(NamedTuple):
-    """All transmissions in the order of their start: one entry each, as `result.sent` has them.
+    """All transmissions in the order of their start: one entry each, as `result.sent` has them."""
 
-    Attributes:
-        node: who sent.
-        kind: which frame, see protocol/constants.py.
-        start, end: when it was on the air; `end` as it was, if its sender died or stopped then.
-        deaf_from, deaf_to: when its sender's radio could not listen; on a cable never.
-        faded: a fault of the scenario hid it: nobody heard it.
-        row: its place in `result.sent`.
-    """
-
-    node: Numbers
-    kind: Numbers
+    node: Numbers  # who sent
+    kind: Numbers  # which frame, see protocol/constants.py
+    # start, end: when it was on the air; `end` as it was, if its sender died or stopped then
     start: Numbers
     end: Numbers
+    # deaf_from, deaf_to: when its sender's radio could not listen; on a cable never
     deaf_from: Numbers
     deaf_to: Numbers
-    faded: Flags
-    row: Numbers
+    faded: Flags  # a fault of the scenario hid it: nobody heard it
+    row: Numbers  # its place in `result.sent`
 
 
 class Groups(NamedTuple):
-    """Maximal groups of transmissions that overlap on the air, single ones too.
+    """Maximal groups of transmissions that overlap on the air, single ones too."""
 
-    Attributes:
-        of: the group of every transmission of `air(result)`.
-        start, end: of every group.
-        members: how many transmissions it has.
-        collision: it has several, at least one of which may carry packets.
-    """
-
-    of: Numbers
+    of: Numbers  # the group of every transmission of `air(result)`
+    # start, end: of every group
     start: Numbers
     end: Numbers
-    members: Numbers
-    collision: Flags
+    members: Numbers  # how many transmissions it has
+    collision: Flags  # it has several, at least one of which may carry packets
 
 
 class Heard(NamedTuple):
-    """What one station heard: intervals as rows of (from, to).
+    """What one station heard: intervals as rows of (from, to)."""
 
-    Attributes:
-        cd: at least one other station's signal was there.
-        voc: exactly one was.
-        deaf: its radio could not listen, so that it knew neither; not part of `cd` and `voc`.
-        off: it was switched off.
-    """
-
-    cd: Numbers
-    voc: Numbers
-    deaf: Numbers
-    off: Numbers
+    cd: Numbers  # at least one other station's signal was there
+    voc: Numbers  # exactly one was
+    deaf: Numbers  # its radio could not listen, so that it knew neither; not part of `cd` and `voc`
+    off: Numbers  # it was switched off
 
 
 def air(result: Any) -> Air:

@@ -19,50 +19,32 @@ class RadioFacts(NamedTuple):
     """What is known of a team at one moment.
 
     `offered` = delivered + lost_silently + pending + abandoned + dropped, where all are known.
-
-    Attributes:
-        stations: how many belong to the team.
-        off: who was switched off, died or does not answer.
-        away: who left, or has not joined yet; that is no fault.
-        answering: False = nobody says anything, and nothing is known.
-        offered: packets that were to be sent.
-        delivered: packets that somebody received, as their senders know.
-        pending: packets that wait in robots that are on.
-        abandoned: packets of robots that are off or away.
-        dropped: packets that full queues refused.
-        lost_silently: packets that nobody received and their senders take for delivered.
-        partial: delivered packets that not everybody received who could hear.
-        overdue: pending packets that have waited longer than `timeout_ms`, or that a run which
-            was to deliver them all did not deliver.
-        waiting: who has overdue packets.
-        still_ms: how long nothing has been delivered though somebody who is on had a packet.
-        timeout_ms: how long that may take, see `timeout_us`.
-        hidden: pairs that do not hear each other.
-        bounds: where delays are not as believed, "believed_us": [least, greatest]; None = they are,
-            as far as is known.
-        stations_wrong: who noticed it.
-        ended: nothing more will happen.
     """
 
-    stations: int
-    off: Stations = ()
-    away: Stations = ()
-    answering: bool = True
-    offered: int = 0
-    delivered: int = 0
-    pending: int = 0
-    abandoned: int = 0
-    dropped: int = 0
-    lost_silently: int = 0
-    partial: int = 0
+    stations: int  # how many belong to the team
+    off: Stations = ()  # who was switched off, died or does not answer
+    away: Stations = ()  # who left, or has not joined yet; that is no fault
+    answering: bool = True  # False = nobody says anything, and nothing is known
+    offered: int = 0  # packets that were to be sent
+    delivered: int = 0  # packets that somebody received, as their senders know
+    pending: int = 0  # packets that wait in robots that are on
+    abandoned: int = 0  # packets of robots that are off or away
+    dropped: int = 0  # packets that full queues refused
+    lost_silently: int = 0  # packets that nobody received and their senders take for delivered
+    partial: int = 0  # delivered packets that not everybody received who could hear
+    # pending packets that have waited longer than `timeout_ms`, or that a run which was to
+    # deliver them all did not deliver
     overdue: int = 0
-    waiting: Stations = ()
+    waiting: Stations = ()  # who has overdue packets
+    # how long nothing has been delivered though somebody who is on had a packet
     still_ms: float = 0.0
-    timeout_ms: float = 1000.0
-    hidden: tuple[tuple[int, int], ...] = ()
+    timeout_ms: float = 1000.0  # how long that may take, see `timeout_us`
+    hidden: tuple[tuple[int, int], ...] = ()  # pairs that do not hear each other
+    # where delays are not as believed, "believed_us": [least, greatest]; None = they are, as
+    # far as is known
     bounds: Mapping[str, Any] | None = None
-    stations_wrong: Stations = ()
-    ended: bool = False
+    stations_wrong: Stations = ()  # who noticed it
+    ended: bool = False  # nothing more will happen
 
 
 def timeout_us(params: Mapping[str, int], stations: int) -> int:

@@ -42,27 +42,17 @@ WORDS = {
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """What is combined.
+    """What is combined on a grid."""
 
-    Attributes:
-        stations: 2 .. 4.
-        mode: "practical" or "paper".
-        turnaround_us: ta.
-        packet_slots: T.
-        offers_us: moments at which stations after the first are offered their packet.
-        delays_us: what a pair's delay can be.
-        draws: how many first draws of each station are combined.
-        parts: into how many equal parts the range of a draw is cut; one value of each.
-    """
-
-    stations: int = 3
-    mode: str = "practical"
-    turnaround_us: int = 0
-    packet_slots: int = 5
+    stations: int = 3  # 2 .. 4
+    mode: str = "practical"  # "practical" or "paper"
+    turnaround_us: int = 0  # ta
+    packet_slots: int = 5  # T
+    # moments at which stations after the first are offered their packet
     offers_us: tuple[int, ...] = (0, 52, 104, 208)
-    delays_us: tuple[int, ...] = (52, 104)
-    draws: int = 1
-    parts: int = 3
+    delays_us: tuple[int, ...] = (52, 104)  # what a pair's delay can be
+    draws: int = 1  # how many first draws of each station are combined
+    parts: int = 3  # into how many equal parts the range of a draw is cut; one value of each
 
     @property
     def points(self) -> int:
@@ -85,23 +75,14 @@ class Point:
 
 @dataclass(slots=True)
 class Found:
-    """What came of a grid.
+    """What came of a grid."""
 
-    Attributes:
-        grid: what was combined.
-        done: points that were run.
-        wall_s: how long that took.
-        broken: what is broken and how often.
-        first: the first point for each of these.
-        ended: "complete" or "interrupted".
-    """
-
-    grid: Grid
-    done: int
-    wall_s: float
-    broken: dict[int, int]
-    first: dict[int, Point]
-    ended: str
+    grid: Grid  # what was combined
+    done: int  # points that were run
+    wall_s: float  # how long that took
+    broken: dict[int, int]  # what is broken and how often
+    first: dict[int, Point]  # the first point for each of these
+    ended: str  # "complete" or "interrupted"
 
     def as_dict(self) -> dict[str, Any]:
         """What was found, as `innervate verify radio --json` prints it."""

@@ -31,38 +31,24 @@ ROOM = 512  # frames and reports of a run; a few stations need some dozens
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """What is tried.
+    """What is tried of every draw."""
 
-    Attributes:
-        grid: stations, mode, times; its draws and parts do not count.
-        depth: how many draws of a run, in the order of their asking, become branches.
-    """
-
-    grid: grid.Grid
-    depth: int = 6
+    grid: grid.Grid  # stations, mode, times; its draws and parts do not count
+    depth: int = 6  # how many draws of a run, in the order of their asking, become branches
 
 
 @dataclass(slots=True)
 class Grown:
-    """What came of a tree.
+    """What came of a tree."""
 
-    Attributes:
-        tree: what was tried.
-        runs: how many.
-        deepest: most draws in one run.
-        wall_s: how long that took.
-        broken: what is broken and how often.
-        first: for each of these the first point and the values that its draws gave.
-        ended: "complete", "limit" or "interrupted".
-    """
-
-    tree: Tree
-    runs: int
-    deepest: int
-    wall_s: float
-    broken: dict[int, int]
+    tree: Tree  # what was tried
+    runs: int  # how many
+    deepest: int  # most draws in one run
+    wall_s: float  # how long that took
+    broken: dict[int, int]  # what is broken and how often
+    # for each of these the first point and the values that its draws gave
     first: dict[int, tuple[grid.Point, tuple[int, ...]]]
-    ended: str
+    ended: str  # "complete", "limit" or "interrupted"
 
     def as_dict(self) -> dict[str, Any]:
         """What was found, as `innervate verify radio --json` prints it."""

@@ -24,21 +24,13 @@ class FramesLost(InvariantBroken):
 
 @dataclass(frozen=True, slots=True)
 class Traffic:
-    """Frames of one class over all cables; a frame counts once for every cable it takes.
+    """Frames of one class over all cables; a frame counts once for every cable it takes."""
 
-    Attributes:
-        sent: handed to a port that has a cable.
-        arrived: reached a node that is on.
-        lost: by reason: cut, noise, off, queue_full, broken_link.
-        flying: on a wire at the end of the run.
-        queued: waiting in a port's queue at the end.
-    """
-
-    sent: int
-    arrived: int
-    lost: dict[str, int]
-    flying: int
-    queued: int
+    sent: int  # handed to a port that has a cable
+    arrived: int  # reached a node that is on
+    lost: dict[str, int]  # by reason: cut, noise, off, queue_full, broken_link
+    flying: int  # on a wire at the end of the run
+    queued: int  # waiting in a port's queue at the end
 
     @property
     def missing(self) -> int:

@@ -15,37 +15,27 @@ NAMED_MAX = 3
 
 
 class SkinFacts(NamedTuple):
-    """What is known of a skin at one moment. A cell is in at most one of the first four lists.
+    """What is known of a skin at one moment. A cell is in at most one of the first four lists."""
 
-    Attributes:
-        cells: how many there are; they are numbered 0 .. cells - 1.
-        off: cells that are switched off.
-        silent: running nodes only: cells that do not answer, so that nothing is known of them.
-        cut_off: cells that are on, but that no live cable joins with the PC, over whatever way.
-        seeking: cells that are on and that cables join with the PC, but that have no way to it.
-        never: those of `seeking` that have not had a way since they were first switched on.
-        since_s: when the first of `cut_off` was cut off; None = unknown.
-        at_once: all of them were cut off then.
-        pc_off: the PC is switched off, or does not answer.
-        cut_off_before: most cells that were cut off at the same time, if that is more than are
-            now; a live page, which shows the moment, leaves it at 0.
-        sent: tactile samples that cells took once they had had a way; 0 without data.
-        lost: those of them that were lost.
-        missed: cells, over all commands of the PC, that had a way and did not get one for them.
-    """
-
-    cells: int
-    off: Collection[int] = ()
+    cells: int  # how many there are; they are numbered 0 .. cells - 1
+    off: Collection[int] = ()  # cells that are switched off
+    # running nodes only: cells that do not answer, so that nothing is known of them
     silent: Collection[int] = ()
+    # cells that are on, but that no live cable joins with the PC, over whatever way
     cut_off: Collection[int] = ()
+    # cells that are on and that cables join with the PC, but that have no way to it
     seeking: Collection[int] = ()
+    # those of `seeking` that have not had a way since they were first switched on
     never: Collection[int] = ()
-    since_s: float | None = None
-    at_once: bool = True
-    pc_off: bool = False
+    since_s: float | None = None  # when the first of `cut_off` was cut off; None = unknown
+    at_once: bool = True  # all of them were cut off then
+    pc_off: bool = False  # the PC is switched off, or does not answer
+    # most cells that were cut off at the same time, if that is more than are now; a live
+    # page, which shows the moment, leaves it at 0
     cut_off_before: int = 0
-    sent: int = 0
-    lost: int = 0
+    sent: int = 0  # tactile samples that cells took once they had had a way; 0 without data
+    lost: int = 0  # those of them that were lost
+    # cells, over all commands of the PC, that had a way and did not get one for them
     missed: int = 0
 
 

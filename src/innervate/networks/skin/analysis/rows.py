@@ -22,21 +22,15 @@ NEVER = -1
 
 
 class ParentChanges(NamedTuple):
-    """Every change of a parent port, in order of time.
+    """Every change of a parent port, in order of time."""
 
-    Attributes:
-        row: place in the run's rows.
-        time_us: when.
-        cell: who.
-        old, new: port before and after; -1 none.
-        balancing: True where the cell changed only to balance the load.
-    """
-
-    row: Numbers
-    time_us: Numbers
-    cell: Numbers
+    row: Numbers  # place in the run's rows
+    time_us: Numbers  # when
+    cell: Numbers  # who
+    # old, new: port before and after; -1 none
     old: Numbers
     new: Numbers
+    # True where the cell changed only to balance the load
     balancing: np.ndarray[Any, np.dtype[np.bool_]]
 
 
@@ -52,18 +46,12 @@ class ApartSteps(NamedTuple):
     """How many cells are cut off, from `time_us[i]` on (a step function).
 
     A cell is cut off if it is on and no live cable joins it with the PC, over whatever way.
-
-    Attributes:
-        row: place in the run's rows.
-        time_us: when.
-        cells: cut off from then on.
-        fresh: those of them that were not so before.
     """
 
-    row: Numbers
-    time_us: Numbers
-    cells: Numbers
-    fresh: Numbers
+    row: Numbers  # place in the run's rows
+    time_us: Numbers  # when
+    cells: Numbers  # cut off from then on
+    fresh: Numbers  # those of them that were not so before
 
 
 class JoinedSteps(NamedTuple):
@@ -75,19 +63,12 @@ class JoinedSteps(NamedTuple):
 
 
 class LoopEpisodes(NamedTuple):
-    """Forwarding loops, in the order in which they closed into a ring.
+    """Forwarding loops, in the order in which they closed into a ring."""
 
-    Attributes:
-        cell: one cell of the ring.
-        opened_us: when the ring came to be.
-        closed_us: when it fell apart; NEVER (-1) if it stood at the end of the run.
-        length: cells in the ring.
-    """
-
-    cell: Numbers
-    opened_us: Numbers
-    closed_us: Numbers
-    length: Numbers
+    cell: Numbers  # one cell of the ring
+    opened_us: Numbers  # when the ring came to be
+    closed_us: Numbers  # when it fell apart; NEVER (-1) if it stood at the end of the run
+    length: Numbers  # cells in the ring
 
 
 class BrokenChanges(NamedTuple):
@@ -100,19 +81,12 @@ class BrokenChanges(NamedTuple):
 
 
 class Marks(NamedTuple):
-    """The scenario's events as they happened; the first mark is the beginning (event -1).
+    """The scenario's events as they happened; the first mark is the beginning (event -1)."""
 
-    Attributes:
-        row: place of the mark in the run's rows: what stands behind it happened after it.
-        time_us: when.
-        event: index in the scenario file.
-        cut_off: cells that lost their working chain of parents at that moment.
-    """
-
-    row: Numbers
-    time_us: Numbers
-    event: Numbers
-    cut_off: Numbers
+    row: Numbers  # place of the mark in the run's rows: what stands behind it happened after it
+    time_us: Numbers  # when
+    event: Numbers  # index in the scenario file
+    cut_off: Numbers  # cells that lost their working chain of parents at that moment
 
 
 def parent_changes(result: Any) -> ParentChanges:

@@ -13,17 +13,12 @@ WINDOW_S = 0.05
 
 
 class Image(NamedTuple):
-    """One number per cell.
+    """A touch: one number per cell."""
 
-    Attributes:
-        force_mn: mean of the three force sensors, mN.
-        proximity: nearness of an object, raw, 0 far.
-        age_us: how long the PC had had the sample; NEVER (-1) where it had none in the window,
-            force and proximity are 0 then.
-    """
-
-    force_mn: Numbers
-    proximity: Numbers
+    force_mn: Numbers  # mean of the three force sensors, mN
+    proximity: Numbers  # nearness of an object, raw, 0 far
+    # how long the PC had had the sample; NEVER (-1) where it had none in the window, force
+    # and proximity are 0 then
     age_us: Numbers
 
     @property

@@ -21,21 +21,14 @@ PLAYED = ("complete", "memory", "limit")  # ends of a search that a fair schedul
 
 @dataclass(slots=True)
 class SkinCase:
-    """One exploration and what came of it.
+    """One exploration and what came of it."""
 
-    Attributes:
-        model: what is explored.
-        cables: its graph as text.
-        tally: how far the search came.
-        fair: the fair schedule; None where it was not asked for or something broke before.
-        story: the counterexample, if something is broken.
-    """
-
-    model: system.SkinModel
-    cables: str
-    tally: explore.Tally
+    model: system.SkinModel  # what is explored
+    cables: str  # its graph as text
+    tally: explore.Tally  # how far the search came
+    # the fair schedule; None where it was not asked for or something broke before
     fair: fair.Fair | None = None
-    story: story.Story | None = None
+    story: story.Story | None = None  # the counterexample, if something is broken
 
     @property
     def is_broken(self) -> bool:

@@ -34,33 +34,21 @@ CALM, LOST, EXPIRY = 0, -1, -2
 
 @dataclass(slots=True)
 class Fair:
-    """What came of the fair schedule.
+    """What came of the fair schedule."""
 
-    Attributes:
-        bound: rounds that routes may take.
-        starts: states it was tried from.
-        of: states there were.
-        calm: different states when faults have ended and nothing is in flight.
-        rounds: until everything was settled; the bound if it was not.
-        left: states not settled after each round.
-        played: rounds played in all.
-        left_out: of these, with more in flight than there is room for; they prove nothing.
-        path: rows from the state in question to the one that is not settled at the bound.
-        ended: "complete", "broken", "memory" or "interrupted".
-        is_endless: what was under way set off more without end; `path` may be empty then.
-    """
-
-    bound: int
-    starts: int = 0
-    of: int = 0
-    calm: int = 0
-    rounds: int = 0
-    left: list[int] = field(default_factory=list)
-    played: int = 0
-    left_out: int = 0
+    bound: int  # rounds that routes may take
+    starts: int = 0  # states it was tried from
+    of: int = 0  # states there were
+    calm: int = 0  # different states when faults have ended and nothing is in flight
+    rounds: int = 0  # until everything was settled; the bound if it was not
+    left: list[int] = field(default_factory=list)  # states not settled after each round
+    played: int = 0  # rounds played in all
+    left_out: int = 0  # of these, with more in flight than there is room for; they prove nothing
     wall_s: float = 0.0
+    # rows from the state in question to the one that is not settled at the bound
     path: list[bytes] = field(default_factory=list)
-    ended: str = "interrupted"
+    ended: str = "interrupted"  # "complete", "broken", "memory" or "interrupted"
+    # what was under way set off more without end; `path` may be empty then
     is_endless: bool = False
 
     @property

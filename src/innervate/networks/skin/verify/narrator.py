@@ -16,17 +16,11 @@ from innervate.verify.twin import Event, Twin
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The network after an event.
+    """The network after an event."""
 
-    Attributes:
-        parents: the node each cell sends to, NONE without a way, over cut cables too.
-        cut: pairs of nodes whose cable is cut.
-        actor: who did something, NONE for a cable.
-    """
-
-    parents: tuple[int, ...]
-    cut: frozenset[tuple[int, int]]
-    actor: int
+    parents: tuple[int, ...]  # the node each cell sends to, NONE without a way, over cut cables too
+    cut: frozenset[tuple[int, int]]  # pairs of nodes whose cable is cut
+    actor: int  # who did something, NONE for a cable
 
 
 class Narrator:

@@ -34,18 +34,13 @@ TITLES = {
 
 @dataclass(kw_only=True)
 class Story(common.Story):
-    """How something breaks in a skin.
+    """How something breaks in a skin."""
 
-    Attributes:
-        graph: the network.
-        steps: for each event the script's steps that play it.
-        scenes: the network after each event.
-        ring: nodes of the closed ring in order, if there is one.
-    """
-
-    graph: Graph
+    graph: Graph  # the network
+    # for each event the script's steps that play it
     steps: list[list[str]] = field(default_factory=list)
-    scenes: list[Scene] = field(default_factory=list)
+    scenes: list[Scene] = field(default_factory=list)  # the network after each event
+    # nodes of the closed ring in order, if there is one
     ring: list[int] = field(default_factory=list)
 
 

@@ -43,60 +43,41 @@ SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """How often what may happen.
+    """How often what may happen."""
 
-    Attributes:
-        ticks: periods of every cell; ANY as many as it takes, but no cell without a route for as
-            many as FD_HOLD.
-        counts: beacons of the PC, each with a new number.
-        loss, cut, heal, false, restart: lost frames, cut and mended cables, ports found broken
-            without a reason, restarts of the PC.
-        faults: all of these together.
-    """
-
+    # periods of every cell; ANY as many as it takes, but no cell without a route for as many
+    # as FD_HOLD
     ticks: int = 3
-    counts: int = 2
+    counts: int = 2  # beacons of the PC, each with a new number
+    # loss, cut, heal, false, restart: lost frames, cut and mended cables, ports found broken
+    # without a reason, restarts of the PC
     loss: int = 1
     cut: int = 1
     heal: int = 1
     false: int = 1
     restart: int = 1
-    faults: int = 2
+    faults: int = 2  # all of these together
 
 
 @dataclass(frozen=True)
 class SkinModel:
-    """What is explored.
+    """What is explored of a skin."""
 
-    Attributes:
-        graph: cells, PC and cables.
-        rule: one of RULES.
-        updates: "periodic" or "triggered".
-        budget: how often what may happen.
-        hold: FD_HOLD, in periods.
-        prompt: every frame arrives, or is lost, before anything else happens.
-        merge: use that periodic beacons are only looked at in a tick (see moves.py).
-        keep: keep what only a later fair schedule would see.
-        symmetric: take states that differ by a symmetry of the graph as one.
-        capacity: most frames in flight per direction; states with more are left out, and counted.
-            0 = what periodic cells can send within their budget; of triggered ones ROOM, or
-            LEAN_ROOM.
-        unreduced: leave no beacon out, though it changes nothing.
-        lean: forget what can no longer matter (see reduction.py), and follow no state of which a
-            known one differs only in that more may still happen.
-    """
-
-    graph: Graph
-    rule: str = "feasible"
-    updates: str = "periodic"
-    budget: Budget = field(default_factory=Budget)
-    hold: int = 0
-    prompt: bool = False
-    merge: bool = True
-    keep: bool = False
-    symmetric: bool = True
+    graph: Graph  # cells, PC and cables
+    rule: str = "feasible"  # one of RULES
+    updates: str = "periodic"  # "periodic" or "triggered"
+    budget: Budget = field(default_factory=Budget)  # how often what may happen
+    hold: int = 0  # FD_HOLD, in periods
+    prompt: bool = False  # every frame arrives, or is lost, before anything else happens
+    merge: bool = True  # use that periodic beacons are only looked at in a tick (see moves.py)
+    keep: bool = False  # keep what only a later fair schedule would see
+    symmetric: bool = True  # take states that differ by a symmetry of the graph as one
+    # most frames in flight per direction; states with more are left out, and counted. 0 =
+    # what periodic cells can send within their budget; of triggered ones ROOM, or LEAN_ROOM
     capacity: int = 0
-    unreduced: bool = False
+    unreduced: bool = False  # leave no beacon out, though it changes nothing
+    # forget what can no longer matter (see reduction.py), and follow no state of which a
+    # known one differs only in that more may still happen
     lean: bool = False
 
     @property
