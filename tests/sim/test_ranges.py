@@ -163,8 +163,8 @@ def explored_cells():
 
 def explored_routers(which):
     fields = (mesh_fields.node, mesh_fields.gate)[which](3)
-    made, kept = plain.make("Record", fields)(), mesh_shape.shapes(3, 1)[which]
-    kept.timed.clear()  # what is kept of these is a distance: any is in range
+    # No times: what is kept of these is a distance, and any is in range.
+    made, kept = plain.make("Record", fields)(), mesh_shape.Shape(fields, (), 1)
 
     def speaks():
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 from innervate.kernel.clock import wall_s
@@ -61,36 +61,31 @@ def check(
         ProveError: nothing can be as the facts say, so that everything would hold; or the solver
             could not say.
     """
-    try:
-        return _checked(step, tell, tuple(simple), first_only, reach, known)
-    except UnsureError as error:
-        raise UnsureError(f"{step.name}: {error}") from None
-
-
-def _checked(
-    step: Step,
-    tell: Teller | None,
-    simple: tuple[Term, ...],
-    first_only: bool,
-    reach: bool,
-    known: Iterable[Way],
-) -> Checked:
-    """What comes of a step."""
-    begun = wall_s()
+    begun, simple = wall_s(), tuple(simple)
     found = Checked(step.name, [goal.name for goal in step.goals])
-    question = Question(Formulas(), step.facts)
-    if question.values() is None:
-        raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
-    if reach:
-        found.reached, found.missed = reached(step, question, known)
-    if _is_refuted(step, question):
-        if first_only:
-            bad = next(goal for goal in step.goals if not question.holds(goal.holds))
-            found.refuted = [Refuted(bad.name, question.values_found)]
-        else:
-            found.refuted = list(_all_refuted(step, question, tell, simple))
+    with _called(step.name):
+        question = Question(Formulas(), step.facts)
+        if question.values() is None:
+            raise ProveError(f"{step.name}: no state is as assumed, so all would hold")
+        if reach:
+            found.reached, found.missed = reached(step, question, known)
+        if _is_refuted(step, question):
+            if first_only:
+                bad = next(goal for goal in step.goals if not question.holds(goal.holds))
+                found.refuted = [Refuted(bad.name, question.values_found)]
+            else:
+                found.refuted = list(_all_refuted(step, question, tell, simple))
     found.wall_s = wall_s() - begun
     return found
+
+
+@contextmanager
+def _called(name: str) -> Iterator[None]:
+    """Says of what the solver could not say."""
+    try:
+        yield
+    except UnsureError as error:
+        raise UnsureError(f"{name}: {error}") from None
 
 
 def _is_refuted(step: Step, question: Question) -> bool:
@@ -100,11 +95,9 @@ def _is_refuted(step: Step, question: Question) -> bool:
         with suppress(UnsureError):
             return question.values(step.terms.any(*wrong)) is not None
     for one, goal in zip(wrong, step.goals, strict=True):
-        try:
+        with _called(goal.name):
             if question.values(one) is not None:
                 return True
-        except UnsureError as error:
-            raise UnsureError(f"{goal.name}: {error}") from None
     return False
 
 

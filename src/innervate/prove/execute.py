@@ -7,7 +7,7 @@ keep (indices within arrays, numbers within 32 bits, room, bounds of loops) is n
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from typing import Any
 
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
@@ -17,6 +17,8 @@ from innervate.prove.express import Expressions
 from innervate.prove.records import (
     Action,
     Array,
+    Call,
+    Demand,
     Key,
     Outbox,
     Record,
@@ -32,29 +34,8 @@ from innervate.prove.terms import Term, Terms
 LOOP_MAX = 40  # passes of a loop whose number is not known
 OUTBOX = "innervate.dialect.outbox"
 RANDOM = "innervate.dialect.rng"
-
-
-@dataclass(frozen=True, slots=True)
-class Demand:
-    """Something that must hold wherever `guard` does."""
-
-    what: str
-    guard: Term
-    holds: Term
-    where: str
-
-
-@dataclass(slots=True)
-class Call:
-    """A call that is being followed."""
-
-    function: Function  # that is called
-    under: Term  # where it is called at all
-    # (state, value) of its paths that have ended
-    returned: list[tuple[State, Any]] = field(default_factory=list)
-    # broken, continued: states of the innermost loop's paths that left a pass
-    broken: list[State] = field(default_factory=list)
-    continued: list[State] = field(default_factory=list)
+# Of a pass, by its number and the state before it: whether there is one, and the loop's variable.
+Goes = Callable[[int, State], tuple[Term, Term | None]]
 
 
 class Machine(Expressions):
@@ -186,22 +167,33 @@ class Machine(Expressions):
         far = last.high - first.low if step > 0 else first.high - last.low
         passes = max(-(-far // abs(step)), 0)
         many = passes if last.value is not None else min(passes, LOOP_MAX)
-        left = self.enter(call)
+
+        def goes(k: int, _: State) -> tuple[Term, Term]:
+            at = terms.add(first, terms.number(k * step))
+            return terms.less(at, last) if step > 0 else terms.less(last, at), at
+
+        return self.unroll(node, many, passes > many, goes, state, call)
+
+    def unroll(
+        self, node: ast.For | ast.While, many: int, may_go_on: bool, goes: Goes, state: State,
+        call: Call,
+    ) -> State | None:  # fmt: skip
+        """So many passes of a loop, as long as it goes on; if it may then, it must not."""
+        outer = self.enter(call)
         after: State | None = state
         for k in range(many):
-            assert after is not None
-            at = terms.add(first, terms.number(k * step))
-            goes = terms.less(at, last) if step > 0 else terms.less(last, at)
-            after = self.one_pass(node, goes, at, after, call)
+            test, at = goes(k, state)
+            if test is self.terms.false:
+                break
+            after = self.one_pass(node, test, at, state, call)
             if after is None:
                 break
+            state = after
         else:
-            if passes > many:
-                assert after is not None
-                at = terms.add(first, terms.number(many * step))
-                more = terms.less(at, last) if step > 0 else terms.less(last, at)
-                self.demand("a loop ends", terms.negated(more), node, after, call)
-        return self.leave(left, after, call)
+            if may_go_on:
+                test, _ = goes(many, state)
+                self.demand("a loop ends", self.terms.negated(test), node, state, call)
+        return self.leave(outer, after, call)
 
     def ends_of(self, node: ast.For, state: State, call: Call) -> tuple[Term, Term, int]:
         """Where a loop begins and ends, and by how much it goes on."""
@@ -216,21 +208,11 @@ class Machine(Expressions):
 
     def repeat(self, node: ast.While, state: State, call: Call) -> State | None:
         """Unroll a loop with a condition."""
-        left = self.enter(call)
-        after: State | None = state
-        for _ in range(LOOP_MAX):
-            assert after is not None
-            test = self.truth(node.test, after, call)
-            if test is self.terms.false:
-                break
-            after = self.one_pass(node, test, None, after, call)
-            if after is None:
-                break
-        else:
-            assert after is not None
-            test = self.truth(node.test, after, call)
-            self.demand("a loop ends", self.terms.negated(test), node, after, call)
-        return self.leave(left, after, call)
+
+        def goes(_: int, state: State) -> tuple[Term, None]:
+            return self.truth(node.test, state, call), None
+
+        return self.unroll(node, LOOP_MAX, True, goes, state, call)
 
     def one_pass(
         self, node: ast.For | ast.While, goes: Term, at: Term | None, state: State, call: Call

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from innervate.dialect.source import Function
 from innervate.prove.errors import ProveError
 from innervate.prove.records import (
     Action,
     Array,
+    Call,
+    Demand,
     Frames,
     Outbox,
     Partly,
@@ -22,9 +24,6 @@ from innervate.prove.records import (
     merged,
 )
 from innervate.prove.terms import Term, Terms
-
-if TYPE_CHECKING:
-    from innervate.prove.execute import Call, Demand
 
 BITS = 32  # what a microcontroller's numbers have
 MOST = (1 << (BITS - 1)) - 1
@@ -106,8 +105,6 @@ class Expressions:
 
     def demand(self, what: str, holds: Term, node: ast.AST, state: State, call: Call) -> None:
         """Note what must hold on the paths that come here."""
-        from innervate.prove.execute import Demand
-
         if holds is not self.terms.true:
             guard = self.terms.all(call.under, state.path)
             self.demands.append(Demand(what, guard, holds, self.place(node, call)))

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from innervate.prove.errors import ProveError
-from innervate.prove.execute import Call, Machine
-from innervate.prove.records import State
+from innervate.prove.execute import Machine
+from innervate.prove.records import Call, State
 from innervate.prove.terms import Term, Terms
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from innervate.dialect.source import Function
 from innervate.prove.terms import Term, Terms
 
 Declaration = Iterable[tuple[str, Any, int, int, str, str]]
@@ -122,6 +123,29 @@ class State:
         return State(dict(self.names), dict(self.store), path)
 
 
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """Something that must hold wherever `guard` does."""
+
+    what: str
+    guard: Term
+    holds: Term
+    where: str
+
+
+@dataclass(slots=True)
+class Call:
+    """A call that is being followed."""
+
+    function: Function  # that is called
+    under: Term  # where it is called at all
+    # (state, value) of its paths that have ended
+    returned: list[tuple[State, Any]] = field(default_factory=list)
+    # broken, continued: states of the innermost loop's paths that left a pass
+    broken: list[State] = field(default_factory=list)
+    continued: list[State] = field(default_factory=list)
+
+
 def merged(terms: Terms, if_: Term, a: State, b: State, path: Term) -> State:
     """State `a` where a truth holds, else `b`."""
     store, other = a.store, b.store
@@ -167,6 +191,3 @@ def each_of(terms: Terms, ref: Any, under: Term) -> Iterator[tuple[Term, Any]]:
         yield from each_of(terms, ref.b, terms.all(under, terms.negated(ref.if_)))
     else:
         yield under, ref
-
-
-Read = Callable[[Any], Term]

@@ -74,7 +74,7 @@ def test_what_may_fail_if_nobody_says():
 
 
 def test_a_first_round_without_end_is_not_waited_for_and_told(monkeypatch):
-    monkeypatch.setattr(first, "EVENTS_MAX", 15)
+    monkeypatch.setattr(first.mesh_net, "EVENTS_MAX", 15)
     told = story.tell(search.explore(MeshModel(LINE)))
     assert told.title == "the first round has no end"
     assert len(told.sentences) == first.LAST

@@ -4,6 +4,7 @@ import random
 
 import pytest
 
+from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields
@@ -74,8 +75,8 @@ def test_arrays_that_are_alike_are_kept_once():
 
 
 def node_of(script=()):
-    kind, *_ = shape.classes(NODES, lambda number, count: 100 * number + count)
-    node = kind()
+    made = plain.make("Node", fields.node(NODES))
+    node = shape.drawing(made, lambda number, count: 100 * number + count)()
     node.number, node.script, node.drawn = 2, script, []
     return node
 

@@ -7,40 +7,13 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.summary_common import measured
+from innervate.networks.mesh.analysis import messages
 from innervate.networks.mesh.analysis import network as network
+from innervate.networks.mesh.analysis import summary_keys as keys
 from innervate.networks.mesh.analysis.alarms import alarms, all_crossings
 from innervate.networks.mesh.analysis.headline import headline, traffic
-from innervate.networks.mesh.analysis.messages import (
-    DELIVERED,
-    IN_FLIGHT,
-    LOST,
-    NEVER,
-    REFUSED,
-    STATE_NAMES,
-    Messages,
-    counted,
-    deaths_us,
-    delivery_ratio,
-    duplicates,
-    first_after,
-    give_ups,
-    latencies_us,
-    messages,
-    percentiles,
-    ratio,
-    took_effect,
-)
 from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground
 from innervate.networks.mesh.analysis.reach import of_simulation
-from innervate.networks.mesh.analysis.summary_keys import (
-    AfterDeaths,
-    Connected,
-    Counts,
-    Flow,
-    MeshSummary,
-    OfCluster,
-    Stretch,
-)
 from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
 from innervate.sim.tables import get
 
@@ -49,18 +22,18 @@ __all__ = ["alternates", "connected", "flows", "looped", "stretch", "summarize"]
 NONE = 255  # no next hop, no alternate
 
 
-def summarize(result: Any) -> MeshSummary:
+def summarize(result: Any) -> keys.MeshSummary:
     """The summary of a run; what never happened is None.
 
     Args:
         result: of `sim.mesh.simulate`, with its rows kept.
     """
     plan, counts = result.plan, result.counts
-    found, kinds = messages(result), network.acked_kinds(result.sent)
+    found, kinds = messages.messages(result), network.acked_kinds(result.sent)
     led, ground = network.gateways(result), Ground(plan)
     crossings = all_crossings(result)
-    again, met = duplicates(result), looped(result)
-    sent = traffic(found, crossings, again, met, took_effect(plan, result.ended_us))
+    again, met = messages.duplicates(result), looped(result)
+    sent = traffic(found, crossings, again, met, messages.took_effect(plan, result.ended_us))
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -69,8 +42,8 @@ def summarize(result: Any) -> MeshSummary:
         "nodes": plan.nodes,
         "links": len(plan.good),
         "discovery": network.discovery(result, kinds),
-        "delivery_ratio": delivery_ratio(found),
-        "latency_ms": percentiles(latencies_us(found), 1e-3),
+        "delivery_ratio": messages.delivery_ratio(found),
+        "latency_ms": messages.percentiles(messages.latencies_us(found), 1e-3),
         "alarms": alarms(crossings),
         "duplicates": again,
         "looped": met,
@@ -84,37 +57,37 @@ def summarize(result: Any) -> MeshSummary:
         "gateways": led,
         "takeover_s": network.takeover_s(result, led),
         "airtime": network.airtime(result, kinds),
-        "give_ups": give_ups(result),
+        "give_ups": messages.give_ups(result),
         "suspects": network.suspects(result),
         **_of_cluster(plan.cluster),
     }
 
 
-def _of_cluster(cluster: Any) -> OfCluster:
+def _of_cluster(cluster: Any) -> keys.OfCluster:
     if cluster is None:
         return {}
     sizes = cluster.sizes
     return {"cluster": {"number": cluster.number, "of": len(sizes), "nodes": sum(sizes)}}
 
 
-def _counts(found: Messages) -> Counts:
+def _counts(found: messages.Messages) -> keys.Counts:
     """Messages to one node by what became of them; broadcasts apart."""
     single = found.only(~found.broadcast)
-    counts = np.bincount(single.state, minlength=len(STATE_NAMES)).tolist()
+    counts = np.bincount(single.state, minlength=len(messages.STATE_NAMES)).tolist()
     return {
         "offered": len(single.state),
-        "delivered": counts[DELIVERED],
-        "in_flight": counts[IN_FLIGHT],
-        "lost": counts[LOST],
-        "refused": counts[REFUSED],
+        "delivered": counts[messages.DELIVERED],
+        "in_flight": counts[messages.IN_FLIGHT],
+        "lost": counts[messages.LOST],
+        "refused": counts[messages.REFUSED],
         "sender_off": counts[-1],
-        "counted": len(counted(found).state),
+        "counted": len(messages.counted(found).state),
         "broadcasts": int(np.count_nonzero(found.broadcast)),
         "partial": int(np.count_nonzero(found.partial)),
     }
 
 
-def _is_connected(found: Messages, ground: Ground) -> Any:
+def _is_connected(found: messages.Messages, ground: Ground) -> Any:
     """Per message, whether good links joined its sender to its recipient when it was offered."""
     plan = ground.plan
     monitor = plan.params["monitor"]
@@ -135,41 +108,43 @@ def _is_connected(found: Messages, ground: Ground) -> Any:
 def _recipient(dest: int, receiver: int, monitor: int) -> int:
     if dest != MONITOR:
         return dest
-    return monitor if receiver == NEVER else receiver
+    return monitor if receiver == messages.NEVER else receiver
 
 
-def connected(found: Messages, ground: Ground) -> Connected:
+def connected(found: messages.Messages, ground: Ground) -> keys.Connected:
     """Messages whose sender and recipient were joined by good links of nodes that were on."""
-    decided = counted(found)
+    decided = messages.counted(found)
     joined = decided.only(_is_connected(decided, ground))
-    came = int(np.count_nonzero(joined.state == DELIVERED))
+    came = int(np.count_nonzero(joined.state == messages.DELIVERED))
     return {
         "sent": len(joined.state),
         "delivered": came,
-        "delivery_ratio": ratio(came, len(joined.state)),
+        "delivery_ratio": messages.ratio(came, len(joined.state)),
     }
 
 
-def _after_deaths(found: Messages, ground: Ground, ended_us: int) -> AfterDeaths | None:
+def _after_deaths(
+    found: messages.Messages, ground: Ground, ended_us: int
+) -> keys.AfterDeaths | None:
     """The first message of every connected sender after the last death; None without deaths."""
-    died = deaths_us(ground.plan, ended_us)
+    died = messages.deaths_us(ground.plan, ended_us)
     if not died:
         return None
-    first = connected(first_after(found, died[-1]), ground)
+    first = connected(messages.first_after(found, died[-1]), ground)
     later = connected(found.only(found.offered_us >= died[-1]), ground)
     return {"first": first, "all": later}
 
 
-def flows(found: Messages, plan: Any) -> list[Flow]:
+def flows(found: messages.Messages, plan: Any) -> list[keys.Flow]:
     """Per [[flow]] of the scenario: how many messages, delivered, how fast."""
-    rows: list[Flow] = []
+    rows: list[keys.Flow] = []
     for flow in sorted({offer.flow for offer in plan.offers}):
         mine = found.only(found.flow == flow)
         rows.append({
             "flow": flow,
             **_counts(mine),
-            "delivery_ratio": delivery_ratio(mine),
-            "latency_ms": percentiles(latencies_us(mine), 1e-3),
+            "delivery_ratio": messages.delivery_ratio(mine),
+            "latency_ms": messages.percentiles(messages.latencies_us(mine), 1e-3),
         })  # fmt: skip
     return rows
 
@@ -200,9 +175,9 @@ def looped(result: Any) -> int:
     })  # fmt: skip
 
 
-def stretch(found: Messages, ground: Ground) -> Stretch:
+def stretch(found: messages.Messages, ground: Ground) -> keys.Stretch:
     """Hops taken over hops of the shortest path there was, of the messages delivered."""
-    came = found.only((found.state == DELIVERED) & ~found.broadcast & (found.hops > 0))
+    came = found.only((found.state == messages.DELIVERED) & ~found.broadcast & (found.hops > 0))
     shares = []
     for node, receiver, at, hops in zip(
         came.node.tolist(), came.receiver.tolist(), came.offered_us.tolist(), came.hops.tolist(),
@@ -213,7 +188,7 @@ def stretch(found: Messages, ground: Ground) -> Stretch:
             shares.append(hops / least)
     mean = float(np.mean(shares)) if shares else None
     hops = float(came.hops.mean()) if len(came.hops) else None
-    return {"mean": mean, "p99": percentiles(shares)["p99"], "hops_mean": hops}
+    return {"mean": mean, "p99": messages.percentiles(shares)["p99"], "hops_mean": hops}
 
 
 def alternates(result: Any) -> float | None:
@@ -231,4 +206,4 @@ def alternates(result: Any) -> float | None:
         )
         ways += int(np.count_nonzero(near != NONE))
         spare += int(np.count_nonzero((near != NONE) & (alt != NONE)))
-    return ratio(spare, ways)
+    return messages.ratio(spare, ways)

@@ -5,16 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from innervate.networks.mesh.verify import local
-from innervate.networks.mesh.verify.net import (
-    DEAD,
-    EVENTS_MAX,
-    SWITCH_ON,
-    Move,
-    Net,
-    Nets,
-    Successor,
-    replaced,
-)
+from innervate.networks.mesh.verify import net as mesh_net
+from innervate.verify.values import with_one
 
 SETTLED_US = 3_000_000  # tables are there; messages are offered from then on
 LAST = 12  # events of a round without end that its story tells
@@ -23,22 +15,24 @@ LAST = 12  # events of a round without end that its story tells
 class Begun(NamedTuple):
     """Where an exploration begins, or what broke before it could."""
 
-    net: Net  # switched on; where something is offered, after the first round, its tables in force
+    net: (
+        mesh_net.Net
+    )  # switched on; where something is offered, after the first round, its tables in force
     broken: int  # what that broke, a number of local.py; 0 nothing
-    start: Net  # the state before `path`; if nothing broke, `net`
-    path: list[Successor]  # the events that broke it
+    start: mesh_net.Net  # the state before `path`; if nothing broke, `net`
+    path: list[mesh_net.Successor]  # the events that broke it
 
 
-def begin(nets: Nets) -> Begun:
+def begin(nets: mesh_net.Nets) -> Begun:
     """Switch all nodes of a mesh on, and let their first round pass."""
     model, many = nets.model, (1 << 20,) * nets.n
-    start = Net((DEAD,) * nets.n, (0,) * nets.n, (0, 0, 0, 0), many, 1 << 20, 0)
-    path: list[Successor] = []
+    start = mesh_net.Net((mesh_net.DEAD,) * nets.n, (0,) * nets.n, (0, 0, 0, 0), many, 1 << 20, 0)
+    path: list[mesh_net.Successor] = []
     net = start
     for who in (*range(1, nets.n), 0):
         out = nets.locals.start(who, 0)
-        net = net._replace(nodes=replaced(net.nodes, who, out.state))
-        path.append((Move(SWITCH_ON, who), net, out.broken))
+        net = net._replace(nodes=with_one(net.nodes, who, out.state))
+        path.append((mesh_net.Move(mesh_net.SWITCH_ON, who), net, out.broken))
         if out.broken:
             return Begun(net, out.broken, start, path)
     past = 0
@@ -51,13 +45,13 @@ def begin(nets: Nets) -> Begun:
         net, past = step[1], past + wait
         if step[2]:
             return Begun(net, step[2], start, path)
-        if len(path) > EVENTS_MAX:
+        if len(path) > mesh_net.EVENTS_MAX:
             return Begun(net, local.BROKEN_FIRST, path[-LAST - 1][1], path[-LAST:])
     first = _ready(nets, net)
     return Begun(first, 0, first, [])
 
 
-def _ready(nets: Nets, net: Net) -> Net:
+def _ready(nets: mesh_net.Nets, net: mesh_net.Net) -> mesh_net.Net:
     """The state with all that may still happen."""
     model, budget = nets.model, nets.model.budget
     if not model.beats:

@@ -18,6 +18,7 @@ from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import shape as mesh_shape
 from innervate.networks.mesh.verify.shape import NOW
+from innervate.verify.values import values
 
 NONE = -1
 NEVER = -1
@@ -79,10 +80,14 @@ class Locals:
     def __init__(self, model: mesh_model.MeshModel, entry: ModuleType = mesh, neat: bool = True):
         self.model, self.entry, self.neat = model, entry, neat
         self.boots = 0
-        node, gate, self.frame_class, item = mesh_shape.classes(model.nodes, self._who)
-        self.node, self.gate, self.item = node(), gate(), item()
-        self.blank_node, self.blank_gate = node, gate
-        self.shape, self.gate_shape = mesh_shape.shapes(model.nodes, 1)
+        node, gate = mesh_fields.node(model.nodes), mesh_fields.gate(model.nodes)
+        self.blank_node = mesh_shape.drawing(plain.make("Node", node), self._who)
+        self.blank_gate = plain.make("Gate", gate)
+        self.frame_class = plain.make("Frame", mesh_fields.FRAME)
+        self.node, self.gate = self.blank_node(), self.blank_gate()
+        self.item = plain.make("Item", mesh_fields.ITEM)()
+        self.shape = mesh_shape.Shape(node, mesh_shape.TIMES + mesh_shape.AGES, 1)
+        self.gate_shape = mesh_shape.Shape(gate, mesh_shape.GATE_TIMES, 1)
         self.params = plain.make("Params", mesh_fields.PARAMS)()
         for name, value in mesh_model.parameters(model).items():
             setattr(self.params, name, value)
@@ -151,26 +156,16 @@ class Locals:
 
     def start(self, who: int, boots: int) -> Outcome:
         """What switching a node on leaves; `boots` = how often it was before."""
-        for record, shape in (
-            (self.blank_node(), self.shape),
-            (self.blank_gate(), self.gate_shape),
-        ):
-            if shape is self.shape:
-                record.number, record.rank = who, self.ranks[who]
-                record.robot = int(who == self.model.robot)
-                record.rng, record.neighbour = 1, [const.ALL] * self.model.nodes
-                node = tuple(self._value(record, name) for name in shape.names)
-            else:
-                gate = tuple(self._value(record, name) for name in shape.names)
+        record, nodes = self.blank_node(), self.model.nodes
+        record.number, record.rank = who, self.ranks[who]
+        record.robot = int(who == self.model.robot)
+        record.rng, record.neighbour = 1, [const.ALL] * nodes
+        gate = None
+        if self.ranks[who] >= 0:
+            gate = values(self.blank_gate(), mesh_fields.gate(nodes))
         timers = (NEVER,) * const.TIMERS
-        blank = State(node, gate if self.ranks[who] >= 0 else None, timers, NONE)
-        number = self.number_of(blank)
-        return self.call(number, (START, int(boots > 0), boots), 0)[0]
-
-    @staticmethod
-    def _value(record: Any, name: str) -> Any:
-        value = getattr(record, name)
-        return tuple(value) if isinstance(value, list) else value
+        blank = State(values(record, mesh_fields.node(nodes)), gate, timers, NONE)
+        return self.call(self.number_of(blank), (START, int(boots > 0), boots), 0)[0]
 
     def call(self, number: int, event: tuple[int, ...], elapsed: int) -> tuple[Outcome, ...]:
         """Everything an event `elapsed` us after a node's last one can make of it."""

@@ -20,6 +20,7 @@ from innervate.networks.mesh.protocol.queue import UNACKED
 from innervate.networks.mesh.verify import local as local
 from innervate.networks.mesh.verify.local import NEVER, NONE
 from innervate.networks.mesh.verify.model import MeshModel
+from innervate.verify.values import with_one
 
 # Kinds of moves.
 OFFER, OUTSIDE, AIR, FIRE, DIE, REVIVE, SWITCH_ON = range(7)
@@ -283,8 +284,8 @@ class Nets:
             if number != DEAD and deaths:
                 got = frozenset(row for row in self.sets[net.got] if row[0] != node)
                 after = net._replace(
-                    nodes=replaced(net.nodes, node, DEAD),
-                    lags=replaced(net.lags, node, 0),
+                    nodes=with_one(net.nodes, node, DEAD),
+                    lags=with_one(net.lags, node, 0),
                     left=(net.left[0] - 1, net.left[1], frames, acks),
                     got=self._set_of(got),
                 )
@@ -292,7 +293,7 @@ class Nets:
             if number == DEAD and revivals:
                 fresh = self.locals.start(node, 1 + self.model.budget.revivals - revivals)
                 after = net._replace(
-                    nodes=replaced(net.nodes, node, fresh.state),
+                    nodes=with_one(net.nodes, node, fresh.state),
                     left=(net.left[0], net.left[1] - 1, frames, acks),
                 )
                 found.append((Move(REVIVE, node), after, fresh.broken))
@@ -317,9 +318,9 @@ class Nets:
                     broken = broken or twice
                 nodes, lags = part.nodes, part.lags
                 if out.state != nodes[node]:
-                    nodes = replaced(nodes, node, out.state)
+                    nodes = with_one(nodes, node, out.state)
                 if lags[node]:
-                    lags = replaced(lags, node, 0)
+                    lags = with_one(lags, node, 0)
                 reports = part.reports + tuple((node, *row) for row in out.reports)
                 acks, script = part.acks + out.acks, part.script + out.script
                 found.append(Part(nodes, lags, got, acks, script, reports, broken))
@@ -349,8 +350,3 @@ class Nets:
             number = self.set_numbers[rows] = len(self.sets)
             self.sets.append(rows)
         return number
-
-
-def replaced(row: tuple[int, ...], at: int, value: int) -> tuple[int, ...]:
-    """A tuple with one element different."""
-    return (*row[:at], value, *row[at + 1 :])

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from operator import attrgetter
 from typing import Any
 
-from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields as fields
@@ -209,20 +208,3 @@ def _sort_forwarded(node: Any) -> None:
     rows += [(const.ALL, 0, 0, 0, 0)] * (fields.FORWARDED - len(rows))
     for column, values in zip(columns, zip(*rows, strict=True), strict=True):
         column[:] = values
-
-
-def classes(nodes: int, who: Callable[[int, int], int]) -> tuple[type, type, type, type]:
-    """Classes of a node (its draws scripted), a gateway's record, frames and items."""
-    return (
-        drawing(plain.make("Node", fields.node(nodes)), who),
-        plain.make("Gate", fields.gate(nodes)),
-        plain.make("Frame", fields.FRAME),
-        plain.make("Item", fields.ITEM),
-    )
-
-
-def shapes(nodes: int, grain: int) -> tuple[Shape, Shape]:
-    """How nodes and gateways' records are kept; times in grains of so many us."""
-    return Shape(fields.node(nodes), TIMES + AGES, grain), Shape(
-        fields.gate(nodes), GATE_TIMES, grain
-    )

@@ -13,16 +13,10 @@ import numpy as np
 from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import measured
 from innervate.networks.radio.analysis import headline as radio_headline
+from innervate.networks.radio.analysis import packets
 from innervate.networks.radio.analysis import state as radio_state
 from innervate.networks.radio.analysis.air import groups
 from innervate.networks.radio.analysis.airtime import throughput
-from innervate.networks.radio.analysis.packets import (
-    first_offer_us,
-    settled,
-    successes,
-    timed,
-    traffic_of,
-)
 from innervate.networks.radio.analysis.summary_keys import BoundsNoticed, Delays, RadioSummary
 from innervate.networks.radio.protocol.constants import REPORT_BOUNDS
 
@@ -38,7 +32,7 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
         name: what to call it, where its plan has no scenario.
     """
     plan, counts = result.plan, result.counts
-    found, steady = successes(result), settled(result)
+    found, steady = packets.successes(result), packets.settled(result)
     spent = np.bincount(steady["node"], minlength=plan.stations)
     length, known = duration_us(result), facts(result)
     return {
@@ -47,14 +41,14 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
         "headline": radio_headline.headline(known).as_summary(),
         **measured(result, counts["handled"] + counts["decoded"]),
         "protocol": plan.protocol,
-        "traffic": traffic_of(plan),
+        "traffic": packets.traffic_of(plan),
         "stations": plan.stations,
         "throughput": throughput(result),
         "duration_slots": None if length is None else length / plan.params["slot_us"],
         "jain": jain(spent),
         "jain_round": jain_round(result),
         "delay_slots": delay_slots(result),
-        "waited_off": len(steady) - len(timed(result)),
+        "waited_off": len(steady) - len(packets.timed(result)),
         "collisions": int(np.count_nonzero(groups(result).collision)),
         "offered": counts["offers"],
         "delivered": len(found),
@@ -73,7 +67,7 @@ def summarize(result: Any, name: str | None = None) -> RadioSummary:
 
 def facts(result: Any) -> radio_headline.RadioFacts:
     """What the headline of a finished run is made of."""
-    found = successes(result)
+    found = packets.successes(result)
     known = radio_state.facts(
         result.world,
         result.plan,
@@ -92,8 +86,8 @@ def facts(result: Any) -> radio_headline.RadioFacts:
 
 def duration_us(result: Any) -> int | None:
     """From the first offer to the end of the last success; None without one."""
-    found = successes(result)
-    return int(found["end"][-1]) - first_offer_us(result) if len(found) else None
+    found = packets.successes(result)
+    return int(found["end"][-1]) - packets.first_offer_us(result) if len(found) else None
 
 
 def jain(counts: Any) -> float | None:
@@ -111,7 +105,7 @@ def jain_round(result: Any) -> float | None:
 
     A turn is a frame, however many packets it carried. None with less than a round of turns.
     """
-    steady, n = settled(result), result.plan.stations
+    steady, n = packets.settled(result), result.plan.stations
     if len(steady) == 0:
         return None
     fresh = np.ones(len(steady), np.bool_)
@@ -127,7 +121,7 @@ def jain_round(result: Any) -> float | None:
 
 def delays(result: Any) -> Any:
     """Slots from offer to end of the successful frame, of every success of `timed`."""
-    found = timed(result)
+    found = packets.timed(result)
     return (found["end"] - found["offered"]) / result.plan.params["slot_us"]
 
 
@@ -139,8 +133,8 @@ def delay_slots(result: Any) -> Delays:
 
 def order(result: Any) -> list[int]:
     """Stations in the order of success: all in a disaster, else the first thousand."""
-    found = successes(result)["node"]
-    if traffic_of(result.plan) != "disaster":
+    found = packets.successes(result)["node"]
+    if packets.traffic_of(result.plan) != "disaster":
         found = found[:ORDER_MAX]
     stations: list[int] = found.tolist()
     return stations
@@ -153,7 +147,7 @@ def fifo(result: Any) -> float | None:
     one that was served later was there when the other one's frame ended. Looked for among packets
     with less than a round between them. None without pairs.
     """
-    steady = timed(result)[:PAIRS_FROM]
+    steady = packets.timed(result)[:PAIRS_FROM]
     offered, end, node = steady["offered"], steady["end"], steady["node"]
     pairs = kept = 0
     for apart in range(1, min(result.plan.stations, len(steady))):

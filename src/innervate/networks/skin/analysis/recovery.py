@@ -6,20 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.networks.skin.analysis.rows import (
-    ApartSteps,
-    BrokenChanges,
-    JoinedSteps,
-    Marks,
-    Numbers,
-    UnroutedSteps,
-    apart_steps,
-    broken_changes,
-    joined_steps,
-    marks,
-    parent_changes,
-    unrouted_steps,
-)
+from innervate.networks.skin.analysis import rows
 from innervate.networks.skin.analysis.summary_keys import Recovery, StartUp
 from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.scenario.actions.cables import ACTIONS, CUT, KILL, RESTART, RESTORE, REVIVE
@@ -34,11 +21,11 @@ def recoveries(result: Any) -> list[Recovery]:
     What follows an event is looked for until the next later one; events of one moment share what
     came of it. For what the keys say see `Recovery`.
     """
-    at = marks(result)
-    changes = parent_changes(result)
+    at = rows.marks(result)
+    changes = rows.parent_changes(result)
     switches = changes.row[~changes.balancing]
-    broken, unrouted = broken_changes(result), unrouted_steps(result)
-    apart, joined = apart_steps(result), joined_steps(result)
+    broken, unrouted = rows.broken_changes(result), rows.unrouted_steps(result)
+    apart, joined = rows.apart_steps(result), rows.joined_steps(result)
     faults = {fault.index: fault for fault in result.plan.faults}
     found: list[Recovery] = []
     for place in np.flatnonzero(at.event != NOBODY).tolist():
@@ -68,18 +55,18 @@ def recoveries(result: Any) -> list[Recovery]:
 
 def start_up(result: Any) -> StartUp:
     """The same for the beginning: `converged_ms` and `routed_ms` from switching on."""
-    at = marks(result)
+    at = rows.marks(result)
     if len(at.row) == 0:  # it ran unobserved
         return {"converged_ms": None, "routed_ms": None}
-    changes = parent_changes(result)
+    changes = rows.parent_changes(result)
     window = _window(result, at, 0)
     last = _last(result.rows["time"], changes.row[~changes.balancing], window)
-    apart = _cut_off(apart_steps(result), window)[1]
-    routed = None if apart else _routed(unrouted_steps(result), window, 0)
+    apart = _cut_off(rows.apart_steps(result), window)[1]
+    routed = None if apart else _routed(rows.unrouted_steps(result), window, 0)
     return {"converged_ms": _since(0, last), "routed_ms": _since(0, routed)}
 
 
-def _window(result: Any, at: Marks, place: int) -> tuple[int, int]:
+def _window(result: Any, at: rows.Marks, place: int) -> tuple[int, int]:
     """The rows after the first mark of a mark's moment and before that of a later moment."""
     first, after = (
         int(np.searchsorted(at.time_us, at.time_us[place], side)) for side in ("left", "right")
@@ -89,13 +76,15 @@ def _window(result: Any, at: Marks, place: int) -> tuple[int, int]:
     return int(at.row[min(first, place)]) + 1, behind
 
 
-def _at(steps: ApartSteps | JoinedSteps | UnroutedSteps, row: int, otherwise: int) -> int:
+def _at(
+    steps: rows.ApartSteps | rows.JoinedSteps | rows.UnroutedSteps, row: int, otherwise: int
+) -> int:
     """What a step function is just before a row."""
     after = int(np.searchsorted(steps.row, row))
     return int(steps.cells[after - 1]) if after else otherwise
 
 
-def _cut_off(steps: ApartSteps, window: tuple[int, int]) -> tuple[int, int]:
+def _cut_off(steps: rows.ApartSteps, window: tuple[int, int]) -> tuple[int, int]:
     """Cells cut off inside a window, and all that are so at its end."""
     first, behind = np.searchsorted(steps.row, window).tolist()
     return int(steps.fresh[first:behind].sum()), _at(steps, window[1], 0)
@@ -105,7 +94,7 @@ def _since(start_us: int, time_us: int | None) -> float | None:
     return None if time_us is None else (time_us - start_us) / 1e3
 
 
-def _last(times: Numbers, places: Numbers, window: tuple[int, int]) -> int | None:
+def _last(times: rows.Numbers, places: rows.Numbers, window: tuple[int, int]) -> int | None:
     """Time of the last of these rows inside the window."""
     after = int(np.searchsorted(places, window[1]))
     if after == 0 or places[after - 1] < window[0]:
@@ -113,7 +102,7 @@ def _last(times: Numbers, places: Numbers, window: tuple[int, int]) -> int | Non
     return int(times[places[after - 1]])
 
 
-def _routed(steps: UnroutedSteps, window: tuple[int, int], start: int) -> int | None:
+def _routed(steps: rows.UnroutedSteps, window: tuple[int, int], start: int) -> int | None:
     """When the last cell had a route for good; `start` if none ever lacked one."""
     first, behind = np.searchsorted(steps.row, window).tolist()
     if first == behind:
@@ -130,7 +119,7 @@ def ends_of(result: Any, fault: Fault) -> list[int]:
 
 
 def _detected(
-    result: Any, fault: Fault, broken: BrokenChanges, window: tuple[int, int]
+    result: Any, fault: Fault, broken: rows.BrokenChanges, window: tuple[int, int]
 ) -> int | None:
     first, behind = np.searchsorted(broken.row, window).tolist()
     if first == behind:
@@ -140,7 +129,7 @@ def _detected(
     return int(broken.time_us[first + int(hits[0])]) if len(hits) else None
 
 
-def _cut_cells(result: Any, at: Marks, place: int, fault: Fault) -> int:
+def _cut_cells(result: Any, at: rows.Marks, place: int, fault: Fault) -> int:
     """Cells whose chain of parents used the link, or went through the node."""
     if fault.action in (RESTORE, REVIVE):
         return 0
@@ -150,9 +139,9 @@ def _cut_cells(result: Any, at: Marks, place: int, fault: Fault) -> int:
     return int(np.count_nonzero(users(result.plan.graph, parent, fault)))
 
 
-def parents_before(result: Any, place: int) -> Numbers:
+def parents_before(result: Any, place: int) -> rows.Numbers:
     """Parent port of every cell just before mark `place` (see rows.marks); -1 none."""
-    at, changes = marks(result), parent_changes(result)
+    at, changes = rows.marks(result), rows.parent_changes(result)
     cells = result.plan.graph.cells
     behind = int(np.searchsorted(changes.row, at.row[place]))
     # Of several values for one place NumPy keeps the last.
@@ -170,7 +159,7 @@ def parents_before(result: Any, place: int) -> Numbers:
     return parent
 
 
-def next_hops(graph: Any, parent: Numbers) -> Numbers:
+def next_hops(graph: Any, parent: rows.Numbers) -> rows.Numbers:
     """The node on every cell's parent port; -1 without a parent."""
     peer = np.frombuffer(graph.peer, np.int32)
     cells = len(parent)
@@ -179,7 +168,7 @@ def next_hops(graph: Any, parent: Numbers) -> Numbers:
     return np.where(parent == NONE, NOBODY, hop)
 
 
-def users(graph: Any, parent: Numbers, fault: Fault) -> Any:
+def users(graph: Any, parent: rows.Numbers, fault: Fault) -> Any:
     """True for every cell whose chain of parents uses the event's cable or node."""
     cells = len(parent)
     hop = next_hops(graph, parent)

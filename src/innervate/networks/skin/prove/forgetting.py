@@ -20,8 +20,8 @@ from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.prove.feasible import ENTRY
 from innervate.networks.skin.prove.neighbours import ANY_RULE, ROOM
 from innervate.networks.skin.prove.reductions import STORED, Bare
-from innervate.prove.execute import Call, Demand, Machine
-from innervate.prove.records import Array, Outbox, State, Store
+from innervate.prove.execute import Machine
+from innervate.prove.records import Array, Call, Demand, Outbox, State, Store
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source

@@ -19,8 +19,8 @@ from innervate.networks.skin.protocol.constants import PORTS
 from innervate.networks.skin.prove.feasible import ENTRY
 from innervate.networks.skin.prove.neighbours import ROOM
 from innervate.networks.skin.prove.reductions import HANDLERS, NOT_DRAWN, SAID, Bare
-from innervate.prove.execute import Call, Demand, Machine
-from innervate.prove.records import Action, Outbox, Record, State, Store, name_of
+from innervate.prove.execute import Machine
+from innervate.prove.records import Action, Call, Demand, Outbox, Record, State, Store, name_of
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source

@@ -10,17 +10,7 @@ from typing import Any, NamedTuple
 
 from innervate.dialect.outbox import REPORT, SEND
 from innervate.kernel.records import within
-from innervate.networks.skin.protocol.constants import (
-    INFINITY,
-    MEMORY_LOST,
-    NONE,
-    ONE,
-    PERIODIC,
-    PORTS,
-    REPORT_FORGET,
-)
-from innervate.networks.skin.protocol.constants import SOON as SOON_TIMER
-from innervate.networks.skin.protocol.constants import TICK as TICK_TIMER
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.verify import row as rows
 from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.check import check, is_settled
@@ -52,20 +42,20 @@ def first_loaded(world):
     for way in range(world.at[w.DIRECTIONS]):
         if queued(world, way) > 0:
             return way
-    return NONE
+    return const.NONE
 
 
 def may_break(world, c, p):
     """1 if the next tick may find this port broken: the cable is cut, or a false detection."""
-    slot = world.port_at[PORTS * c + p]
+    slot = world.port_at[const.PORTS * c + p]
     if (world.work[slot + w.SAYS] >> 2) & 3:
         return 0
     # Periodic cells look at a port in ticks only: without a route there nobody can tell, except
     # who counts the rounds until all is well again.
-    is_periodic = world.params[0].updates == PERIODIC
-    if is_periodic and world.at[w.KEEP] == 0 and world.work[slot + w.DIST] == INFINITY:
+    is_periodic = world.params[0].updates == const.PERIODIC
+    if is_periodic and world.at[w.KEEP] == 0 and world.work[slot + w.DIST] == const.INFINITY:
         return 0
-    link = world.way_link[world.in_way[PORTS * c + p]]
+    link = world.way_link[world.in_way[const.PORTS * c + p]]
     return 1 if not rows.is_up(world, link) or rows.has_budget(world, w.FALSE) else 0
 
 
@@ -73,7 +63,7 @@ def options(world, c, p):
     """Ways in which a port can come into its cell's next tick: beacons taken in, or broken."""
     count = 1 + may_break(world, c, p)
     if world.at[w.MERGE]:
-        count = count + queued(world, world.in_way[PORTS * c + p])
+        count = count + queued(world, world.in_way[const.PORTS * c + p])
     return count
 
 
@@ -82,8 +72,8 @@ def tick_variants(world, c):
     if world.work[world.cell_at[c] + w.TICKS] == 0:
         return 0
     ways = 1
-    for p in range(PORTS):
-        if world.port_at[PORTS * c + p] >= 0:
+    for p in range(const.PORTS):
+        if world.port_at[const.PORTS * c + p] >= 0:
             ways = ways * options(world, c, p)
     return ways
 
@@ -96,7 +86,7 @@ def pc_variants(world):
     ways = 1
     if world.at[w.MERGE]:
         for p in range(world.pc.own[0].ports):
-            ways = ways * (1 + queued(world, world.in_way[PORTS * world.at[w.CELLS] + p]))
+            ways = ways * (1 + queued(world, world.in_way[const.PORTS * world.at[w.CELLS] + p]))
     return ways
 
 
@@ -105,7 +95,7 @@ def variants(world, move):
     kind, arg = world.move_kind[move], world.move_arg[move]
     if world.at[w.PROMPT]:
         loaded = first_loaded(world)
-        if loaded != NONE and not ((kind == w.DELIVER or kind == w.LOSE) and arg == loaded):
+        if loaded != const.NONE and not ((kind == w.DELIVER or kind == w.LOSE) and arg == loaded):
             return 0
     if kind == w.TICK:
         return tick_variants(world, arg)
@@ -157,9 +147,9 @@ def drain(world, first_end):
         act = out.action[i]
         if act.kind == SEND:
             way = world.out_way[first_end + act.a]
-            if way != NONE and rows.is_up(world, world.way_link[way]):
+            if way != const.NONE and rows.is_up(world, world.way_link[way]):
                 rows.push(world, way, out.frame[i])
-        elif act.kind == REPORT and act.a == REPORT_FORGET:
+        elif act.kind == REPORT and act.a == const.REPORT_FORGET:
             forgot = 1
     out.count[0] = 0
     if out.overflow[0]:
@@ -178,7 +168,7 @@ def finish_cell(world, c, has_ticked):
     cell.choice = 0
     check_range(world)
     rows.save_cell(world, c, has_ticked)
-    forgot = drain(world, PORTS * c)
+    forgot = drain(world, const.PORTS * c)
     check_feasible(world, known, sq, dist, forgot)
     return asked
 
@@ -194,7 +184,7 @@ def bind(skin, skin_sink):
             finish_cell(world, c, 0)
         skin_sink.on_start(world.pc, world.params[0], 0, 0, world.out)
         while world.pc.own[0].listen > 0:
-            skin_sink.on_timer(world.pc, world.params[0], 0, TICK_TIMER, world.out)
+            skin_sink.on_timer(world.pc, world.params[0], 0, const.TICK, world.out)
         world.out.count[0] = 0
         rows.save_pc(world)
 
@@ -202,7 +192,7 @@ def bind(skin, skin_sink):
         """The oldest frame of a direction arrives."""
         end = world.way_end[way]
         rows.take(world, way, 0)
-        first = PORTS * world.at[w.CELLS]
+        first = const.PORTS * world.at[w.CELLS]
         if end >= first:
             rows.load_pc(world)
             params = world.params[world.at[w.FAIR]]
@@ -210,22 +200,22 @@ def bind(skin, skin_sink):
             rows.save_pc(world)
             drain(world, first)
             return 1
-        c = end // PORTS
+        c = end // const.PORTS
         rows.load_cell(world, c, 0)
         cell = world.cells[0]
         cell.choice = choice
         params = world.params[world.at[w.FAIR]]
-        skin.on_frame(cell, params, 0, end - PORTS * c, world.frame[0], world.out)
+        skin.on_frame(cell, params, 0, end - const.PORTS * c, world.frame[0], world.out)
         return finish_cell(world, c, 0)
 
     def attend(world, c, variant):
         """What reaches a cell right before its tick; 0 if this cannot be."""
         cell, params = world.cells[0], world.params[world.at[w.FAIR]]
-        for p in range(PORTS):
-            slot = world.port_at[PORTS * c + p]
+        for p in range(const.PORTS):
+            slot = world.port_at[const.PORTS * c + p]
             if slot < 0:
                 continue
-            way = world.in_way[PORTS * c + p]
+            way = world.in_way[const.PORTS * c + p]
             up = rows.is_up(world, world.way_link[way])
             count = options(world, c, p)
             chosen = variant % count
@@ -243,7 +233,7 @@ def bind(skin, skin_sink):
                     rows.take(world, way, 0)
                     skin.on_frame(cell, params, 0, p, world.frame[0], world.out)
             # A cable that is not found broken now has brought something since the last tick.
-            cell.heard[p] = 1 if up or cell.pf[p] < ONE else 0
+            cell.heard[p] = 1 if up or cell.pf[p] < const.ONE else 0
         return True
 
     def tick(world, c, variant, choice):
@@ -255,7 +245,7 @@ def bind(skin, skin_sink):
         if world.at[w.FAIR] == 0 and world.work[world.cell_at[c] + w.TICKS] != w.ANY:
             world.work[world.cell_at[c] + w.TICKS] -= 1
         cell.choice = choice
-        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, TICK_TIMER, world.out)
+        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, const.TICK, world.out)
         asked = finish_cell(world, c, rows.HAS_TICKED)
         if world.at[w.MERGE]:
             rows.trim(world, c)
@@ -266,14 +256,14 @@ def bind(skin, skin_sink):
         rows.load_cell(world, c, 0)
         cell = world.cells[0]
         cell.choice = choice
-        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, SOON_TIMER, world.out)
+        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, const.SOON, world.out)
         return finish_cell(world, c, 0)
 
     def pc_tick(world, variant):
         """The PC's period is over."""
         params = world.params[world.at[w.FAIR]]
         rows.load_pc(world)
-        first = PORTS * world.at[w.CELLS]
+        first = const.PORTS * world.at[w.CELLS]
         if world.at[w.MERGE]:
             for p in range(world.pc.own[0].ports):
                 way = world.in_way[first + p]
@@ -284,7 +274,7 @@ def bind(skin, skin_sink):
                 variant = variant // count
         if world.pc.own[0].listen == 0 and world.at[w.FAIR] == 0:
             world.work[world.at[w.PC_AT] + w.PC_COUNTS] -= 1
-        skin_sink.on_timer(world.pc, params, 0, TICK_TIMER, world.out)
+        skin_sink.on_timer(world.pc, params, 0, const.TICK, world.out)
         rows.save_pc(world)
         drain(world, first)
         return 1
@@ -320,7 +310,7 @@ def bind(skin, skin_sink):
         else:
             rows.spend(world, w.RESTART)
             rows.load_pc(world)
-            skin_sink.on_start(world.pc, world.params[0], 0, MEMORY_LOST, world.out)
+            skin_sink.on_start(world.pc, world.params[0], 0, const.MEMORY_LOST, world.out)
             world.out.count[0] = 0
             rows.save_pc(world)
         return 1
