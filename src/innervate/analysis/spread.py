@@ -12,12 +12,7 @@ EQUAL = 1e-6  # relative: what differs by less is the same, as far as rounding g
 
 
 def spread(count: int, links: Iterable[tuple[int, int]]) -> Any:
-    """x, y of every node: as far apart as they are in hops, about one from the next.
-
-    Args:
-        count: of nodes.
-        links: pairs of nodes.
-    """
+    """x, y of every node: as far apart as they are in hops, about one from the next."""
     pairs = list(links)
     if count < 3 or not pairs:
         turn = 2 * math.pi * np.arange(count) / max(1, count)

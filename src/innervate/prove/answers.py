@@ -18,7 +18,6 @@ class Answers(Machine):
     into. Two questions are the same where arguments are, and every field that is read.
 
     Args:
-        functions, terms, out: as of every machine.
         asked: names of the functions; each may change nothing.
     """
 

@@ -70,13 +70,7 @@ class Step:
 
 
 class Stage:
-    """Records and terms on which a step is to be played.
-
-    Args:
-        functions: of the protocol.
-        frame: declaration of its frames.
-        room: actions that its outbox holds.
-    """
+    """Records and terms on which a step is to be played."""
 
     def __init__(self, functions: dict[str, Function], frame: Declaration, room: int) -> None:
         self.functions = functions

@@ -19,9 +19,6 @@ ON_US = (1 << 29) + 123_457
 class Readings:
     """Looks at calls.
 
-    Args:
-        net: with a node, its clocks, an outbox and draws.
-
     Attributes:
         apart: handlers that do something else at another reading.
     """

@@ -157,15 +157,7 @@ def _reached(ways: Ways) -> str:
 def traffic(
     found: Messages, crossings: Sequence[Crossing], doubled: int, looped: int, faults: Any
 ) -> Traffic:
-    """The traffic of a run, so far.
-
-    Args:
-        found: its messages.
-        crossings: its crossings.
-        doubled: deliveries beyond the first.
-        looped: packets that met a node twice.
-        faults: those that took effect.
-    """
+    """The traffic of a run, so far."""
     decided = counted(found)
     came = decided.state == DELIVERED
     closed = [crossing for crossing in crossings if not crossing.open]

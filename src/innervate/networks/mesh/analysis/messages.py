@@ -295,12 +295,7 @@ def first_after(found: Messages, since_us: int) -> Messages:
 
 
 def took_effect(plan: Any, ended_us: int) -> list[Any]:
-    """The events that happened and changed something, in order: no dead node dies again.
-
-    Args:
-        plan: of the run.
-        ended_us: when the run ended, or was interrupted.
-    """
+    """The events that happened and changed something, in order: no dead node dies again."""
     found = []
     on = [not absent for absent in plan.absent] or [True] * plan.nodes
     cut: dict[frozenset[int], bool] = {}

@@ -105,13 +105,7 @@ def switched_on(plan: Any, faults: Iterable[Any], now_us: int) -> list[int]:
 
 
 def waiting(world: Any, station: int, since_us: int = 0) -> list[int]:
-    """Since when each packet in a robot could have been sent, us, the oldest first.
-
-    Args:
-        world: of the event level.
-        station: whose.
-        since_us: when it was switched on last.
-    """
+    """Since when each packet in a robot could have been sent, us, the oldest first."""
     radio = {name: int(get(world.radios, station, name)) for name in ("backlog", "fresh")}
     first = radio["fresh"] - radio["backlog"]
     places = [station * RING + ((first + i) & (RING - 1)) for i in range(radio["backlog"])]

@@ -45,7 +45,6 @@ class Hearing(Ending):
     """Hears a report by any of its minislots.
 
     Args:
-        known, terms: as of every machine.
         one: the station.
         shared: how the round's record is called, so that stations may have the same.
     """
@@ -72,7 +71,6 @@ class Report:
     """Stations a and b of a stage hear its frame as a report.
 
     Args:
-        known: functions of the protocol.
         stage: with both, and parameters.
         alike: both have the same record of the round.
 

@@ -20,10 +20,6 @@ def skin_facts(result: Any, data: Data) -> SkinFacts | None:
     """What a headline is made of; None of a run that nobody observed.
 
     Samples that cells took before they had a way for the first time do not count.
-
-    Args:
-        result: of the run.
-        data: its `data_summary`.
     """
     if len(marks(result).row) == 0:
         return None

@@ -37,9 +37,7 @@ class Asked(Machine):
     """Answers a question about a port with no, and demands that this be the answer.
 
     Args:
-        functions, terms: as of every machine.
         question: a function of cell, parameters and port.
-        port: that.
         event: that is run; of the same in two runs the same is drawn.
     """
 
@@ -100,8 +98,6 @@ class Runs:
     """Runs of a cell one of whose ports is dead.
 
     Args:
-        known: functions of the protocol.
-        rule: that it is under.
         p: the port that is dead.
         parent: the cell's.
         why: SAID, REFUSED or BROKEN.

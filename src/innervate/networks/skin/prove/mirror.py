@@ -35,7 +35,6 @@ class First(Machine):
     """Notes what is chosen; where a choice is made it may come out in any way.
 
     Args:
-        functions, terms: as of every machine.
         whole: follow a choice, too.
 
     Attributes:
@@ -65,12 +64,7 @@ class First(Machine):
 
 
 class Second(Machine):
-    """Chooses the image of what was chosen, and demands that this can be.
-
-    Args:
-        first: that has run.
-        mirror: makes images.
-    """
+    """Chooses the image of what was chosen, and demands that this can be."""
 
     def __init__(self, first: First, mirror: Mirror) -> None:
         super().__init__(first.functions, first.terms, Outbox(fields.FRAME, ROOM))
@@ -129,7 +123,6 @@ class Mirror:
     """Ports in another order.
 
     Args:
-        terms: that all is made of.
         order: where each goes.
     """
 

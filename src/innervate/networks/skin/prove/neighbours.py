@@ -58,9 +58,6 @@ class View:
     """A cell's record at one moment, beside its neighbours' feasible distances.
 
     Args:
-        terms: that all is made of.
-        cell, params: records.
-        store: their values at this moment.
         ghosts: its neighbours by port.
     """
 
@@ -215,12 +212,7 @@ def true_ghosts(view: View) -> Term:
 
 
 class Cell:
-    """A cell on a stage, with its parameters, a frame, a port and its neighbours.
-
-    Args:
-        known: functions of the protocol.
-        rule: that it is under, or ANY_RULE.
-    """
+    """A cell on a stage, with its parameters, a frame, a port and its neighbours."""
 
     def __init__(self, known: dict[str, Any], rule: int) -> None:
         self.stage = stage = Stage(known, fields.FRAME, ROOM)

@@ -44,12 +44,7 @@ def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], 
 
 
 class Bare:
-    """A cell in any state, without balancing, that can be run twice.
-
-    Args:
-        known: functions of the protocol.
-        rule: which every run is under.
-    """
+    """A cell in any state, without balancing, that can be run twice."""
 
     def __init__(self, known: dict[str, Any], rule: int) -> None:
         self.known = known

@@ -42,8 +42,6 @@ class Twice(Bare):
     """A cell in two states that differ in some fields.
 
     Args:
-        known: functions of the protocol.
-        rule: that it is under.
         words: what is different.
         names: fields that are; of an array those of a port.
         port: that, if any.
