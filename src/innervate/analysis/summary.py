@@ -10,7 +10,16 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from innervate.analysis.headline import BEFORE_ALL, DEGRADED, DOWN, NO_DATA, OK, Headline, every
+from innervate.analysis.headline import (
+    BEFORE_ALL,
+    DEGRADED,
+    DOWN,
+    NO_DATA,
+    OK,
+    Headline,
+    every,
+    verb,
+)
 from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.analysis.words import number_of
@@ -198,9 +207,10 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
     lost, dropped = sum(counts.lost_by.values()), sum(counts.dropped_by.values())
     if nodes and len(off) == nodes:
         who = every(nodes, "node").capitalize()
-        return Headline(DOWN, f"{who} {'is' if nodes == 1 else 'are'} off.", off)
+        return Headline(DOWN, f"{who} {verb(nodes, 'is')} off.", off)
     if lost and not counts.arrived:
-        return _down(_none_came(counts), counts)
+        how = ("succeeded", "failed") if counts.is_shared else ("arrived", "did not arrive")
+        return _down(_none(counts.sent, _frame(counts), *how), counts)
     unheard = max(counts.offered - counts.delivered, counts.unheard)
     missing = 0 if goes_on else max(unheard - dropped, 0)
     if (dropped or missing) and not counts.delivered:
@@ -225,12 +235,6 @@ def _down(said: str, counts: Counts) -> Headline:
     return Headline(DOWN, f"{', '.join(filter(None, (said, off)))}.", counts.off)
 
 
-def _none_came(counts: Counts) -> str:
-    """That no frame came to anybody."""
-    how = ("succeeded", "failed") if counts.is_shared else ("arrived", "did not arrive")
-    return _none(counts.sent, _frame(counts), *how)
-
-
 def _frame(counts: Counts) -> str:
     """What frames are counted by."""
     return "reception" if counts.is_shared else "frame"
@@ -247,14 +251,14 @@ def _well(counts: Counts) -> str:
     if lost:
         kept = f"{_part(lost, counts.sent, what, 'lost')}."
     if counts.delivered > counts.offered > 0 and not counts.unheard:
-        many = "1 message is" if counts.offered == 1 else f"{counts.offered:,} messages are"
+        many = f"{number_of(counts.offered, 'message')} {verb(counts.offered, 'is')}"
         return f"{many} delivered {counts.delivered:,} times, {kept}"
     under_way = max(counts.offered - counts.delivered, counts.unheard)
     if under_way > 0:
         return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
     if counts.offered:
         what = every(counts.offered, "message").capitalize()
-        return f"{what} {'is' if counts.offered == 1 else 'are'} delivered, {kept}"
+        return f"{what} {verb(counts.offered, 'is')} delivered, {kept}"
     return kept.capitalize()
 
 
@@ -266,4 +270,4 @@ def _none(count: int, what: str, did: str, did_not: str) -> str:
 def _part(count: int, total: int, what: str, how: str) -> str:
     if not count:
         return ""
-    return f"{count:,} of {total:,} {what}s {'is' if count == 1 else 'are'} {how}"
+    return f"{count:,} of {total:,} {what}s {verb(count, 'is')} {how}"

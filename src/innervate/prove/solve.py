@@ -193,11 +193,10 @@ class Question:
 
         The solver is given all of them and keeps what it learns of some for the next.
         """
-        solver = self._solver(*(self._if_asked(k, term) for k, term in enumerate(terms)))
+        asked = (z3.Implies(z3.Bool(f"asked {k}"), self.formulas.of(term))
+                 for k, term in enumerate(terms))  # fmt: skip
+        solver = self._solver(*asked)
         return lambda *places: self._ask(solver, *(z3.Bool(f"asked {k}") for k in places))
-
-    def _if_asked(self, k: int, term: Term) -> Any:
-        return z3.Implies(z3.Bool(f"asked {k}"), self.formulas.of(term))
 
     def _solver(self, *wanted: Any) -> Any:
         known = [self.formulas.of(term) for term in self.facts]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import DELIVER, SEND, SET_TIMER
+from innervate.dialect.outbox import SEND, SET_TIMER
 from innervate.dialect.source import Function
 from innervate.prove.execute import Machine
 from innervate.prove.records import Declaration, Outbox, Record, Store, name_of, unknowns
@@ -169,6 +169,3 @@ def sent(step: Step, kind: int | None = None) -> Any:
             guard = terms.all(action.guard, is_kind)
             if guard is not terms.false:
                 yield guard, action.a, action.frame
-
-
-__all__ = ["DELIVER", "Goal", "Stage", "Step", "own_goals", "room", "sent"]

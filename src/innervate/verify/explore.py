@@ -16,7 +16,7 @@ from innervate.kernel.clock import wall_s
 from innervate.verify import search as s
 from innervate.verify.errors import VerifyError
 from innervate.verify.table import Table
-from innervate.verify.tally import Tally
+from innervate.verify.tally import Tally as Tally
 
 MEMORY = 2 << 30
 CHUNK = 20_000
@@ -202,6 +202,3 @@ def unpacked(word: int) -> tuple[int, int, int]:
     rest, choice = divmod(word, s.CHOICE)
     move, variant = divmod(rest, s.VARIANT)
     return move, variant, choice
-
-
-__all__ = ["Progress", "Result", "Tally", "explore", "unpacked"]

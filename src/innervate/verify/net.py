@@ -22,7 +22,7 @@ from innervate.verify.frames import TIMED, Frames
 from innervate.verify.readings import Readings
 from innervate.verify.states import After, Budget, Move, Node, State, Step, happen, sent
 from innervate.verify.telling import ERRORS, first_broken, where
-from innervate.verify.values import ahead, put, values, with_one
+from innervate.verify.values import ahead, moved, put, values, with_one
 
 OUTBOX = 16
 COLD, MEMORY_LOST = 0, 1
@@ -315,13 +315,7 @@ class Net:
     def kept(self, state: State, number: int, now: int, asked: Node) -> State:
         """The state with a node as it is now, its moments relative to its time."""
         for name in self.clocks:
-            at = getattr(self.node, name)
-            own = (
-                [(one - now) & MASK30 for one in at]
-                if isinstance(at, list)
-                else (at - now) & MASK30
-            )
-            setattr(self.node, name, own)
+            setattr(self.node, name, moved(getattr(self.node, name), -now))
         waits = tuple(sorted((timer, at - now) for timer, at in asked.timers))
         late = sorted(((at - now, port, one) for at, port, one in asked.late), key=itemgetter(0))
         left = asked._replace(values=values(self.node, self.fields.STATE), timers=waits)

@@ -10,7 +10,7 @@ from typing import Any
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, SEND, SET_TIMER
-from innervate.verify.values import put, values
+from innervate.verify.values import moved, put, values
 
 CALLS = 500  # of each handler
 ON_US = (1 << 29) + 123_457
@@ -63,9 +63,7 @@ class Readings:
 
     def _move(self, on: int) -> None:
         for name in self.net.clocks:
-            at = getattr(self.net.node, name)
-            moved = [(one + on) & MASK30 for one in at] if isinstance(at, list) else at + on
-            setattr(self.net.node, name, moved if isinstance(moved, list) else moved & MASK30)
+            setattr(self.net.node, name, moved(getattr(self.net.node, name), on))
 
     def _move_what_differs(self, first: dict[str, Any]) -> None:
         """Move moments back, but those that a handler sets to a number, whatever the time is."""

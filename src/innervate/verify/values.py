@@ -28,6 +28,11 @@ def with_one(row: tuple[Any, ...], place: int, value: Any) -> tuple[Any, ...]:
     return (*row[:place], value, *row[place + 1 :])
 
 
+def moved(at: Any, by: int) -> Any:
+    """A moment, or each of several, so much later on a clock."""
+    return [(one + by) & MASK30 for one in at] if isinstance(at, list) else (at + by) & MASK30
+
+
 def ahead(at: int) -> int:
     """How far a moment is ahead of clock reading 0; negative if it is behind."""
     at &= MASK30

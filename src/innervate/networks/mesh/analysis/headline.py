@@ -14,8 +14,6 @@ from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED,
 from innervate.networks.mesh.analysis.reach import Ways
 from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 
-__all__ = ["Traffic", "headline", "traffic"]
-
 
 class Traffic(NamedTuple):
     """What became of messages and alarms; running nodes do not know, and leave it at nothing."""

@@ -17,8 +17,6 @@ from innervate.networks.mesh.analysis.reach import of_simulation
 from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
 from innervate.sim.tables import get
 
-__all__ = ["alternates", "connected", "flows", "looped", "stretch", "summarize"]
-
 NONE = 255  # no next hop, no alternate
 
 

@@ -222,6 +222,3 @@ def tell(step: Step, question: Question, _goal: str) -> list[str]:
         f"That path has {lengths[1]} nodes, more than the first: A takes it back again. "
         "The packet has gone from B to A twice, as two copies.",
     ]
-
-
-__all__ = ["theories"]

@@ -163,6 +163,3 @@ class Fair:
             if len(leaders) != 1 or field(number, "gateway") != leaders[0]:
                 return True
         return False
-
-
-__all__ = ["End", "Fair"]

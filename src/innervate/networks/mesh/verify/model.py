@@ -7,6 +7,7 @@ from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.scenario.emit import to_toml
 from innervate.verify.errors import VerifyError
 
 NODES_MAX = 6
@@ -117,19 +118,16 @@ def reach(nodes: int, links: Any, start: int, dead: Any = ()) -> set[int]:
     return found if nodes else set()
 
 
-def scenario_text(model: MeshModel, name: str, duration_s: float, seed: int = 1) -> str:
-    """The network and its settings as the head of a scenario file."""
-    lines = ['kind = "mesh"', f'name = "{name}"', f"duration_s = {duration_s}", f"seed = {seed}"]
-    lines += [f"nodes = {model.nodes}", "gateway = 0"]
+def scenario_text(
+    model: MeshModel, name: str, duration_s: float, seed: int = 1, **more: Any
+) -> str:
+    """The network and its settings, and more tables, as a scenario file."""
+    tables = {"kind": "mesh", "name": name, "duration_s": duration_s, "seed": seed,
+              "nodes": model.nodes, "gateway": 0}  # fmt: skip
     if model.standby:
-        lines.append(f"standby = {list(model.standby)}")
-    lines += ["", "[protocol]"]
-    for key, value in model.protocol.items():
-        word = str(value).lower() if isinstance(value, bool) else value
-        lines.append(f'{key} = "{word}"' if isinstance(value, str) else f"{key} = {word}")
-    for a, b in model.links:
-        lines += ["", "[[link]]", f"a = {a}", f"b = {b}"]
-    return "\n".join([*lines, ""])
+        tables["standby"] = list(model.standby)
+    links = [{"a": a, "b": b} for a, b in model.links]
+    return to_toml({**tables, "protocol": model.protocol, "link": links, **more})
 
 
 def parameters(model: MeshModel) -> dict[str, Any]:

@@ -118,16 +118,14 @@ def _deaths(story: MeshStory) -> list[tuple[int, str]]:
 
 def _text(story: MeshStory, seed: int, events: list[tuple[int, str]]) -> str:
     model = story.found.model
-    last = FIRST_S + APART_S * (len(model.offers) + MORE)
-    lines = [mesh_model.scenario_text(model, "counterexample", last + 10.0, seed)]
-    for place, (node, dest) in enumerate(model.offers):
-        count = MORE if place == len(model.offers) - 1 else 1
-        at = FIRST_S + APART_S * place
-        lines += [
-            "[[flow]]", f"from = {node}", f"to = {dest}", f"start_s = {at}",
-            f"every_s = {APART_S}", f"count = {count}", "bytes = 1",
-            f"reliable = {str(model.reliable).lower()}", "",
-        ]  # fmt: skip
+    last = len(model.offers) - 1
+    flows = [
+        {"from": node, "to": dest, "start_s": FIRST_S + APART_S * place, "every_s": APART_S,
+         "count": MORE if place == last else 1, "bytes": 1, "reliable": model.reliable}
+        for place, (node, dest) in enumerate(model.offers)
+    ]  # fmt: skip
+    end_s = FIRST_S + APART_S * (len(model.offers) + MORE) + 10.0
+    text = mesh_model.scenario_text(model, "counterexample", end_s, seed, flow=flows)
     for at_us, what in sorted(events):
-        lines += ["[[event]]", f"at_s = {at_us / 1e6:.6f}", what, ""]
-    return "\n".join(lines)
+        text += f"\n[[event]]\nat_s = {at_us / 1e6:.6f}\n{what}\n"
+    return text

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 
 from innervate.kernel.clock import wall_s
 from innervate.networks.mesh.verify import fair as mesh_fair
-from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify.first import begin
 from innervate.networks.mesh.verify.model import MeshModel
 from innervate.networks.mesh.verify.net import Net, Nets, Successor
@@ -235,6 +234,3 @@ def wander(
         found.tally.ended = "walked"
     found.calls = nets.locals.calls
     return found
-
-
-__all__ = ["Found", "explore", "mesh_local", "replay", "wander"]

@@ -75,6 +75,3 @@ def tell(step: Step, question: Question, _goal: str) -> list[str]:
         f"B misses the report, and keeps place {place}.",
         f"A data frame names place {place} as next: A and B take the turn, both at once.",
     ]
-
-
-__all__ = ["theories"]

@@ -118,7 +118,7 @@ def _traffic(result: Any, block: int) -> Traffic:
         sent=counters[wires.SENT + block],
         arrived=counters[wires.ARRIVED + block],
         lost={name: counters[place + block] for name, place in wires.REASONS.items()},
-        flying=_flying(result.world, block),
+        flying=len(_live(result.world, block)),
         queued=0 if block == wires.URGENT_BLOCK else _queued(result.world, block),
     )
 
@@ -154,13 +154,8 @@ def _queued(world: Any, block: int) -> int:
     return sum((number_of(frame, "kind") == COMMAND) == wanted for frame in queued(world))
 
 
-def _flying(world: Any, block: int) -> int:
-    """Frames on a wire: pool slots in the event queue that arrive somewhere."""
-    return len(_live(world, block))
-
-
 def _live(world: Any, block: int) -> list[int]:
-    """Numbers, in the pool, of the slots of a block's frames on a wire."""
+    """Numbers of a block's frames on a wire: slots of the pool that arrive somewhere."""
     events = world.wheel.events
     first, behind = int(get(world.run, 0, "pool_slots")), int(world.wheel.pool[FRESH])
     if isinstance(events, list):

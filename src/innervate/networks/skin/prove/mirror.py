@@ -239,6 +239,3 @@ def _same_action(t: Terms, a: tuple[Store, Action], b: tuple[Store, Action]) -> 
     else:
         alike.append(t.same(one.a, other.a))
     return t.all(t.same(one.guard, other.guard), t.implies(one.guard, t.all(*alike)))
-
-
-__all__ = ["steps"]

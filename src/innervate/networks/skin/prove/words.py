@@ -80,14 +80,10 @@ def _neighbour(step: Step, question: Question, cell: Record, p: int) -> str:
             f"number {_value(question, step.before, cell, 'sq', p)}")  # fmt: skip
     if not known:
         return f"On port {p} is B, which has no feasible distance; {kept}."
-    sq = _ghost_sq(question, p)
-    dist = question.values_found.get(f"ghost{p}.dist", 0)
-    return f"On port {p} is cell B: feasible distance {_hops(dist)} of number {sq}; {kept}."
-
-
-def _ghost_sq(question: Question, p: int) -> int:
     found = question.values_found
-    return (found.get("base", 0) + found.get(f"ghost{p}.sq.ahead", 0)) & 0xFFFF
+    sq = (found.get("base", 0) + found.get(f"ghost{p}.sq.ahead", 0)) & 0xFFFF
+    dist = found.get(f"ghost{p}.dist", 0)
+    return f"On port {p} is cell B: feasible distance {_hops(dist)} of number {sq}; {kept}."
 
 
 def _heard(step: Step, question: Question) -> str:
