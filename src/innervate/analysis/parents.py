@@ -7,37 +7,27 @@ cables whose nodes have one next hop each: what is compared has one definition.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 Cable = tuple[int, int, int, int]
 Change = tuple[int, int, int]  # when (us), who, its port from then on; -1 none
 NOWHERE = -1
 
 
-@dataclass(slots=True)
 class Ways:
     """A network whose next hops change and whose cables and nodes go down."""
 
-    nodes: int
-    sink: int  # the node that all want to reach
-    cables: Sequence[Cable]
-    # (when, how many nodes that are joined with the sink have no way to it), a step function;
-    # only where it changes
-    steps: list[tuple[int, int]] = field(default_factory=list)
-    loops: list[int] = field(default_factory=list)  # when next hops closed a loop
-    _far: dict[tuple[int, int], int] = field(default_factory=dict)
-    _hop: list[int] = field(default_factory=list)
-    _port: list[int] = field(default_factory=list)
-    _children: list[set[int]] = field(default_factory=list)
-    _routed: list[bool] = field(default_factory=list)
-    _dead: set[int] = field(default_factory=set)
-    _joined: set[int] = field(default_factory=set)
-    _without: int = 0
-
-    def __post_init__(self) -> None:
-        for a, port_a, b, port_b in self.cables:
+    def __init__(self, nodes: int, sink: int, cables: Sequence[Cable]) -> None:
+        self.nodes, self.sink, self.cables = nodes, sink, cables
+        # (when, how many nodes that are joined with the sink have no way to it): a step function,
+        # only where it changes
+        self.steps: list[tuple[int, int]] = []
+        self.loops: list[int] = []  # when next hops closed a loop
+        self._far: dict[tuple[int, int], int] = {}
+        for a, port_a, b, port_b in cables:
             self._far[a, port_a], self._far[b, port_b] = b, a
-        self._port = [NOWHERE] * self.nodes
+        self._port = [NOWHERE] * nodes
+        self._dead: set[int] = set()
         self._settle(0)
 
     def play(self, changes: Iterable[Change], harm: Iterable[Harm] = ()) -> Ways:
@@ -96,7 +86,9 @@ class Ways:
     def _settle(self, at: int) -> None:
         """Work out anew who has a way, from next hops and cables."""
         self._hop = [self._far.get((n, self._port[n]), NOWHERE) for n in range(self.nodes)]
-        self._children = [set() for _ in range(self.nodes + 1)]  # the last: of nowhere
+        self._children: list[set[int]] = [
+            set() for _ in range(self.nodes + 1)
+        ]  # the last: of nowhere
         for node, hop in enumerate(self._hop):
             self._children[hop].add(node)
         self._routed = [root != NOWHERE for root in self.roots()]

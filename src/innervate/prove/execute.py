@@ -45,21 +45,17 @@ class Machine(Expressions):
         functions: of the dialect's `source.functions`.
         terms: that all is made of.
         out: the outbox that handlers are given.
-
-    Attributes:
-        demands: what must hold for the handlers to be sound.
-        facts: what is known of draws.
-        draws: (what is drawn, out of how many, where) at each place that draws.
-        ways: for every (function, line, taken) of an `if`, where it is taken so.
     """
 
     def __init__(self, functions: dict[str, Function], terms: Terms, out: Outbox) -> None:
         self.functions = functions
         self.terms = terms
         self.out = out
-        self.demands: list[Demand] = []
-        self.facts: list[Term] = []
+        self.demands: list[Demand] = []  # what must hold for the handlers to be sound
+        self.facts: list[Term] = []  # what is known of draws
+        # what is drawn, out of how many, where: at each place that draws
         self.draws: list[tuple[Term, Term, Term]] = []
+        # for every (function, line, taken) of an `if`, where it is taken so
         self.ways: dict[tuple[str, int, bool], list[Term]] = {}
 
     def run(self, name: str, args: list[Any], store: Store, under: Term) -> tuple[Store, Any]:

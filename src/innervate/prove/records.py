@@ -14,21 +14,15 @@ PORTS = "ports"  # the length of an array that is as long as a node has ports
 
 
 class Record:
-    """A record with declared fields.
-
-    Attributes:
-        name: how its unknowns are called.
-        fields: (length or 0, low, high) of every field.
-        parts: records within it: tuples of records, by name.
-    """
+    """A record with declared fields."""
 
     def __init__(self, name: str, declaration: Declaration = (), ports: int = 0) -> None:
-        self.name = name
-        self.fields = {
+        self.name = name  # its unknowns are called by it
+        self.fields = {  # (length or 0, low, high) of each
             field: (ports if length == PORTS else length, low, high)
             for field, length, low, high, _unit, _meaning in declaration
         }
-        self.parts: dict[str, tuple[Record, ...]] = {}
+        self.parts: dict[str, tuple[Record, ...]] = {}  # records within it, by name
 
     def places(self) -> Iterator[tuple[Key, int, int]]:
         """The place of every value, with its range."""

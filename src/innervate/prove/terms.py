@@ -10,31 +10,21 @@ from collections.abc import Callable, Iterable
 
 
 class Term:
-    """A number (or a truth, 0 or 1) that is `op` of `args`.
-
-    Attributes:
-        op: one of const, var, add, sub, mul, div, mod, and, or, xor, shl, shr, wrap for numbers;
-            const, eq, lt, all, any, not for truths; pick for either: args (if, then, else).
-        args: terms; the value of a const, the name of a var.
-        low, high: its range.
-        is_truth: it is a truth.
-        made: how many were made before it, so that the same formula comes out every time.
-        opposite: the truth that says not so; None as long as nobody asked.
-        is_leafy: all that can be picked are known numbers, one after the other.
-    """
+    """A number (or a truth, 0 or 1) that is `op` of `args`."""
 
     __slots__ = ("args", "high", "is_leafy", "is_truth", "low", "made", "op", "opposite")
 
     def __init__(
         self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool, made: int
     ) -> None:
-        self.made = made
+        self.made = made  # how many were before it: the same formula comes out every time
+        # const, var, add, sub, mul, div, mod, and, or, xor, shl, shr, wrap for numbers; const, eq,
+        # lt, all, any, not for truths; pick for either: (if, then, else)
         self.op = op
-        self.args = args
-        self.low = low
-        self.high = high
-        self.is_truth = truth
-        self.opposite: Term | None = None
+        self.args = args  # terms; the value of a const, the name of a var
+        self.low, self.high, self.is_truth = low, high, truth
+        self.opposite: Term | None = None  # the truth that says not so, once somebody asked
+        # all that can be picked are known numbers, one after the other
         self.is_leafy = op == "const" or (op == "pick" and _is_leafy(*_terms(self)[1:]))
 
     @property

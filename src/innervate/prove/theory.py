@@ -26,17 +26,12 @@ class Fault:
 
 
 class Source(dict[str, Function]):
-    """The functions of a protocol, which know who was asked for them.
-
-    Attributes:
-        changed: names of those that a planted mistake is in.
-        asked: names of those that were called since this was emptied last.
-    """
+    """The functions of a protocol, which know who was asked for them."""
 
     def __init__(self, found: dict[str, Function], changed: frozenset[str]) -> None:
         super().__init__(found)
-        self.changed = changed
-        self.asked: set[str] = set()
+        self.changed = changed  # names of those that a planted mistake is in
+        self.asked: set[str] = set()  # that were called since this was emptied last
 
     def __getitem__(self, name: str) -> Function:
         self.asked.add(name)

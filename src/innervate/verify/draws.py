@@ -31,19 +31,13 @@ def tried(count: int) -> tuple[int, ...]:
 
 
 class Draws:
-    """Answers what nodes draw.
-
-    Attributes:
-        who: the node that is called, by name; "" = nobody is, and nothing can be drawn.
-        made: the draws of the present event: (who, what it gave, out of how many).
-        sizes: out of how many was drawn.
-        some: of these, where not everything was tried.
-        left_out: events of which not all ways were.
-    """
+    """Answers what nodes draw while they are explored."""
 
     def __init__(self) -> None:
+        # the node that is called, by name; "" = nobody is, and nothing can be drawn
         self.who, self.answer = "", GENERATE
-        self.made: list[tuple[str, int, int]] = []
+        self.made: list[tuple[str, int, int]] = []  # of the present event: (who, what, out of)
+        # out of how many was drawn; where not everything was tried; events with ways not tried
         self.sizes, self.some, self.left_out = set[int](), set[int](), 0
         self._script: tuple[int, ...] = ()
         self._more: Stream | None = None

@@ -36,16 +36,13 @@ class First(Machine):
 
     Args:
         whole: follow a choice, too.
-
-    Attributes:
-        drawn: what is drawn among equals, in order.
-        choices: (where, values at that, values that may come of it) of all choices, in order.
     """
 
     def __init__(self, functions: Any, terms: Terms, whole: bool) -> None:
         super().__init__(functions, terms, Outbox(fields.FRAME, ROOM))
         self.whole = whole
-        self.drawn: list[Term] = []
+        self.drawn: list[Term] = []  # among equals, in order
+        # where, the values at that, values that may come of it: of all choices, in order
         self.choices: list[tuple[Term, Store, Store]] = []
 
     def call(
