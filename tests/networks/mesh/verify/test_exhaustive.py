@@ -29,17 +29,17 @@ MESSAGES = [
     ("line", "search", {"robot": 2, "budget": CALM}, 16_658),
 ]
 GATEWAYS = [
-    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 77_839),
-    ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 70_720),
-    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 49_122),
+    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 74_962),
+    ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 69_676),
+    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 47_038),
 ]
 ASKING = [
     (links, "search", {"standby": standby, "beats": 3, "budget": budget, "settings": ASKED}, states)
     for links, standby, budget, states in (
-        ("line", (2,), DEATH, 10_902),
-        ("line", (2,), LOSS, 67_807),
+        ("line", (2,), DEATH, 10_899),
+        ("line", (2,), LOSS, 67_788),
         ("line", (2,), RETURNS, 275_927),
-        ("triangle", (1, 2), DEATH, 34_360),
+        ("triangle", (1, 2), DEATH, 34_358),
     )
 ]
 
