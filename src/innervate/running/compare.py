@@ -65,7 +65,11 @@ class Comparison:
 
 
 def compare(a: Side, b: Side) -> Comparison:
-    """What differs between two runs, or folders of runs; if so, simulated again to find where.
+    """What differs between two runs; if they differ, both are simulated again to find where.
+
+    Args:
+        a: a run, or the folder of one.
+        b: another.
 
     Raises:
         RunError: one of them is not a run folder, or damaged.

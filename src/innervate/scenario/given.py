@@ -47,7 +47,10 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
 
 
 def dump(scenario: Given) -> str:
-    """A scenario, given as to load(), as the text of a file, without what was left out.
+    """A scenario as the text of a file, with what was given and without what was left out.
+
+    Args:
+        scenario: as for load().
 
     Raises:
         ScenarioError: it is not valid.
@@ -74,7 +77,10 @@ def _plain(value: Any) -> Any:
 def check(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -> str:
     """What a scenario holds, in the lines that `innervate check` prints; nothing is run.
 
-    It takes what load() takes.
+    Args:
+        scenario: as for load().
+        seed: in place of the scenario's.
+        overrides: "a.b=c" texts, or a mapping from dotted keys to values.
 
     Raises:
         ScenarioError: it cannot be run as written.

@@ -55,18 +55,28 @@ class Story:
 
 @dataclass(slots=True)
 class Case:
-    """One exploration and what came of it."""
+    """One exploration and what came of it.
 
-    lines: list[str]  # for people
-    record: dict[str, Any]  # for --json
-    is_broken: bool  # a property does not hold
-    is_complete: bool = True  # everything was looked at, within what `but` says
-    sums_up: bool = True  # the last line counts it
-    story: Any = None  # the counterexample, if it is told: title, sentences, scenario, lines()
-    # makes the text of a scenario that plays it; "" = none does
+    Attributes:
+        lines: for people.
+        record: for --json.
+        is_broken: a property does not hold.
+        is_complete: everything was looked at, within what `but` says.
+        but: what of a complete exploration was not; "" = nothing.
+        sums_up: the last line counts it.
+        story: the counterexample, if it is told: title, sentences, scenario, lines().
+        play: makes the text of a scenario that plays it; "" = none does.
+        stem: what its files are called, before their number.
+    """
+
+    lines: list[str]
+    record: dict[str, Any]
+    is_broken: bool
+    is_complete: bool = True
+    sums_up: bool = True
+    story: Any = None
     play: Callable[[], str] | None = None
-    # what of a complete exploration was not; "" = nothing
-    stem: str = "counterexample"  # what its files are called, before their number
+    stem: str = "counterexample"
     but: str = ""
 
 
