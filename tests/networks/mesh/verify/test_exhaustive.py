@@ -38,7 +38,7 @@ ASKING = [
     for links, standby, budget, states in (
         ("line", (2,), DEATH, 10_899),
         ("line", (2,), LOSS, 67_788),
-        ("line", (2,), RETURNS, 275_927),
+        ("line", (2,), RETURNS, 280_220),
         ("triangle", (1, 2), DEATH, 34_358),
     )
 ]
