@@ -28,7 +28,9 @@ def calm(**more):
 
 
 def questions(bench, since=0):
-    return [(at, i) for at, i, f in bench.sent if f.kind == REQUEST and not f.length and at > since]
+    return [
+        (at, i) for at, i, f in bench.sent if f.kind == REQUEST and f.body[0] == ALL and at > since
+    ]
 
 
 def rounds(bench, since):

@@ -45,6 +45,9 @@ def story(bench_class, **settings):
     for node in (8, 9, 11):
         bench.send(node, 3, bytes(27))
     bench.run(25_000_000)
+    bench.start(9, cause=1)
+    bench.run(28_000_000)
+    assert bench.nodes[9].known
     kinds = {frame.kind for _at, _who, frame in bench.sent}
     handed = [
         (at, who, f.kind, f.origin, f.seq, f.body[: f.length]) for at, who, f in bench.delivered

@@ -85,7 +85,8 @@ class Reader(measure.Reader):
         frame = self.frame
         own = frame.kind != const.ACK and frame.link_src == frame.origin
         if own and frame.kind == const.REQUEST:
-            self.found.gateway = frame.origin
+            if frame.body[0] != const.ALL:  # of nobody: who has just been switched on asks
+                self.found.gateway = frame.body[0]
         elif own and frame.kind == const.DATA:
             seen = self.sent.setdefault((frame.origin, frame.dest), {})
             seen.setdefault(frame.seq, (packet.time_ns, frame.length))

@@ -128,8 +128,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | off        | on, `rank` 0, first time        | `on_start`, `lead`: an epoch     | leads          |
 |            |                                 | nobody has had                   |                |
 | off        | on, else                        | `on_start`                       | unknown        |
-| unknown    | `TICK`, the 2nd, 4th, 8th, ...  | `ask_round`: an empty `REQUEST`  |                |
-| any other  | an empty `REQUEST`              | `tell_round`: ours once more     |                |
+| unknown    | `TICK`, the 2nd, 4th, 8th, ...  | `ask_round`: `REQUEST` of `ALL`  |                |
+| any other  | a `REQUEST` of `ALL`            | `tell_round`: ours once more     |                |
 | a `rank`   | `TICK`, it led, neighbours say  | `on_tick`, `tick`, `lead`        | leads          |
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
@@ -234,7 +234,7 @@ Frames
 |-----------------|------------------------------|-------------------------------------------------|
 | `REQUEST = 1`   | flooded, `copies`            | gateway, epoch, round, version in force, jitter;|
 |                 |                              | who is asked by name; flag `PRIORITY`: tables   |
-|                 |                              | stay; more copies. Empty: which round is it?    |
+|                 |                              | stay; more copies. Of `ALL`: which round is it? |
 | `RESPONSE = 2`  | up                           | epoch, round, reading, who was heard and how    |
 |                 |                              | loud; flag `WEAK`: came over a faint link       |
 | `TABLE = 3`     | source-routed                | route; epoch, version, part; groups (next,      |

@@ -93,7 +93,13 @@ from innervate.networks.mesh.protocol.retransmission import (
     due_retransmission,
     retransmit,
 )
-from innervate.networks.mesh.protocol.round import ask_round, on_request, step, tell_round
+from innervate.networks.mesh.protocol.round import (
+    REQUEST_BYTES,
+    ask_round,
+    on_request,
+    step,
+    tell_round,
+)
 from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
 from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_of_gateway, on_guard
@@ -220,10 +226,11 @@ def on_broadcast(node, params, now, frame, k, out):
     """A frame for everyone in reach."""
     kind = frame.kind
     if kind == REQUEST:
-        if frame.length >= 7 and frame.body[0] < params.nodes:
-            on_request(node, params, now, frame, k, out)
-        elif frame.length == 0:
-            tell_round(node, params, now, out)
+        if frame.length >= REQUEST_BYTES:
+            if frame.body[0] < params.nodes:
+                on_request(node, params, now, frame, k, out)
+            elif frame.body[0] == ALL:
+                tell_round(node, params, now, out)
     elif kind == ALARM:
         if frame.flags & FLOOD:
             on_flood(node, params, now, frame, k, out)
@@ -343,7 +350,7 @@ def on_tick(node, gate, params, now, out):
     if not node.leading:
         node.quiet = min(node.quiet + 1, 65_535)
         if not node.known and node.quiet > 1 and node.quiet & (node.quiet - 1) == 0:
-            ask_round(node, now, out)
+            ask_round(node, params, now, out)
     if node.rank >= 0:
         tick(node, gate, params, now, out)
     kick(node, params, now, out)

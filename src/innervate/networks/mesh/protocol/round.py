@@ -132,11 +132,9 @@ def on_request(node, params, now, frame, k, out):
         respond_to(node, params, now, frame.link_src, out)
 
 
-def ask_round(node, now, out):
-    """We know of no round: a request of nobody, without a body, asks all in reach for theirs."""
-    i = compose(node, now, CONTROL, REQUEST, ALL, 0, out)
-    if i >= 0:
-        add_hop(node, i)
+def ask_round(node, params, now, out):
+    """We know of no round: a request of no gateway asks all in reach for theirs."""
+    compose_request(node, params, now, CONTROL, 0, out)
 
 
 def tell_round(node, params, now, out):
@@ -148,16 +146,17 @@ def tell_round(node, params, now, out):
     if node.depth != UNHEARD and queued_request(node) < 0:
         i = compose_request(node, params, now, CONTROL, 0, out)
         if i >= 0:
+            for _ in range(node.depth - 1):
+                add_hop(node, i)
             step = params.jitter_us >> 2
             node.q_due[i] = (now + step * node.depth + draw(node, step + 1)) & MASK30
 
 
 def compose_request(node, params, now, rank, flags, out):
-    """A request of the present round, its path as long as the way to the gateway; or -1."""
+    """A request of the round that we know, as its gateway sends it; -1 if there is no place."""
     i = compose(node, now, rank, REQUEST, ALL, flags, out)
     if i >= 0:
-        for _ in range(node.depth):
-            add_hop(node, i)
+        add_hop(node, i)
         add8(node, i, node.gateway)
         add8(node, i, node.epoch)
         add16(node, i, node.round)
