@@ -68,10 +68,6 @@ def clock_us() -> int:
     return machine().monotonic_ns() // 1000
 
 
-def _nobody(why: str) -> None:
-    """Whom an end is told that nobody asked for."""
-
-
 class Engine:
     """Runs one stack: calls its functions, drains what they put out.
 
@@ -112,7 +108,7 @@ class Engine:
         self._loop = asyncio.get_running_loop()
         self._stopped = False
         self.now = 0
-        self.ended: Callable[[str], None] = _nobody
+        self.ended: Callable[[str], None] = lambda _why: None
 
     def start(self, cause: int = 0) -> None:
         """Switch the node on: 0 first, 1 again with its memory lost."""
