@@ -290,19 +290,13 @@ class LiveNode:
             "up_s": round((clock_us() - self.started_at) / 1e6, 1),
             "sealed": self.sealer is not None,
             "engine": PYTHON if self.not_in_c else C,
-            "keys": self._keys_status(),
+            "keys": None if self.sealer is None else self.sealer.status(),
             "state": self.state.status(),
             "paths": paths,
             "broken": [path["name"] for path in paths if path["broken"]],
             "counters": dict(sorted(self.counters().items())),
             **self.stack.status(clock_us()),
         }
-
-    def _keys_status(self) -> dict[str, Any] | None:
-        """Which key seals, and which are accepted; None = frames go in the clear."""
-        if self.sealer is None:
-            return None
-        return self.sealer.status()
 
     def _note_report(self, code: int, a: int, b: int) -> None:
         self.reports[code] += 1

@@ -96,11 +96,11 @@ class MeshNode(LiveNode):
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Messages, and alarms for who asks for them."""
-        found: list[Stream] = [
-            (self.receive_messages(in_order=request.get("in_order")), message_line)
-        ]
+        messages = self.receive_messages(in_order=request.get("in_order"))
+        found: list[Stream] = [(messages, message_line)]
         if request.get("alarms"):
-            found.append((self.receive_alarms(), _alarm_line))
+            alarms = self.receive_alarms()
+            found.append((alarms, lambda one: {"from": one.reporter, "alarm": one._asdict()}))
         return found
 
     def _located(self, request: dict[str, Any]) -> dict[str, Any]:
@@ -298,7 +298,3 @@ class MeshNode(LiveNode):
     def _hand_down(self, item: Any) -> None:
         assert self.engine is not None
         self.engine.input(MESSAGE, item)
-
-
-def _alarm_line(alarm: Alarm) -> dict[str, Any]:
-    return {"from": alarm.reporter, "alarm": alarm._asdict()}

@@ -54,7 +54,7 @@ class CellNode(LiveNode):
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Commands for this cell, for those who follow them by the status socket."""
-        return [(self.receive_commands(), _command_line)]
+        return [(self.receive_commands(), lambda one: {"from": "pc", "command": one._asdict()})]
 
     def receive_commands(
         self, callback: Callable[[Command], None] | None = None
@@ -134,7 +134,7 @@ class SinkNode(LiveNode):
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Samples of all cells, for those who follow them by the status socket."""
-        return [(self.receive_touch(), _touch_line)]
+        return [(self.receive_touch(), lambda one: {"from": one.cell, "touch": one._asdict()})]
 
     def receive_touch(
         self, callback: Callable[[Touch], None] | None = None
@@ -198,11 +198,3 @@ def refuse_command(request: dict[str, Any]) -> dict[str, Any]:
         ValueError: always.
     """
     raise ValueError("only the PC of a skin sends commands")
-
-
-def _command_line(command: Command) -> dict[str, Any]:
-    return {"from": "pc", "command": command._asdict()}
-
-
-def _touch_line(touch: Touch) -> dict[str, Any]:
-    return {"from": touch.cell, "touch": touch._asdict()}
