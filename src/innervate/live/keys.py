@@ -70,11 +70,7 @@ class Sealer:
     """
 
     def __init__(
-        self,
-        ring: Keyring,
-        sender: int,
-        state: State | None = None,
-        nodes: int | None = None,
+        self, ring: Keyring, sender: int, state: State | None = None, nodes: int | None = None
     ) -> None:
         self.ring, identity = ring, ring.identity
         self.sender, self.nodes = sender, nodes

@@ -130,11 +130,7 @@ class Server:
     """
 
     def __init__(
-        self,
-        path: Path,
-        handle: Handler,
-        counts: Counter[str] | None = None,
-        is_ours: bool = False,
+        self, path: Path, handle: Handler, counts: Counter[str] | None = None, is_ours: bool = False
     ) -> None:
         self.path = path
         self.is_ours = is_ours

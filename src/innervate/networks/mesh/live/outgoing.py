@@ -8,15 +8,7 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.arith import MASK16
-from innervate.live.receipts import (
-    DELIVERED,
-    EXPIRED,
-    FINAL,
-    HOP_ACKED,
-    REFUSED,
-    STOPPED,
-    Receipt,
-)
+from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, HOP_ACKED, REFUSED, STOPPED, Receipt
 from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt, Refusal
 from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD
