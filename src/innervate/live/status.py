@@ -47,11 +47,7 @@ def folder() -> Path:
 
 
 def where() -> Path:
-    """The folder to look into for running nodes: that of `live up` if none runs in `folder`.
-
-    Raises:
-        LiveError: as `folder`.
-    """
+    """The folder to look into for running nodes: that of `live up` if none runs in `folder`."""
     here = folder()
     if os.environ.get("INNERVATE_RUN") or _sockets(here):
         return here
@@ -209,11 +205,7 @@ def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def ask_one(path: Path, request: dict[str, Any]) -> dict[str, Any]:
-    """The first answer.
-
-    Raises:
-        LiveError: see ask().
-    """
+    """The first answer, or a LiveError as of `ask`."""
     for answer in ask(path, request):
         return answer
     raise LiveError(f"{path}: the node went away; is it still running?")

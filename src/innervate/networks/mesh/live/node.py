@@ -49,13 +49,10 @@ FEW = 512  # by who was just switched on: 7 restarts one after the other lead le
 class MeshNode(LiveNode):
     """A node of a mesh: sends and receives messages.
 
-    Args:
-        name: as shown to people.
-        stack: the router.
-        links: what carries its frames.
-        sealer: seals and opens frames.
-        state: what is kept over a restart: a gateway's epoch.
+    Args as of any node, and:
         orderly: how messages are put in order.
+
+    Attributes:
         in_order: True = send and receive in order if nothing else is said.
     """
 

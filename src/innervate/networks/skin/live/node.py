@@ -23,12 +23,7 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
 class CellNode(LiveNode):
     """A cell: hands its samples to the skin, gives commands of the PC.
 
-    Args:
-        name: as shown to people.
-        stack: the cell.
-        links: its cables.
-        sealer: seals and opens frames.
-        state: what is kept over a restart.
+    Args as of any node, and:
         rate_hz: a sample made up by the cell itself so often; 0 = only what `sample` is given.
     """
 
