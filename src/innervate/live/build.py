@@ -151,11 +151,7 @@ def open_keys(loaded: Loaded) -> list[Path]:
 
 
 def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
-    """Keys by number.
-
-    Raises:
-        LiveError: a number is not 0 to 15, or a key is none.
-    """
+    """Keys by number; LiveError if a number is not 0 to 15, or a key is none."""
     from innervate.live.keyring import read_key
 
     keys = {}

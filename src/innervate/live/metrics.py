@@ -33,11 +33,7 @@ class MetricsPage:
         self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
-        """Listen.
-
-        Raises:
-            LiveError: the address cannot be used.
-        """
+        """Listen; LiveError if the address cannot be used."""
         try:
             sock = socket.create_server(self.where)
         except OSError as error:

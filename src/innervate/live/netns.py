@@ -104,11 +104,7 @@ class Lab:
         return ["ip", "netns", "exec", self.name(node), *command]
 
     def run(self, node: int, command: list[str], text: str = "") -> str:
-        """Run a command in a namespace; its output.
-
-        Raises:
-            LiveError: it failed.
-        """
+        """Run a command in a namespace; its output; LiveError if it failed."""
         return _run(self.inside(node, command), text)
 
     def cut(self, link: int) -> None:

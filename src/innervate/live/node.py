@@ -150,11 +150,7 @@ class LiveNode:
         return STOPPED if self.is_stopped else ""
 
     def running(self) -> Engine:
-        """What runs the protocol.
-
-        Raises:
-            ValueError: nothing does.
-        """
+        """What runs the protocol; ValueError if nothing does."""
         if self.engine is None or self.is_stopped:
             raise ValueError(f"{self.idle()}; start it first: await node.start(), or async with it")
         return self.engine
@@ -171,11 +167,7 @@ class LiveNode:
         await self.stop()
 
     def path_at(self, port: int) -> Path:
-        """A path by its number.
-
-        Raises:
-            ValueError: there is none.
-        """
+        """A path by its number; ValueError if there is none."""
         if not 0 <= port < len(self.paths):
             raise ValueError(f"no port {port}; this node has 0 to {len(self.paths) - 1}")
         return self.paths[port]

@@ -101,11 +101,7 @@ class Symmetric:
         return out
 
     def decrypt(self, data: bytes) -> bytes:
-        """The reverse.
-
-        Raises:
-            Broken: it was made by somebody else, or for other words.
-        """
+        """The reverse; Broken if it was made by somebody else, or for other words."""
         plain = data
         if self.k:
             try:

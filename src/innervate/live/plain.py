@@ -74,11 +74,7 @@ def octets(tables: dict[str, Any], name: str, size: int) -> bytes:
 
 
 def listed(tables: dict[str, Any], name: str) -> list[Any]:
-    """A list.
-
-    Raises:
-        ValueError: it is none; it begins with the field.
-    """
+    """A list; ValueError if it is none, which begins with the field."""
     value = tables.get(name)
     if not isinstance(value, list):
         raise ValueError(f"{name}: a list is to stand there")

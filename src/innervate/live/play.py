@@ -72,11 +72,7 @@ class Player:
         self.tell = tell
 
     async def play(self) -> None:
-        """Play all; some scenarios have no end.
-
-        Raises:
-            LiveError: a node did not come up again.
-        """
+        """Play all; some scenarios have no end; LiveError if a node did not come up again."""
         try:
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._play_events())

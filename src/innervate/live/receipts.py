@@ -15,11 +15,7 @@ STOPPED = "node stopped"  # why what was under way has expired, and nothing more
 
 
 def check_bytes(payload: object) -> None:
-    """That a payload is bytes, before anything is done with it.
-
-    Raises:
-        TypeError: it is not.
-    """
+    """TypeError unless a payload is bytes, before anything is done with it."""
     if not isinstance(payload, bytes | bytearray | memoryview):
         raise TypeError(f"a payload is bytes, not {type(payload).__name__}")
 

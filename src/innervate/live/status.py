@@ -135,11 +135,7 @@ class Server:
         self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
-        """Listen.
-
-        Raises:
-            LiveError: the socket cannot be made, or a running node has it.
-        """
+        """Listen; LiveError if the socket cannot be made, or a running node has it."""
         try:
             if self.is_ours:  # somebody else can have been quicker to make it
                 self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
@@ -212,11 +208,7 @@ def ask_one(path: Path, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def find(name: str) -> Path:
-    """The socket of a node by name or path.
-
-    Raises:
-        LiveError: there is none.
-    """
+    """The socket of a node by name or path; LiveError if there is none."""
     path = Path(name)
     if path.is_socket():
         return path

@@ -116,11 +116,7 @@ def _ack(frame: Any, first: int) -> bytes:
 
 
 def check(frame: Any) -> None:
-    """Refuse a record of which a value does not fit, by its name.
-
-    Raises:
-        ValueError: that one.
-    """
+    """Refuse, by its name, a value of a record that does not fit: a ValueError."""
     is_ack = frame.kind == ACK
     pack(HOP_ACK if is_ack else COMMON, bytearray(MTU), AT, frame)
     parts = (("body", frame.length), ("path", 0 if is_ack else frame.path_len))

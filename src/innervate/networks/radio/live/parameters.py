@@ -30,11 +30,7 @@ def radio_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]
 
 
 def check_slots(params: dict[str, int]) -> None:
-    """Refuse what cannot work in real time.
-
-    Raises:
-        LiveError: a slot is shorter than a PC can keep.
-    """
+    """Refuse what cannot work in real time; LiveError if a slot is shorter than a PC can keep."""
     if params["slot_us"] < SLOT_US_MIN:
         raise LiveError(
             f"protocol.slot_us = {params['slot_us']}: a PC keeps slots of {SLOT_US_MIN} us or more"

@@ -187,9 +187,5 @@ class SinkNode(LiveNode):
 
 
 def refuse_command(request: dict[str, Any]) -> dict[str, Any]:
-    """Cells send no commands.
-
-    Raises:
-        ValueError: always.
-    """
+    """Cells send no commands: always a ValueError."""
     raise ValueError("only the PC of a skin sends commands")
