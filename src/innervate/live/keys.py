@@ -92,16 +92,6 @@ class Sealer:
             except ValueError:
                 self.state.revoked = b""  # another authority's, of before
 
-    @property
-    def keys(self) -> dict[int, bytes]:
-        """Keys that are accepted now."""
-        return self.ring.keys
-
-    @property
-    def use(self) -> int:
-        """The key that handshakes of ours begin with."""
-        return self.ring.use
-
     def start(self, paths: Iterable[Path]) -> None:
         """Ask on every path who is there."""
         for path in paths:
@@ -270,7 +260,7 @@ class Sealer:
 
     def status(self) -> dict[str, Any]:
         """Which key handshakes begin with, which are accepted; with an identity, its own."""
-        told: dict[str, Any] = {"use": self.use, "accepted": sorted(self.keys)}
+        told: dict[str, Any] = {"use": self.ring.use, "accepted": sorted(self.ring.keys)}
         if self.ring.identity is not None:
             revoked = self.ring.revoked
             told["identity"] = {"serial": self.ring.identity.serial, "list": revoked.version,

@@ -119,9 +119,8 @@ class Outgoing:
         if dest == node.number:
             self._hand_up(dest, payload)
             long.on_end(DELIVERED, "")
-        else:
-            if self.turns.put(handle, long):
-                self.feed()
+        elif self.turns.put(handle, long):
+            self.feed()
         return long.receipt
 
     def _end_long(self, handle: int, long: Long, state: str, reason: str) -> None:
