@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Coroutine, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
-from innervate.live.asking import ask, sleep_until
+from innervate.live import status
+from innervate.live.errors import LiveError
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 from innervate.scenario.declared.shared import refuse_script
@@ -143,3 +145,14 @@ class Deployment:
         for at_s, name, request in self.inputs():
             await sleep_until(began + at_s)
             await ask(stage.socket(name), request)
+
+
+async def ask(where: Path, request: Table) -> None:
+    """Ask a node for something; one that does not run has nothing to do."""
+    with suppress(LiveError):
+        await asyncio.to_thread(status.ask_one, where, request)
+
+
+async def sleep_until(when: float) -> None:
+    """Wait for a moment of the loop's clock."""
+    await asyncio.sleep(max(0.0, when - asyncio.get_running_loop().time()))

@@ -45,12 +45,7 @@ class Heard:
 
 
 class GroupContact(Contact):
-    """What a node knows of the members of a group.
-
-    Args:
-        sealer: the node's.
-        path: the group's.
-    """
+    """What a node knows of the members of a group, whose path it is."""
 
     most_knocks = 4 * KNOCKS  # many members may come at once
 

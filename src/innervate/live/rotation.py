@@ -12,14 +12,11 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
 
 
 class Rotation:
-    """Changes the keys of a running node.
+    """Changes the keys of a running node, which its sealer has.
 
     New keys are accepted at once. For a grace time handshakes still begin with the old one, so
     that the other nodes may be told; for a second one it is still accepted, until they have done
     the same. Each key has its own times: another change in between does not make them longer.
-
-    Args:
-        sealer: the node's.
     """
 
     def __init__(self, sealer: Sealer) -> None:

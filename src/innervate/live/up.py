@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate.live import files, hangup, private, status
-from innervate.live.asking import ask
-from innervate.live.deployment import Deployment, Table
+from innervate.live.deployment import Deployment, Table, ask
 from innervate.live.errors import LiveError
 from innervate.live.netns import UDP_PORT, Lab
 from innervate.live.serial_cables import Cables

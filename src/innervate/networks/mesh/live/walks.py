@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from innervate.live.asking import sleep_until
+from innervate.live.deployment import sleep_until
 from innervate.live.errors import LiveError
 
 ANSWER_S = 5.0
