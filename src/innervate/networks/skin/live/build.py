@@ -33,4 +33,6 @@ def build(loaded: Loaded) -> LiveNode:
             "each once: W, E, up, down = 0 to 3"
         )
     stack = CellStack(table.number, params, machine().chance.getrandbits(60), ports)
-    return CellNode(loaded.name, stack, links, sealer, state, table.rate_hz)
+    cell = CellNode(loaded.name, stack, links, sealer, state)
+    cell.rate_hz = table.rate_hz
+    return cell
