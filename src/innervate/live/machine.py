@@ -84,7 +84,7 @@ class Machine:
         return socket.socket(family, kind)
 
     def open_serial(self, device: str, baud: int) -> SerialPort:
-        """A serial port, raw."""
+        """A serial port of the machine, raw."""
         from innervate.live.serial_port import Port
 
         return Port(device, baud)
