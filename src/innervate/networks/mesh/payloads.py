@@ -119,19 +119,3 @@ def is_piece(flags: int, seq: int, data: bytes) -> bool:
     if flags & SOURCE_ROUTE or 8 * len(data) <= width(PIECE):
         return False
     return int.from_bytes(data[:2], "big") == (seq + PIECE_AHEAD) & 65_535
-
-
-def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-arg]
-    """A payload as (name, value) pairs; one that does not fit as ("payload", its bytes)."""
-    end = len(data)
-    if kind not in FIELDS or not fits(kind, flags, data, 0, end):
-        return [("payload", list(data))]
-    begin = begin_of(flags, data, 0, end)
-    stop = end_of(kind, flags, data, begin, end)
-    found = []
-    if flags & SOURCE_ROUTE:
-        found.append(("source_route", list(data[1:begin])))
-    read(FIELDS[kind], data, 8 * begin, 8 * stop, found)
-    if stop < end:
-        found.append(("failed", list(data[stop : end - 1])))
-    return found
