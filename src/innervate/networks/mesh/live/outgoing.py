@@ -134,10 +134,9 @@ class Outgoing:
         By then its last piece can be acknowledged; else it would be tried for 26 s.
         """
         name = sender, piece.message, piece.size
-        if name in self._refusals or len(self._refusals) == REFUSALS:
+        is_full = len(self._refusals) == REFUSALS or not self.turns.has_room(sender)
+        if name in self._refusals or is_full:
             return  # the last piece comes again
-        if not self.turns.has_room(sender):
-            return
 
         def end(state: str) -> None:
             self._refusals.discard(name)
