@@ -45,7 +45,7 @@ class Heard:
 
 
 class GroupContact(Contact):
-    """What a node knows of the members of a group, whose path it is."""
+    """What the node of a sealer knows of the members of a group, on the group's path."""
 
     most_knocks = 4 * KNOCKS  # many members may come at once
 

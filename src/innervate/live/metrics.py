@@ -19,7 +19,7 @@ BOUNDS = Bounds(most=16, burst=8, full=FULL, limit=REQUEST_MAX)
 
 
 class MetricsPage:
-    """Answers GET /metrics at an address and port: with the status of a node."""
+    """Answers GET /metrics at an address and port, with the status of a node."""
 
     def __init__(self, where: tuple[str, int], node: LiveNode) -> None:
         self.where = where

@@ -91,7 +91,7 @@ class Lab:
         return ["ip", "netns", "exec", self.name(node), *command]
 
     def run(self, node: int, command: list[str], text: str = "") -> str:
-        """Run a command in a namespace; its output; LiveError if it failed."""
+        """The output of a command, run in a namespace; LiveError if it failed."""
         return _run(self.inside(node, command), text)
 
 

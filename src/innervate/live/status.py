@@ -47,7 +47,10 @@ def folder() -> Path:
 
 
 def where() -> Path:
-    """The folder to look into for running nodes: that of `live up` if none runs in `folder`."""
+    """The folder to look into for running nodes: that of `live up` if none runs in `folder`.
+
+    Its errors are those of `folder`.
+    """
     here = folder()
     if os.environ.get("INNERVATE_RUN") or _sockets(here):
         return here
