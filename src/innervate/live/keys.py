@@ -229,8 +229,7 @@ class Sealer:
     def revoke(self, data: bytes) -> bool:
         """Take over a newer list of revoked nodes, and hand it on; False = it is none or not newer.
 
-        Raises:
-            ValueError: never; what is not signed is dropped and counted.
+        What is not signed is dropped and counted.
         """
         identity, old = self.ring.identity, self.ring.revoked
         if identity is None or data == old.data:

@@ -20,11 +20,7 @@ RADIO: dict[str, int] = {
 
 
 def radio_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
-    """A station's parameters, with what is to be different.
-
-    Raises:
-        LiveError: no such parameter, or out of its range; the message begins with `where`.
-    """
+    """A station's parameters, with what is to be different, as `check_parameters` allows it."""
     check_parameters(changes, PARAMS, where)
     return {**RADIO, **changes}
 
