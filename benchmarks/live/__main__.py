@@ -16,10 +16,10 @@ import tempfile
 import time
 from pathlib import Path
 
+from benchmarks.live.lab import Lab
 from benchmarks.live.shapes import SHAPES
 from benchmarks.live.sides import Babeld, Innervate, cpu_s, memory_mib
 from innervate.live.errors import LiveError
-from innervate.live.netns import Lab
 
 PERIOD_MS = 5.0
 BEFORE_S = 0.5

@@ -8,8 +8,9 @@ import sys
 import time
 from pathlib import Path
 
+from benchmarks.live.lab import Lab
 from benchmarks.live.shapes import Shape
-from innervate.live.netns import UDP_PORT, Lab
+from innervate.live.netns import UDP_PORT
 
 ENDS = str(Path(__file__).with_name("ends.py"))
 

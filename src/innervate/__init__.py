@@ -48,43 +48,31 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-# Where each name comes from; the lines above say the same to type checkers.
-_PLACES = {
-    "Answer": "networks.typed",
-    "CablesScenario": "scenario.declared.cables",
-    "Case": "verify.cases",
-    "ChannelScenario": "scenario.declared.channel",
-    "Comparison": "running.compare",
-    "FieldScenario": "scenario.declared.field",
-    "InvariantBroken": "sim.driver",
-    "LiveError": "live.errors",
-    "Mesh": "networks.models",
-    "Network": "network",
-    "NetworkError": "network",
-    "Nodes": "live.in_code",
-    "Question": "networks.typed",
-    "Radio": "networks.models",
-    "Run": "running.run",
-    "RunError": "running.errors",
-    "Scenario": "scenario",
-    "ScenarioError": "scenario",
-    "Skin": "networks.models",
-    "Sweep": "sweeping.result",
-    "SweepError": "sweeping.errors",
-    "VerifyError": "verify.errors",
-    "check": "scenario.given",
-    "compare": "running.compare",
-    "dump": "scenario.given",
-    "explore": "running.exploring",
-    "live_up": "live.in_code",
-    "load": "scenario.given",
-    "load_sweep": "sweeping.sweep",
-    "run": "running.run",
-    "size": "networks.typed",
-    "sweep": "sweeping.sweep",
-    "use": "network",
+# Which names come from where; the lines above say the same to type checkers.
+_NAMES = {
+    "live.errors": "LiveError",
+    "live.in_code": "Nodes live_up",
+    "network": "Network NetworkError use",
+    "networks.models": "Mesh Radio Skin",
+    "networks.typed": "Answer Question size",
+    "running.compare": "Comparison compare",
+    "running.errors": "RunError",
+    "running.exploring": "explore",
+    "running.run": "Run run",
+    "scenario": "Scenario ScenarioError",
+    "scenario.declared.cables": "CablesScenario",
+    "scenario.declared.channel": "ChannelScenario",
+    "scenario.declared.field": "FieldScenario",
+    "scenario.given": "check dump load",
+    "sim.driver": "InvariantBroken",
+    "sweeping.errors": "SweepError",
+    "sweeping.result": "Sweep",
+    "sweeping.sweep": "load_sweep sweep",
+    "verify.cases": "Case",
+    "verify.errors": "VerifyError",
 }
-__all__ = ["__version__", *_PLACES]
+_PLACES = {name: place for place, names in _NAMES.items() for name in names.split()}
+__all__ = ["__version__", *sorted(_PLACES)]
 
 
 if not TYPE_CHECKING:  # or every name would do, misspelt ones too

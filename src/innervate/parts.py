@@ -73,11 +73,23 @@ PARTS = {
     "comparison": "module: JOBS, what protocols are compared at; ENTRIES, what of it does which "
     "job (papers/jobs.py)",
 }
+
+
+def _declared(medium: str, model: str, *more: str) -> dict[str, str]:
+    """Parts that stand at the same places for any network of a medium; `more` besides."""
+    declared = f"innervate.scenario.declared.{medium}"
+    actions = f"innervate.scenario.actions.{medium}"
+    return {
+        "model": f"{declared}:{model}",
+        **{part: f"{declared}:{part}" for part in ("check", "plan", "template", "describe", *more)},
+        "actions": f"{actions}:ACTIONS",
+        "harm": f"{actions}:HARM",
+        "simulation": f"innervate.sim.{medium}.declared:simulation",
+    }
+
+
 DEFAULTS = {
-    "model": "innervate.scenario.declared.cables:CablesScenario",
-    "check": "innervate.scenario.declared.cables:check",
-    "plan": "innervate.scenario.declared.cables:plan",
-    "template": "innervate.scenario.declared.cables:template",
+    **_declared("cables", "CablesScenario"),
     "run": "innervate.running.simulating",
     "tables": "innervate.running.simulating:TABLES",
     "report": "innervate.plot.body:body",
@@ -91,11 +103,7 @@ DEFAULTS = {
     "engine": "innervate.web.engine:Engine",
     "view": "innervate.web.declared_view:DeclaredView",
     "anchor": "innervate.network:nothing_to_anchor",
-    "describe": "innervate.scenario.declared.cables:describe",
     "fault_words": "innervate.scenario.cables:fault_words",
-    "actions": "innervate.scenario.actions.cables:ACTIONS",
-    "harm": "innervate.scenario.actions.cables:HARM",
-    "simulation": "innervate.sim.cables.declared:simulation",
     "verify": "innervate.verify.declared",
     "prove": "innervate.prove.declared",
     "interface_words": "innervate.network:NO_WORDS",
@@ -115,30 +123,13 @@ DEFAULTS = {
 MEDIA: dict[str, dict[str, str]] = {
     "cables": {},
     "channel": {
-        "model": "innervate.scenario.declared.channel:ChannelScenario",
-        "check": "innervate.scenario.declared.channel:check",
-        "plan": "innervate.scenario.declared.channel:plan",
-        "template": "innervate.scenario.declared.channel:template",
-        "describe": "innervate.scenario.declared.channel:describe",
-        "fault_words": "innervate.scenario.declared.channel:fault_words",
-        "actions": "innervate.scenario.actions.channel:ACTIONS",
-        "harm": "innervate.scenario.actions.channel:HARM",
-        "simulation": "innervate.sim.channel.declared:simulation",
+        **_declared("channel", "ChannelScenario", "fault_words"),
         "view": "innervate.web.channel_view:ChannelView",
         "live_node": "innervate.live.on_air:build",
         "deployment": "innervate.live.on_channel:ChannelDeployment",
     },
     "field": {
-        "model": "innervate.scenario.declared.field:FieldScenario",
-        "check": "innervate.scenario.declared.field:check",
-        "plan": "innervate.scenario.declared.field:plan",
-        "template": "innervate.scenario.declared.field:template",
-        "describe": "innervate.scenario.declared.field:describe",
-        "fault_words": "innervate.scenario.declared.field:fault_words",
-        "event": "innervate.scenario.declared.field:event",
-        "actions": "innervate.scenario.actions.field:ACTIONS",
-        "harm": "innervate.scenario.actions.field:HARM",
-        "simulation": "innervate.sim.field.declared:simulation",
+        **_declared("field", "FieldScenario", "fault_words", "event"),
         "view": "innervate.web.field_view:FieldView",
         "live_node": "innervate.live.in_field:build",
         "deployment": "innervate.live.in_field:FieldDeployment",

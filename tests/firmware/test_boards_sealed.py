@@ -107,7 +107,8 @@ def test_a_sealed_cell_takes_its_place_in_a_sealed_patch(tmp_path):
         devices, params, heard = cables.devices, skin_parameters(PARAMS), []
         cell = CellNode("c", CellStack(2, params, 5, [0, 1]),
                         [SerialLink(devices[3], BAUD, 0), SerialLink(devices[4], BAUD, 1)],
-                        sealer=sealer("skin", 2), rate_hz=10)  # fmt: skip
+                        sealer=sealer("skin", 2))  # fmt: skip
+        cell.rate_hz = 10
         pc = SinkNode("pc", SinkStack(params, 2), [SerialLink(devices[0], BAUD, 0),
                       SerialLink(devices[5], BAUD, 1)], sealer=sealer("skin", 3))  # fmt: skip
         pc.receive_touch(heard.append)

@@ -23,8 +23,8 @@ def test_cells_in_three_languages_make_one_patch(tmp_path, files):
     async def go(cables):
         ends = cables.devices
         last = CellStack(IN_PYTHON, skin_parameters(PARAMS), 5, [0, 1])
-        cell = CellNode("c", last, [SerialLink(ends[5], BAUD, 0), SerialLink(ends[6], BAUD, 1)],
-                        rate_hz=10)  # fmt: skip
+        cell = CellNode("c", last, [SerialLink(ends[5], BAUD, 0), SerialLink(ends[6], BAUD, 1)])
+        cell.rate_hz = 10
         pc = SinkNode("pc", SinkStack(skin_parameters(PARAMS), 2),
                       [SerialLink(ends[0], BAUD, 0), SerialLink(ends[7], BAUD, 1)])  # fmt: skip
         heard = {IN_MICROPYTHON: [], IN_PYTHON: []}

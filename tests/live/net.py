@@ -94,7 +94,8 @@ class Skin:
         self.cells = []
         for i in range(count):
             stack = CellStack(i, params, 7919 * (i + 1) ** 3, ports[i])
-            self.cells.append(CellNode(f"c{i}", stack, ends[i], rate_hz=rate_hz))
+            self.cells.append(CellNode(f"c{i}", stack, ends[i]))
+            self.cells[i].rate_hz = rate_hz
         self.pc = SinkNode("pc", SinkStack(params, len(interfaces)), pc)
         self.heard = {}
         self.pc.receive_touch(lambda touch: self.heard.__setitem__(touch.cell, time.monotonic()))

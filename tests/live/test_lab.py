@@ -4,9 +4,9 @@ import shutil
 
 import pytest
 
+from benchmarks.live.lab import Lab
 from innervate.live import netns
 from innervate.live.errors import LiveError
-from innervate.live.netns import Lab
 
 LINKS = [(0, 1), (1, 2), (0, 2)]
 

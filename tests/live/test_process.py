@@ -224,9 +224,9 @@ def free_port():
 @pytest.mark.needs_netns
 def test_in_network_namespaces_a_silent_cut_costs_no_probe(tmp_path):
     from benchmarks.live.__main__ import one_run
+    from benchmarks.live.lab import Lab
     from benchmarks.live.shapes import ring
     from benchmarks.live.sides import Innervate
-    from innervate.live.netns import Lab
 
     shape = ring(4)
     lab = Lab("ivtest", shape.count, shape.links)

@@ -61,8 +61,8 @@ async def test_changes_closer_than_the_grace_come_to_an_end():
     for k in range(2, 12):
         rotation.begin({k: bytes([k]) * 32}, k, 10.0)
         await settle(3.0)
-    assert a.sealer.use > 5  # not the first one until all is quiet
-    assert len(a.sealer.keys) <= 8
+    assert a.sealer.ring.use > 5  # not the first one until all is quiet
+    assert len(a.sealer.ring.keys) <= 8
     for _ in range(10):
         rotation.begin({11: bytes([11]) * 32}, 11, 10.0)
         await settle(3.0)

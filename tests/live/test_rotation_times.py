@@ -29,7 +29,7 @@ def seen(*changes, until_s=50):
             for _, numbers, use, *grace_s in (one for one in changes if one[0] == second):
                 rotation.begin(some(*numbers), use, *(grace_s or [GRACE_S]))
             await asyncio.sleep(0.5)
-            now = (sorted(sealer.keys), sealer.use)
+            now = (sorted(sealer.ring.keys), sealer.ring.use)
             if now not in list(found.values())[-1:]:
                 found[second] = now
             await asyncio.sleep(0.5)
@@ -84,7 +84,7 @@ def test_a_node_that_ends_changes_nothing_more():
         rotation.begin(some(1), 1, GRACE_S)
         rotation.stop()
         await asyncio.sleep(5 * GRACE_S)
-        return sorted(sealer.keys), sealer.use
+        return sorted(sealer.ring.keys), sealer.ring.use
 
     assert time_by_hand.run(main()) == ([0, 1], 0)
 

@@ -155,7 +155,7 @@ async def test_keys_leave_each_at_its_own_time_and_one_that_is_wanted_back_stays
 
     async def look(after_s):
         await settle(after_s)
-        seen.append((wire.sealer.use, sorted(wire.sealer.keys)))
+        seen.append((wire.sealer.ring.use, sorted(wire.sealer.ring.keys)))
 
     rotation.begin({2: OTHER}, 2, 10.0)  # at 0: to 2 at 10, without 1 at 20
     await look(5.0)

@@ -59,7 +59,7 @@ async def soak(seconds, seed):
                 if cut is not None:
                     mesh.cut(*cut)
             if sent % 150 == 0:
-                use = 3 - mesh.nodes[0].sealer.use
+                use = 3 - mesh.nodes[0].sealer.ring.use
                 for node in mesh.nodes:
                     node.sealer.load_keys(KEYS, use)
             if len(receipts) >= 200:

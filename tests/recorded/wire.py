@@ -20,6 +20,7 @@ from innervate.networks.skin import frames as skin
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.wire import cobs, crc, seal
 from innervate.wire.layout import SPARE
+from tests.networks.mesh import shown
 
 PATTERNS = ("zeros", "least", "most", "turns", "counting")
 BYTES = {"zeros": (0,), "ones": (255,), "turns": (0x55, 0xAA), "counting": range(1, 120)}
@@ -112,7 +113,7 @@ def _mesh(kind: int) -> Any:
             frame.body[:size] = list(islice(cycle(pattern), size))
             data = mesh.encode(frame)
             found[f"{name}, flags {flags}"] = [data.hex(), mesh.REASONS[mesh.reason_of(data)]]
-            told = payloads.describe(kind, flags, bytes(frame.body[:size]))
+            told = shown.describe(kind, flags, bytes(frame.body[:size]))
             found[f"{name}, flags {flags}, read"] = [list(pair) for pair in told]
     return found
 

@@ -10,7 +10,7 @@ import importlib
 import itertools
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 
@@ -90,6 +90,3 @@ def _imported(folder: str, copy: str, names: Iterable[str]) -> list[ModuleType]:
         sys.path.remove(folder)
         for name in [name for name in sys.modules if name.partition(".")[0] == copy]:
             del sys.modules[name]
-
-
-Load = Callable[[str], ModuleType]

@@ -21,9 +21,7 @@ HANDLERS = {
     "on_timer": "(state, params, now, timer, out)",
     "on_input": "(state, params, now, kind, item, out)",
 }
-ON_AIR = {
-    "on_carrier": "(state, params, now, cd, voc, out)",
-}
+ON_AIR = {"on_carrier": "(state, params, now, cd, voc, out)"}
 RULES = {"node_": "(node, params, now)", "network_": "(nodes, count, params)"}
 MAY = {"on_sent": "(state, params, now, ok, out)"}  # that a protocol need not have
 

@@ -18,7 +18,6 @@ import sys
 import zlib
 from collections.abc import Callable, Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -205,8 +204,3 @@ def called(address: int, tables: int) -> Advance:
             raise RuntimeError(f"a ready loop ended with status {status}")
 
     return advance
-
-
-def loops_in(folder: Path) -> int:
-    """How many ready loops a folder holds."""
-    return len(list(folder.glob("*.o.z")))

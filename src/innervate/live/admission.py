@@ -99,10 +99,8 @@ class BoundedListener:
 
     def _pause(self, seconds: float) -> None:
         self._loop.remove_reader(self._sock.fileno())
-        self._rest = self._loop.call_later(seconds, self._go_on)
-
-    def _go_on(self) -> None:
-        self._loop.add_reader(self._sock.fileno(), self._knock)
+        again = self._loop.add_reader
+        self._rest = self._loop.call_later(seconds, again, self._sock.fileno(), self._knock)
 
     async def _let_in(self, caller: socket.socket) -> None:
         reader = asyncio.StreamReader(self._bounds.limit, self._loop)

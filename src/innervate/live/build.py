@@ -86,11 +86,7 @@ def _link(table: Any, where: str, port: int) -> Link:
 
 
 def _interface(text: str, where: str) -> str:
-    """An interface by its own address.
-
-    Raises:
-        LiveError: it is none.
-    """
+    """An interface by its own address."""
     try:
         return str(ipaddress.IPv4Address(text))
     except ValueError:
@@ -101,11 +97,7 @@ def _interface(text: str, where: str) -> str:
 
 
 def _ipv4(text: str, where: str) -> tuple[str, int]:
-    """An address whose datagrams the system can tell from others: no name, and none of IPv6.
-
-    Raises:
-        LiveError: it is none.
-    """
+    """An address whose datagrams the system can tell from others: no name, and none of IPv6."""
     host, port = address(text, where)
     try:
         return str(ipaddress.IPv4Address(host)), port
@@ -159,11 +151,7 @@ def open_keys(loaded: Loaded) -> list[Path]:
 
 
 def keys_of(table: KeysTable, loaded: Loaded) -> dict[int, bytes]:
-    """Keys by number.
-
-    Raises:
-        LiveError: a number is not 0 to 15, or a key is none.
-    """
+    """Keys by number; LiveError if a number is not 0 to 15, or a key is none."""
     from innervate.live.keyring import read_key
 
     keys = {}

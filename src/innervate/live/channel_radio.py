@@ -37,12 +37,7 @@ def read_heard(data: bytes) -> tuple[bytes, int, bool, bool, bytes] | None:
 
 
 class MediumRadio:
-    """The radio of a station on a medium.
-
-    Args:
-        number: the station.
-        where: the medium's address.
-    """
+    """The radio of station `number` on the medium at address `where`."""
 
     def __init__(self, number: int, where: tuple[str, int]) -> None:
         self.number = number

@@ -52,11 +52,7 @@ class Answer(NamedTuple):
 
 
 class Contact:
-    """What a node knows of the far end of one path.
-
-    Args:
-        sealer: the node's.
-        path: to one neighbour.
+    """What the node of a sealer knows of the far end of a path to one neighbour.
 
     Attributes:
         sessions: those that were proved, by the number of who is there; the newest first.

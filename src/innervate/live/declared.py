@@ -178,7 +178,7 @@ class DeclaredNode(LiveNode):
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """What is delivered to the node, for those who follow it by its status socket."""
-        return [(self.receive(), partial(_line, self.name))]
+        return [(self.receive(), lambda item: {"from": self.name, **item})]
 
     def counters(self) -> Counter[str]:
         """Handler calls, frames dropped by reason, inputs, deliveries and reports by code."""
@@ -205,11 +205,7 @@ def values_of(record: Any, declared: Any) -> dict[str, Any]:
 
 
 def build(loaded: Loaded) -> DeclaredNode:
-    """The node of a file, not yet started.
-
-    Raises:
-        LiveError: it cannot be as written.
-    """
+    """The node of a file, not yet started; a LiveError says what cannot be as written."""
     table = loaded.table
     assert isinstance(table, DeclaredFile)
     network, links, state = networks()[table.kind], links_of(loaded), state_of(loaded)
@@ -224,7 +220,3 @@ def build(loaded: Loaded) -> DeclaredNode:
     seed = machine().chance.getrandbits(60)
     stack = DeclaredStack(network, table.number, dict(table.protocol), seed, ports)
     return DeclaredNode(loaded.name, stack, links, sealer_of(loaded, state), state)
-
-
-def _line(name: str, item: dict[str, Any]) -> dict[str, Any]:
-    return {"from": name, **item}

@@ -6,11 +6,13 @@ What stands here is for any network over cables; a network that has more to say 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
-from innervate.live.asking import ask, sleep_until
+from innervate.live import status
+from innervate.live.errors import LiveError
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 from innervate.scenario.declared.shared import refuse_script
@@ -132,9 +134,25 @@ class Deployment:
         """What a scenario has done beside its events, to be run with them: here its inputs."""
         return [self._play_inputs(stage)]
 
-    async def _play_inputs(self, stage: Stage) -> None:
-        began, scale = asyncio.get_running_loop().time(), self.slower() / 1e6
+    def inputs(self) -> Iterator[tuple[float, str, Table]]:
+        """What nodes are asked by the scenario: when, s, which one, and the request."""
         for one in sorted(getattr(self.plan, "inputs", ()), key=lambda one: one.at_us):
-            await sleep_until(began + one.at_us * scale)
             request = {"do": "input", "kind": one.kind, "item": one.item}
-            await ask(stage.socket(self.names[one.node]), request)
+            yield one.at_us * self.slower() / 1e6, self.names[one.node], request
+
+    async def _play_inputs(self, stage: Stage) -> None:
+        began = asyncio.get_running_loop().time()
+        for at_s, name, request in self.inputs():
+            await sleep_until(began + at_s)
+            await ask(stage.socket(name), request)
+
+
+async def ask(where: Path, request: Table) -> None:
+    """Ask a node for something; one that does not run has nothing to do."""
+    with suppress(LiveError):
+        await asyncio.to_thread(status.ask_one, where, request)
+
+
+async def sleep_until(when: float) -> None:
+    """Wait for a moment of the loop's clock."""
+    await asyncio.sleep(max(0.0, when - asyncio.get_running_loop().time()))

@@ -68,12 +68,8 @@ def clock_us() -> int:
     return machine().monotonic_ns() // 1000
 
 
-def _nobody(why: str) -> None:
-    """Whom an end is told that nobody asked for."""
-
-
 class Engine:
-    """Runs one stack: calls its functions, drains what they put out.
+    """Runs one stack: calls its functions, drains what they put out; they see `clock_us` mod 2^30.
 
     Args:
         stack: the protocol and its state.
@@ -81,7 +77,6 @@ class Engine:
         deliver: is given the kind and the frame record of every DELIVER; copies what it keeps.
         report: is given code, a and b of every REPORT.
         settled: is called when an outbox was drained; only it may hand something down again.
-        clock: microseconds; the protocol sees them modulo 2^30.
 
     Attributes:
         counters: what happened how often: handler calls, and frames dropped by reason.
@@ -96,7 +91,6 @@ class Engine:
         deliver: Callable[[int, Any], None],
         report: Callable[[int, int, int], None],
         settled: Callable[[], None],
-        clock: Callable[[], int] = clock_us,
     ) -> None:
         self.stack = stack
         self.counters: Counter[str] = Counter()
@@ -104,7 +98,6 @@ class Engine:
         self._deliver = deliver
         self._report = report
         self._settled = settled
-        self._clock = clock
         self._due = [NEVER] * stack.timers
         self._wake: asyncio.TimerHandle | None = None
         self._wake_at = NEVER
@@ -112,11 +105,11 @@ class Engine:
         self._loop = asyncio.get_running_loop()
         self._stopped = False
         self.now = 0
-        self.ended: Callable[[str], None] = _nobody
+        self.ended: Callable[[str], None] = lambda _why: None
 
     def start(self, cause: int = 0) -> None:
         """Switch the node on: 0 first, 1 again with its memory lost."""
-        now = self._clock()
+        now = clock_us()
         self.stack.on_start(now & MASK30, cause)
         self._drain(now)
 
@@ -147,7 +140,7 @@ class Engine:
 
         `at` is when, if that is known better than by looking at the clock now.
         """
-        now = self._clock() if at is None else at
+        now = clock_us() if at is None else at
         self.counters["frames"] += 1
         self.stack.on_frame(now & MASK30, port)
         self._drain(now)
@@ -164,7 +157,7 @@ class Engine:
 
     def input(self, kind: int, item: Any) -> None:
         """Hand something down for the node's own user."""
-        now = self._clock()
+        now = clock_us()
         self.stack.on_input(now & MASK30, kind, item)
         self._drain(now)
 
@@ -217,7 +210,7 @@ class Engine:
         self._fire()
 
     def _fire(self) -> None:
-        now = self._clock()
+        now = clock_us()
         for timer, at in enumerate(self._due):
             if at <= now:
                 self._due[timer] = NEVER

@@ -14,14 +14,7 @@ from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
-from innervate.live.contact import (
-    ALIVE,
-    ANSWER,
-    HELD_US,
-    KNOCKS,
-    Contact,
-    is_worn,
-)
+from innervate.live.contact import ALIVE, ANSWER, HELD_US, KNOCKS, Contact, is_worn
 from innervate.live.engine import clock_us
 from innervate.live.identity import SIGNATURE_BYTES, is_signed
 from innervate.live.keyring import ANYBODY, KEY_BYTES, About, Proven
@@ -52,12 +45,7 @@ class Heard:
 
 
 class GroupContact(Contact):
-    """What a node knows of the members of a group.
-
-    Args:
-        sealer: the node's.
-        path: the group's.
-    """
+    """What the node of a sealer knows of the members of a group, on the group's path."""
 
     most_knocks = 4 * KNOCKS  # many members may come at once
 

@@ -7,11 +7,7 @@ import socket
 
 
 class OwnNames:
-    """The names of this machine, and of what a server was told to bind to.
-
-    Args:
-        host: that name or address.
-    """
+    """The names of this machine, and the name or address that a server was told to bind to."""
 
     def __init__(self, host: str) -> None:
         own = socket.gethostname().lower()

@@ -125,11 +125,7 @@ def revoke(authority: bytes, version: int, serials: frozenset[int]) -> Revoked:
 
 
 def read_revoked(authority: bytes, data: bytes) -> Revoked:
-    """A list that somebody hands on.
-
-    Raises:
-        ValueError: the authority has not signed it.
-    """
+    """A list that somebody hands on; ValueError if the authority has not signed it."""
     body, signature = data[:-SIGNATURE_BYTES], data[-SIGNATURE_BYTES:]
     if len(body) < REVOKED.size:
         raise ValueError("no list of revoked nodes")

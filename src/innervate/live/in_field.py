@@ -104,11 +104,7 @@ class FieldDeployment(Deployment):
 
 
 def build(loaded: Loaded) -> FieldNode:
-    """The node of a file, not yet started.
-
-    Raises:
-        LiveError: it cannot be as written.
-    """
+    """The node of a file, not yet started; a LiveError says what cannot be as written."""
     table = loaded.table
     assert isinstance(table, DeclaredFile)
     network, links, state = networks()[table.kind], links_of(loaded), state_of(loaded)

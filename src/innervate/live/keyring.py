@@ -74,11 +74,7 @@ class About(NamedTuple):
 
 
 def read_about(data: bytes) -> About:
-    """What somebody says of himself.
-
-    Raises:
-        noise.Broken: it is cut short.
-    """
+    """What somebody says of himself; noise.Broken if it is cut short."""
     try:
         number, to, life, index = ABOUT.unpack_from(data)
         at, ends = ABOUT.size, []

@@ -70,11 +70,7 @@ class Sealer:
     """
 
     def __init__(
-        self,
-        ring: Keyring,
-        sender: int,
-        state: State | None = None,
-        nodes: int | None = None,
+        self, ring: Keyring, sender: int, state: State | None = None, nodes: int | None = None
     ) -> None:
         self.ring, identity = ring, ring.identity
         self.sender, self.nodes = sender, nodes
@@ -95,16 +91,6 @@ class Sealer:
                 self.ring.revoked = read_revoked(identity.authority, self.state.revoked)
             except ValueError:
                 self.state.revoked = b""  # another authority's, of before
-
-    @property
-    def keys(self) -> dict[int, bytes]:
-        """Keys that are accepted now."""
-        return self.ring.keys
-
-    @property
-    def use(self) -> int:
-        """The key that handshakes of ours begin with."""
-        return self.ring.use
 
     def start(self, paths: Iterable[Path]) -> None:
         """Ask on every path who is there."""
@@ -243,8 +229,7 @@ class Sealer:
     def revoke(self, data: bytes) -> bool:
         """Take over a newer list of revoked nodes, and hand it on; False = it is none or not newer.
 
-        Raises:
-            ValueError: never; what is not signed is dropped and counted.
+        What is not signed is dropped and counted.
         """
         identity, old = self.ring.identity, self.ring.revoked
         if identity is None or data == old.data:
@@ -274,7 +259,7 @@ class Sealer:
 
     def status(self) -> dict[str, Any]:
         """Which key handshakes begin with, which are accepted; with an identity, its own."""
-        told: dict[str, Any] = {"use": self.use, "accepted": sorted(self.keys)}
+        told: dict[str, Any] = {"use": self.ring.use, "accepted": sorted(self.ring.keys)}
         if self.ring.identity is not None:
             revoked = self.ring.revoked
             told["identity"] = {"serial": self.ring.identity.serial, "list": revoked.version,

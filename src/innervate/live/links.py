@@ -73,11 +73,7 @@ class Link:
     trouble = ""
 
     async def open(self, receive: Receiver) -> None:
-        """Start to receive.
-
-        Raises:
-            LiveError: it cannot be opened as written.
-        """
+        """Start to receive; LiveError if it cannot be opened as written."""
         raise NotImplementedError
 
     def unread(self) -> int:

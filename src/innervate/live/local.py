@@ -8,12 +8,7 @@ from innervate.live.links import Link, Path, Receiver
 
 
 class LocalLink(Link):
-    """One end of a cable inside a program; `pair` makes both.
-
-    Args:
-        name: as shown to people.
-        port: port number of the path.
-    """
+    """One end of a cable inside a program, with the port number of its path; `pair` makes both."""
 
     def __init__(self, name: str, port: int = 0) -> None:
         self.path = LocalPath(name, port)

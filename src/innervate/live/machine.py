@@ -53,7 +53,7 @@ class SerialPort(Protocol):
 
 
 class Machine:
-    """The machine that this process runs on.
+    """The machine that this process runs on; what it cannot do is an OSError that says so.
 
     Attributes:
         chance: random numbers: seeds of protocols, loose plugs.
@@ -84,11 +84,7 @@ class Machine:
         return socket.socket(family, kind)
 
     def open_serial(self, device: str, baud: int) -> SerialPort:
-        """A serial port, raw.
-
-        Raises:
-            OSError: it is not there, or no serial port.
-        """
+        """A serial port of the machine, raw."""
         from innervate.live.serial_port import Port
 
         return Port(device, baud)
@@ -123,37 +119,20 @@ class Machine:
         return path.exists()
 
     def read_text(self, path: Path) -> str:
-        """What stands in a file.
-
-        Raises:
-            OSError: it cannot be read.
-            UnicodeDecodeError: it is no text.
-        """
+        """What stands in a file; UnicodeDecodeError if that is no text."""
         return path.read_text(encoding="utf-8")
 
     def create(self, path: Path) -> IO[str]:
-        """An empty file to write into, which only its owner reads; one that is there is emptied.
-
-        Raises:
-            OSError: it cannot be made.
-        """
+        """An empty file to write into, which only its owner reads; one that is there is emptied."""
         return io.TextIOWrapper(private.create(path), encoding="utf-8")
 
     def sync(self, file: IO[str]) -> None:
-        """What was written into a file is on the disk, whatever happens to the machine.
-
-        Raises:
-            OSError: it cannot be written.
-        """
+        """What was written into a file is on the disk, whatever happens to the machine."""
         file.flush()
         os.fsync(file.fileno())
 
     def replace(self, old: Path, new: Path) -> None:
-        """A file has another name from now on, whatever happens to the machine.
-
-        Raises:
-            OSError: it cannot be done.
-        """
+        """A file has another name from now on, whatever happens to the machine."""
         os.replace(old, new)
         with suppress(OSError):  # not every system can: it is as safe as it was
             folder = os.open(new.parent, os.O_RDONLY)
@@ -163,19 +142,11 @@ class Machine:
                 os.close(folder)
 
     def remove(self, path: Path) -> None:
-        """A file, or a socket's name, is no more.
-
-        Raises:
-            OSError: there was none, or it cannot be removed.
-        """
+        """A file, or a socket's name, is no more."""
         path.unlink()
 
     def keep_awake(self) -> IO[bytes]:
-        """Processors that have nothing to do wait without sleeping, until this file is closed.
-
-        Raises:
-            OSError: the system cannot, or this user may not.
-        """
+        """Processors that have nothing to do wait without sleeping, until this file is closed."""
         file = open(IDLE_STATES, "r+b", buffering=0)  # noqa: SIM115 - open is what keeps it so
         file.write((0).to_bytes(4, sys.byteorder))
         return file

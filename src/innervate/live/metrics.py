@@ -19,12 +19,7 @@ BOUNDS = Bounds(most=16, burst=8, full=FULL, limit=REQUEST_MAX)
 
 
 class MetricsPage:
-    """Answers GET /metrics.
-
-    Args:
-        where: address and port to listen on.
-        node: whose status it shows.
-    """
+    """Answers GET /metrics at an address and port, with the status of a node."""
 
     def __init__(self, where: tuple[str, int], node: LiveNode) -> None:
         self.where = where
@@ -33,11 +28,7 @@ class MetricsPage:
         self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
-        """Listen.
-
-        Raises:
-            LiveError: the address cannot be used.
-        """
+        """Listen; LiveError if the address cannot be used."""
         try:
             sock = socket.create_server(self.where)
         except OSError as error:

@@ -24,11 +24,7 @@ AGE_MAX = 1 << 28  # us; the board's clock has 30 bits
 
 
 class Modem:
-    """Carries what a board and a channel say to each other.
-
-    Args:
-        link: to the board.
-        radio: what sends and hears.
+    """Carries what the board behind a link and the channel of a radio say to each other.
 
     Attributes:
         unsound: frames of the board that were none.

@@ -14,7 +14,6 @@ from innervate.live.errors import LiveError
 UDP_PORT = 4700
 _CABLES = int(IPv4Address("10.77.0.0"))
 _LOOPS = int(IPv4Address("10.78.0.0"))
-_ETHERNET_BYTES = 14
 RULES = """table inet innervate {
   set cut { type ifname; }
   chain arrivals { type filter hook prerouting priority raw; policy accept; iifname @cut drop; }
@@ -54,18 +53,6 @@ class Lab:
         """A node's own address, for routing daemons."""
         return str(IPv4Address(_LOOPS + 1 + node))
 
-    def peers(self, node: int) -> list[str]:
-        """UDP addresses at the far ends of a node's cables."""
-        return [
-            f"{self.address(k, a if b == node else b)}:{UDP_PORT}"
-            for k, (a, b) in enumerate(self.links)
-            if node in (a, b)
-        ]
-
-    def interfaces(self, node: int) -> list[str]:
-        """A node's ends of cables."""
-        return [f"c{k}" for k, ends in enumerate(self.links) if node in ends]
-
     def up(self) -> None:
         """Make the namespaces; what an earlier run left under this prefix is removed."""
         self.down()
@@ -104,46 +91,8 @@ class Lab:
         return ["ip", "netns", "exec", self.name(node), *command]
 
     def run(self, node: int, command: list[str], text: str = "") -> str:
-        """Run a command in a namespace; its output.
-
-        Raises:
-            LiveError: it failed.
-        """
+        """The output of a command, run in a namespace; LiveError if it failed."""
         return _run(self.inside(node, command), text)
-
-    def cut(self, link: int) -> None:
-        """Drop whatever arrives over a cable, both ways; its carrier stays up, nobody is told."""
-        self._set("add", link)
-
-    def restore(self, link: int) -> None:
-        """Let frames over a link again, as before `cut`."""
-        self._set("delete", link)
-
-    def isolate(self, node: int) -> None:
-        """Drop whatever arrives at a node, on all its cables in the same moment."""
-        self._change("add", node, self.interfaces(node))
-
-    def rejoin(self, node: int) -> None:
-        """Let a node's frames out again, as before `isolate`."""
-        self._change("delete", node, self.interfaces(node))
-
-    def _set(self, what: str, link: int) -> None:
-        for node in self.links[link]:
-            self._change(what, node, [f"c{link}"])
-
-    def _change(self, what: str, node: int, names: list[str]) -> None:
-        element = ["element", "inet", "innervate", "cut", "{", ", ".join(names), "}"]
-        self.run(node, ["nft", what, *element])
-
-    def ip_bytes(self, link: int) -> int:
-        """IP bytes sent on a cable so far, both ways, headers of IP included."""
-        total = 0
-        for node in self.links[link]:
-            folder = f"/sys/class/net/c{link}/statistics"
-            text = self.run(node, ["cat", f"{folder}/tx_bytes", f"{folder}/tx_packets"])
-            count, packets = map(int, text.split())
-            total += count - _ETHERNET_BYTES * packets
-        return total
 
 
 def _ip(*words: str, text: str = "") -> str:

@@ -150,11 +150,7 @@ class LiveNode:
         return STOPPED if self.is_stopped else ""
 
     def running(self) -> Engine:
-        """What runs the protocol.
-
-        Raises:
-            ValueError: nothing does.
-        """
+        """What runs the protocol; ValueError if nothing does."""
         if self.engine is None or self.is_stopped:
             raise ValueError(f"{self.idle()}; start it first: await node.start(), or async with it")
         return self.engine
@@ -171,11 +167,7 @@ class LiveNode:
         await self.stop()
 
     def path_at(self, port: int) -> Path:
-        """A path by its number.
-
-        Raises:
-            ValueError: there is none.
-        """
+        """A path by its number; ValueError if there is none."""
         if not 0 <= port < len(self.paths):
             raise ValueError(f"no port {port}; this node has 0 to {len(self.paths) - 1}")
         return self.paths[port]
@@ -290,19 +282,13 @@ class LiveNode:
             "up_s": round((clock_us() - self.started_at) / 1e6, 1),
             "sealed": self.sealer is not None,
             "engine": PYTHON if self.not_in_c else C,
-            "keys": self._keys_status(),
+            "keys": None if self.sealer is None else self.sealer.status(),
             "state": self.state.status(),
             "paths": paths,
             "broken": [path["name"] for path in paths if path["broken"]],
             "counters": dict(sorted(self.counters().items())),
             **self.stack.status(clock_us()),
         }
-
-    def _keys_status(self) -> dict[str, Any] | None:
-        """Which key seals, and which are accepted; None = frames go in the clear."""
-        if self.sealer is None:
-            return None
-        return self.sealer.status()
 
     def _note_report(self, code: int, a: int, b: int) -> None:
         self.reports[code] += 1

@@ -162,8 +162,7 @@ def load(path: Path) -> Loaded:
 def parse(raw: dict[str, Any], where: str = "node", folder: Path = Path()) -> NodeFile:
     """The node of a file's tables; a network of that kind may be a folder beside it, in `folder`.
 
-    Raises:
-        LiveError: see load().
+    What is wrong is a LiveError, as of `load`.
     """
     if wrong := plain.fault(raw):
         raise LiveError(f"{where}: {wrong}")

@@ -31,11 +31,6 @@ class Pattern(NamedTuple):
     name: str
     messages: tuple[tuple[str, ...], ...]
 
-    @property
-    def has_psk0(self) -> bool:
-        """True if the shared key is the first thing that is mixed in."""
-        return "psk0" in self.name
-
 
 NETWORK = Pattern("NNpsk0", (("e",), ("e", "ee")))
 IDENTITY = Pattern("XXpsk0", (("e",), ("e", "ee", "s", "es"), ("s", "se")))
@@ -72,7 +67,7 @@ class Symmetric:
         self.k = b""
         self.n = 0
         self.mix_hash(prologue)
-        if pattern.has_psk0:
+        if "psk0" in pattern.name:  # the shared key is the first thing that is mixed in
             self.mix_key_and_hash(psk)
 
     def copy(self) -> Symmetric:
@@ -106,11 +101,7 @@ class Symmetric:
         return out
 
     def decrypt(self, data: bytes) -> bytes:
-        """The reverse.
-
-        Raises:
-            Broken: it was made by somebody else, or for other words.
-        """
+        """The reverse; Broken if it was made by somebody else, or for other words."""
         plain = data
         if self.k:
             try:

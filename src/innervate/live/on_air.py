@@ -108,11 +108,7 @@ def medium_of(loaded: Loaded) -> tuple[str, tuple[str, int]]:
 
 
 def build(loaded: Loaded) -> DeclaredAirNode:
-    """The node of a file, not yet started.
-
-    Raises:
-        LiveError: it cannot be as written.
-    """
+    """The node of a file, not yet started; a LiveError says what cannot be as written."""
     from innervate.live.channel_radio import MediumRadio
 
     table = loaded.table

@@ -21,11 +21,7 @@ class ChannelDeployment(Deployment):
     has_channel = True
 
     def layout(self) -> tuple[list[str], Pairs]:
-        """Nodes by number.
-
-        Raises:
-            LiveError: some do not hear each other.
-        """
+        """Nodes by number; LiveError if some do not hear each other."""
         if any(delay < 0 for row in self.plan.delays_us for delay in row):
             raise LiveError("live nodes on a channel all hear each other; leave hidden out")
         return [f"n{i}" for i in range(self.plan.nodes)], []

@@ -91,11 +91,7 @@ def only_from(sock: socket.socket, *programs: bytes) -> None:
 
 
 def attach(sock: socket.socket, option: int, steps: bytes) -> None:
-    """Give a program to a socket.
-
-    Raises:
-        OSError: the system does not take it.
-    """
+    """Give a program to a socket; OSError if the system does not take it."""
     if len(steps) > STEPS_MAX * STEP_BYTES:
         raise OSError(errno.EINVAL, "too many instructions")
     held = ctypes.create_string_buffer(steps, len(steps))

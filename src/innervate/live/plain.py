@@ -13,6 +13,7 @@ WHOLE_MAX = 2**63 - 1
 DIGITS_MAX = 4300  # what Python reads of a decimal number
 DEPTH_MAX = 100  # tables and lists in each other
 SHOWN = 60  # characters of a text that is wrong
+DEEP = "lists or tables are nested too deeply"
 _LONG = re.compile(rf"[0-9](?:_?[0-9]){{{DIGITS_MAX},}}")
 _DEEP = re.compile(r"[\[{](?:\s*[\[{]){99}")
 _KEY = re.compile(r"""([\w."'-]+)\s*=""")
@@ -34,9 +35,9 @@ def read(text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"not valid TOML: {error}") from None
     except RecursionError:
-        raise ValueError(f"not valid TOML: {_too_deep(text)}") from None
+        raise ValueError(f"not valid TOML: {_place(text, _DEEP)}{DEEP}") from None
     except ValueError:
-        raise ValueError(_too_long(text)) from None
+        raise ValueError(f"{_place(text, _LONG)}a number is too long to be read") from None
     if wrong := fault(tables):
         raise ValueError(wrong)
     return tables
@@ -73,25 +74,11 @@ def octets(tables: dict[str, Any], name: str, size: int) -> bytes:
 
 
 def listed(tables: dict[str, Any], name: str) -> list[Any]:
-    """A list.
-
-    Raises:
-        ValueError: it is none; it begins with the field.
-    """
+    """A list; ValueError if it is none, which begins with the field."""
     value = tables.get(name)
     if not isinstance(value, list):
         raise ValueError(f"{name}: a list is to stand there")
     return value
-
-
-def _too_long(text: str) -> str:
-    """Where in TOML a number is too long to be read."""
-    return f"{_place(text, _LONG)}a number is too long to be read"
-
-
-def _too_deep(text: str) -> str:
-    """Where in TOML lists lie too deep in each other."""
-    return f"{_place(text, _DEEP)}lists or tables are nested too deeply"
 
 
 def _place(text: str, what: re.Pattern[str]) -> str:
@@ -114,7 +101,7 @@ def shown(text: str) -> str:
 
 def _faults(value: Any, name: str, depth: int = 0) -> Iterator[str]:
     if depth > DEPTH_MAX:
-        yield f"{shown(name)}: lists or tables are nested too deeply"
+        yield f"{shown(name)}: {DEEP}"
     elif isinstance(value, dict):
         for key, one in value.items():
             below = f"{name}.{shown(key)}" if name else shown(key)

@@ -6,8 +6,7 @@ import asyncio
 from collections.abc import Callable
 from typing import NamedTuple
 
-from innervate.live.asking import sleep_until
-from innervate.live.deployment import Deployment, Stage
+from innervate.live.deployment import Deployment, Stage, sleep_until
 from innervate.live.errors import LiveError
 
 LOSS_ONE = 32_768
@@ -58,13 +57,7 @@ def is_played(event: Event) -> bool:
 
 
 class Player:
-    """Plays a scenario on a running network, from now on.
-
-    Args:
-        stage: the network.
-        events: what happens.
-        tell: is given a line for every event.
-    """
+    """Plays events on a running network, from now on; `tell` is given each as it happens."""
 
     def __init__(self, stage: Stage, events: list[Event], tell: Callable[[Event], None]) -> None:
         self.stage = stage
@@ -72,11 +65,7 @@ class Player:
         self.tell = tell
 
     async def play(self) -> None:
-        """Play all; some scenarios have no end.
-
-        Raises:
-            LiveError: a node did not come up again.
-        """
+        """Play all; some scenarios have no end; LiveError if a node did not come up again."""
         try:
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._play_events())

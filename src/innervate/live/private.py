@@ -29,11 +29,7 @@ def create(path: Path) -> BinaryIO:
 
 
 def write(path: Path, text: str) -> None:
-    """Write a file that only its owner can read.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Write a file that only its owner can read; OSError if it cannot be written."""
     with create(path) as file:
         file.write(text.encode())
 

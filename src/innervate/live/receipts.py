@@ -15,11 +15,7 @@ STOPPED = "node stopped"  # why what was under way has expired, and nothing more
 
 
 def check_bytes(payload: object) -> None:
-    """That a payload is bytes, before anything is done with it.
-
-    Raises:
-        TypeError: it is not.
-    """
+    """TypeError unless a payload is bytes, before anything is done with it."""
     if not isinstance(payload, bytes | bytearray | memoryview):
         raise TypeError(f"a payload is bytes, not {type(payload).__name__}")
 
@@ -33,13 +29,12 @@ class Receipt:
         seq: the packet's number once the router has it, -1 before.
     """
 
-    __slots__ = ("_changes", "_waiters", "reason", "seq", "state")
+    __slots__ = ("_changes", "reason", "seq", "state")
 
     def __init__(self) -> None:
         self.state = ACCEPTED
         self.reason = ""
         self.seq = -1
-        self._waiters: list[asyncio.Future[str]] = []
         self._changes: list[asyncio.Future[str]] = []
 
     async def wait(self) -> str:
@@ -47,11 +42,9 @@ class Receipt:
 
         Messages to all, or without end-to-end acknowledgement, stay "accepted": do not wait.
         """
-        if self.state in FINAL:
-            return self.state
-        future = asyncio.get_running_loop().create_future()
-        self._waiters.append(future)
-        return str(await future)
+        while self.state not in FINAL:
+            await self.change()
+        return self.state
 
     async def change(self) -> str:
         """Wait for the next change; the state then."""
@@ -64,11 +57,7 @@ class Receipt:
     def move(self, state: str, reason: str = "") -> None:
         """The message's state changes; whoever waits for that is woken."""
         self.state, self.reason = state, reason
-        told = self._changes
-        self._changes = []
-        if state in FINAL:
-            told += self._waiters
-            self._waiters = []
+        told, self._changes = self._changes, []
         for future in told:
             if not future.done():
                 future.set_result(state)

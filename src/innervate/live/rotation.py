@@ -12,19 +12,16 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
 
 
 class Rotation:
-    """Changes the keys of a running node.
+    """Changes the keys of a running node, which its sealer has.
 
     New keys are accepted at once. For a grace time handshakes still begin with the old one, so
     that the other nodes may be told; for a second one it is still accepted, until they have done
     the same. Each key has its own times: another change in between does not make them longer.
-
-    Args:
-        sealer: the node's.
     """
 
     def __init__(self, sealer: Sealer) -> None:
-        self.sealer = sealer
-        self._target = sealer.use
+        self.sealer, self.ring = sealer, sealer.ring
+        self._target = sealer.ring.use
         self._switches: list[asyncio.TimerHandle] = []
         self._leaving: dict[int, asyncio.TimerHandle] = {}
 
@@ -34,12 +31,12 @@ class Rotation:
         Raises:
             LiveError: a number stands for another key than before.
         """
-        old = self.sealer.keys
+        old = self.ring.keys
         for number in keys.keys() & old.keys():
             if keys[number] != old[number]:
                 raise LiveError(f"keys.secret.{number} is another key now; give it a new number")
         loop = asyncio.get_running_loop()
-        self.sealer.load_keys({**old, **keys}, self.sealer.use)
+        self.sealer.load_keys({**old, **keys}, self.ring.use)
         if use != self._target:
             self._target = use
             self._switches.append(loop.call_later(grace_s, self._switch, use))
@@ -52,15 +49,15 @@ class Rotation:
         """Begin with another key; those that were to be used before it are so no more."""
         if use == self._target:
             self.stop_switches()
-        if use in self.sealer.keys:
-            self.sealer.load_keys(self.sealer.keys, use)
+        if use in self.ring.keys:
+            self.sealer.load_keys(self.ring.keys, use)
 
     def _leave(self, number: int) -> None:
         del self._leaving[number]
-        if number == self.sealer.use:
+        if number == self.ring.use:
             self._switch(self._target)
-        left = {key: value for key, value in self.sealer.keys.items() if key != number}
-        self.sealer.load_keys(left, self.sealer.use)
+        left = {key: value for key, value in self.ring.keys.items() if key != number}
+        self.sealer.load_keys(left, self.ring.use)
 
     def stop_switches(self) -> None:
         """No other key is used than now."""

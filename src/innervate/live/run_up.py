@@ -104,11 +104,7 @@ async def down(network: Processes, way: Way) -> None:
 
 
 def _check_scenario(path: Path) -> None:
-    """That a scenario in the folder is of a `live up`, and may be replaced.
-
-    Raises:
-        LiveError: it is somebody's own.
-    """
+    """Refuse a scenario in the folder that no `live up` wrote: it may not be replaced."""
     try:
         is_ours = path.read_text(encoding="utf-8").startswith(OURS)
     except FileNotFoundError:
@@ -120,11 +116,7 @@ def _check_scenario(path: Path) -> None:
 
 
 def _identities(network: Processes) -> dict[str, Any]:
-    """Have every node enrolled; the [keys] table.
-
-    Raises:
-        LiveError: there are keys in the folder that no `live up` made.
-    """
+    """Have every node enrolled; the [keys] table. Keys that no `live up` made are refused."""
     from innervate.live.enrolment import Authority
 
     folder = network.folder / "keys"

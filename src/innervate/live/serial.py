@@ -126,8 +126,7 @@ class SerialLink(Link):
         except BlockingIOError:
             return
         except OSError:
-            self._lost()
-            return
+            data = b""
         if not data:
             self._lost()
             return

@@ -49,8 +49,7 @@ def folder() -> Path:
 def where() -> Path:
     """The folder to look into for running nodes: that of `live up` if none runs in `folder`.
 
-    Raises:
-        LiveError: as `folder`.
+    Its errors are those of `folder`.
     """
     here = folder()
     if os.environ.get("INNERVATE_RUN") or _sockets(here):
@@ -130,11 +129,7 @@ class Server:
     """
 
     def __init__(
-        self,
-        path: Path,
-        handle: Handler,
-        counts: Counter[str] | None = None,
-        is_ours: bool = False,
+        self, path: Path, handle: Handler, counts: Counter[str] | None = None, is_ours: bool = False
     ) -> None:
         self.path = path
         self.is_ours = is_ours
@@ -143,11 +138,7 @@ class Server:
         self.listener: BoundedListener | None = None
 
     async def start(self) -> None:
-        """Listen.
-
-        Raises:
-            LiveError: the socket cannot be made, or a running node has it.
-        """
+        """Listen; LiveError if the socket cannot be made, or a running node has it."""
         try:
             if self.is_ours:  # somebody else can have been quicker to make it
                 self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
@@ -213,22 +204,14 @@ def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def ask_one(path: Path, request: dict[str, Any]) -> dict[str, Any]:
-    """The first answer.
-
-    Raises:
-        LiveError: see ask().
-    """
+    """The first answer, or a LiveError as of `ask`."""
     for answer in ask(path, request):
         return answer
     raise LiveError(f"{path}: the node went away; is it still running?")
 
 
 def find(name: str) -> Path:
-    """The socket of a node by name or path.
-
-    Raises:
-        LiveError: there is none.
-    """
+    """The socket of a node by name or path; LiveError if there is none."""
     path = Path(name)
     if path.is_socket():
         return path

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncGenerator, Callable
-from functools import partial
 from typing import Any, Generic, TypeVar
 
 # Makes the line that a listener gets of what came.
@@ -53,7 +52,8 @@ class Arrivals(Generic[Item]):
         At the iterator's end the callback is taken away.
         """
         queue: asyncio.Queue[Any] = asyncio.Queue()
-        own = callback or (queue.put_nowait if not self._is_spread else partial(_put, queue))
+        put: Callable[..., None] = queue.put_nowait
+        own = callback or (put if not self._is_spread else lambda *parts: put(parts))
         self.callbacks.append(own)
         return self._iterate(queue, own)
 
@@ -65,10 +65,6 @@ class Arrivals(Generic[Item]):
                 yield await queue.get()
         finally:
             self.callbacks.remove(own)
-
-
-def _put(queue: asyncio.Queue[Any], *parts: Any) -> None:
-    queue.put_nowait(parts)
 
 
 def message_line(message: tuple[int, bytes]) -> dict[str, Any]:

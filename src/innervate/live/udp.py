@@ -91,7 +91,7 @@ class UdpLink(Link):
         self.strangers = 0
         self._unread = 0
         self._by_address = {path.address: path for path in self.paths}
-        self._receive: Receiver = _nobody
+        self._receive: Receiver = lambda _path, _data: None  # until one is known
         self._closed = False
         self._again: asyncio.TimerHandle | None = None
 
@@ -281,7 +281,3 @@ class MulticastLink(UdpLink):
     def _origin(self, address: Address) -> UdpPath | None:
         """Whoever sends to the group is in it; our own frames come back, too: protocols know."""
         return self._group
-
-
-def _nobody(path: Path, data: bytes) -> None:
-    """Drop what comes in before a receiver is known."""

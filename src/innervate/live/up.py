@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import socket
 import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from innervate.live import files, hangup, private, status
-from innervate.live.asking import ask
-from innervate.live.deployment import Deployment, Table
+from innervate.live.deployment import Deployment, Table, ask
 from innervate.live.errors import LiveError
 from innervate.live.netns import UDP_PORT, Lab
 from innervate.live.serial_cables import Cables
-from innervate.live.wiring import free_ports, udp
 from innervate.network import networks
 
 NodeTables = tuple[Table, dict[str, Table], list[Table]]
@@ -215,13 +215,13 @@ class Processes:
                 if self.lab is not None:
                     own = self.lab.address(k, node)
                     other = self.lab.address(k, ends[1 - side])
-                    table = udp(f"{own}:{UDP_PORT}", f"{other}:{UDP_PORT}")
+                    table = _udp(f"{own}:{UDP_PORT}", f"{other}:{UDP_PORT}")
                 elif self.relay is not None:
                     own, other = (self.relay.devices[2 * k + i] for i in (side, 1 - side))
                     table = {"kind": "serial", "device": own, "far": other, "baud": 4_000_000}
                 else:
                     own, other = (f"127.0.0.1:{ports[2 * k + i]}" for i in (side, 1 - side))
-                    table = udp(own, other)
+                    table = _udp(own, other)
                 found[node][k] = table
         for number, tables in enumerate(found):
             order = self.deployment.in_order(number, list(tables))
@@ -250,3 +250,17 @@ class Processes:
         common = {"kind": self.plan.kind, "name": name, "number": number}
         common["socket"] = str(self.socket(name))
         return {**common, **head}, tables, links
+
+
+def _udp(own: str, other: str) -> Table:
+    """The link table of a cable over UDP."""
+    return {"kind": "udp", "bind": own, "peers": [other]}
+
+
+def free_ports(count: int) -> list[int]:
+    """UDP ports on loopback that nobody uses now."""
+    with ExitStack() as stack:
+        socks = [stack.enter_context(socket.socket(type=socket.SOCK_DGRAM)) for _ in range(count)]
+        for sock in socks:
+            sock.bind(("127.0.0.1", 0))
+        return [sock.getsockname()[1] for sock in socks]

@@ -45,6 +45,17 @@ class Table:
     rows: str = ""
 
 
+TIME = Column("time_us", "Int64", "us", "when, true time", "time")
+
+
+def reports(who: Column) -> Table:
+    """The table of what nodes reported, where codes are a network's own."""
+    details = (Column("a", "Int32", "", "first detail"), Column("b", "Int32", "", "second detail"))
+    columns = (TIME, who, Column("code", "Int8", "code", "what"), *details)
+    row = f"a {who.unit} reported something (codes: protocol/constants.py)"
+    return Table("reports", row, columns, rows="rows")
+
+
 def taken(table: Table, rows: Any) -> dict[str, Any]:
     """One array for every column that an array of records has a field for."""
     import numpy as np

@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields
 from innervate.sim.field.access import MAC
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
+from tests.networks.mesh import shown
 
 
 def crossing(**more):
@@ -80,10 +81,10 @@ def test_a_piece_is_shown_as_one_where_it_can_be_one(kind, flags, dest, seq, is_
     frame = Of(**dict.fromkeys([name for name, *_ in wire.COMMON], 0) | {
         "kind": kind, "flags": flags, "dest": dest, "seq": seq, "path": [], "path_len": 0,
         "body": list(body), "length": len(body)})  # fmt: skip
-    names = [name for name, _ in wire.fields(frame)]
+    names = [name for name, _ in shown.fields(frame)]
     assert ("in_order" in names) == is_piece
     if is_piece:
-        assert wire.fields(frame)[-6:] == [
+        assert shown.fields(frame)[-6:] == [
             ("mark", 5 + PIECE_AHEAD), ("message", 3), ("in_order", 1), ("at", 9), ("size", 99),
             ("data", [97, 98])]  # fmt: skip
 

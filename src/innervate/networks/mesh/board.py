@@ -47,11 +47,7 @@ WAITS = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
 
 
 def csma_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
-    """A station's parameters, with what is to be different.
-
-    Raises:
-        LiveError: no such parameter, or out of its range; the message begins with `where`.
-    """
+    """A station's parameters, with what is to be different, as `check_parameters` allows it."""
     check_parameters(changes, csma_fields.PARAMS, where)
     return {**WAITS, **changes}
 

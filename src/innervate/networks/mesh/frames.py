@@ -8,21 +8,18 @@ that a medium must say where a frame ends (a CRC alone does not see a zero behin
 import struct
 from typing import Any
 
-from innervate.networks.mesh.payloads import FIELDS, NAMES, PIECE, describe, fits, is_piece
+from innervate.networks.mesh.payloads import FIELDS, fits
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ACK_BYTES,
     ACK_MORE_BYTES,
-    ALL,
     CRC_BYTES,
-    DATA,
     HEADER_BYTES,
     MTU,
-    ORDERED,
     PATH_MAX,
 )
 from innervate.wire.crc import crc16, is_sealed
-from innervate.wire.layout import REST, pack, put_number, read
+from innervate.wire.layout import REST, pack, put_number
 
 VERSION = 1
 
@@ -116,11 +113,7 @@ def _ack(frame: Any, first: int) -> bytes:
 
 
 def check(frame: Any) -> None:
-    """Refuse a record of which a value does not fit, by its name.
-
-    Raises:
-        ValueError: that one.
-    """
+    """Refuse, by its name, a value of a record that does not fit: a ValueError."""
     is_ack = frame.kind == ACK
     pack(HOP_ACK if is_ack else COMMON, bytearray(MTU), AT, frame)
     parts = (("body", frame.length), ("path", 0 if is_ack else frame.path_len))
@@ -199,31 +192,3 @@ def acked(frame: Any) -> list:  # type: ignore[type-arg]
     for at in range(0, frame.length, ACK_MORE_BYTES):
         pairs.append((frame.body[at], frame.body[at + 1] << 8 | frame.body[at + 2]))
     return pairs
-
-
-def fields(frame: Any) -> list:  # type: ignore[type-arg]
-    """A frame record as (name, value) pairs in the order of the bytes, for display.
-
-    Numbers, lists of numbers, and for groups lists of such pairs. A source route and failed nodes
-    around the payload are pairs of their own; a payload that is too short is given as it is.
-    """
-    kind = frame.kind
-    pairs = [("version", VERSION), ("kind", kind)]
-    for name, _many, _bits, _signed in HOP_ACK if kind == ACK else COMMON:
-        pairs.append((name, getattr(frame, name)))
-    if kind == ACK and frame.length:
-        pairs.append(("more", [[("origin", who), ("seq", seq)] for who, seq in acked(frame)[1:]]))
-    if kind != ACK:
-        pairs.append(("path", list(frame.path[: frame.path_len])))
-        body = bytes(list(frame.body[: frame.length]))
-        is_ordered = kind == DATA and frame.flags & ORDERED and frame.dest != ALL
-        if is_ordered and is_piece(frame.flags, frame.seq, body):
-            read(PIECE, body, 0, 8 * len(body), pairs)
-        else:
-            pairs.extend(describe(kind, frame.flags, body))
-    return pairs
-
-
-def name_of(kind: int) -> str:
-    """What a type of packet is called."""
-    return "ack" if kind == ACK else NAMES.get(kind, "unknown")

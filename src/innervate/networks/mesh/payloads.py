@@ -24,55 +24,37 @@ GROUP = (
     ("dests", "count", 8, 0),
 )
 MOVING = (("x", 0, 16, 1), ("y", 0, 16, 1), ("vx", 0, 8, 1), ("vy", 0, 8, 1))
-PART = (
-    ("epoch", 0, 8, 0),
-    ("table_version", 0, 16, 0),
-    ("fragment", 0, 4, 0),
-    ("fragments", 0, 4, 0),
-)
+VERSION = (("epoch", 0, 8, 0), ("table_version", 0, 16, 0))
+PART = VERSION + (("fragment", 0, 4, 0), ("fragments", 0, 4, 0))
 ROUTE = (("route_len", 0, 8, 0), ("route", "route_len", 8, 0))
+
+ASKING = (
+    ("gateway", 0, 8, 0),
+    ("epoch", 0, 8, 0),
+    ("round", 0, 16, 0),
+    ("active", 0, 16, 0),
+    ("jitter", 0, 8, 0),
+    ("asked", REST, 8, 0),
+)
+ANSWERING = (
+    ("epoch", 0, 8, 0),
+    ("round", 0, 16, 0),
+    ("mode", 0, 4, 0),
+    ("listed", 0, 4, 0),
+    ("neighbours", REST, NEIGHBOUR, 0),
+)
+RAISED = (("robot", 0, 8, 0), ("fence", 0, 8, 0), ("number", 0, 8, 0), ("alarm", 0, 8, 0))
 
 # A payload: value of the type, name, fields (see layout.py).
 LAYOUTS = (
-    (
-        REQUEST,
-        "request",
-        (
-            ("gateway", 0, 8, 0),
-            ("epoch", 0, 8, 0),
-            ("round", 0, 16, 0),
-            ("active", 0, 16, 0),
-            ("jitter", 0, 8, 0),
-            ("asked", REST, 8, 0),
-        ),
-    ),
-    (
-        RESPONSE,
-        "response",
-        (
-            ("epoch", 0, 8, 0),
-            ("round", 0, 16, 0),
-            ("mode", 0, 4, 0),
-            ("listed", 0, 4, 0),
-            ("neighbours", REST, NEIGHBOUR, 0),
-        ),
-    ),
+    (REQUEST, "request", ASKING),
+    (RESPONSE, "response", ANSWERING),
     (TABLE, "table", ROUTE + PART + (("groups", REST, GROUP, 0),)),
-    (
-        TABLE_ACK,
-        "table ack",
-        (("epoch", 0, 8, 0), ("table_version", 0, 16, 0), ("parts", 0, 16, 0)),
-    ),
-    (ACTIVATE, "activate", (("epoch", 0, 8, 0), ("table_version", 0, 16, 0))),
+    (TABLE_ACK, "table ack", VERSION + (("parts", 0, 16, 0),)),
+    (ACTIVATE, "activate", VERSION),
     (DATA, "data", (("data", REST, 8, 0),)),
     (E2E_ACK, "end-to-end ack", (("acked", REST, 16, 0),)),
-    (
-        ALARM,
-        "alarm",
-        (("robot", 0, 8, 0), ("fence", 0, 8, 0), ("number", 0, 8, 0), ("alarm", 0, 8, 0))
-        + MOVING
-        + (("time", 0, 32, 0), ("margin", 0, 16, 1)),
-    ),
+    (ALARM, "alarm", RAISED + MOVING + (("time", 0, 32, 0), ("margin", 0, 16, 1))),
     (POSITION, "position", (("robot", 0, 8, 0),) + MOVING + (("said", 0, 8, 0),)),
     (GRAPH, "graph", PART + (("part", REST, 8, 0),)),
 )
@@ -137,19 +119,3 @@ def is_piece(flags: int, seq: int, data: bytes) -> bool:
     if flags & SOURCE_ROUTE or 8 * len(data) <= width(PIECE):
         return False
     return int.from_bytes(data[:2], "big") == (seq + PIECE_AHEAD) & 65_535
-
-
-def describe(kind: int, flags: int, data: bytes) -> list:  # type: ignore[type-arg]
-    """A payload as (name, value) pairs; one that does not fit as ("payload", its bytes)."""
-    end = len(data)
-    if kind not in FIELDS or not fits(kind, flags, data, 0, end):
-        return [("payload", list(data))]
-    begin = begin_of(flags, data, 0, end)
-    stop = end_of(kind, flags, data, begin, end)
-    found = []
-    if flags & SOURCE_ROUTE:
-        found.append(("source_route", list(data[1:begin])))
-    read(FIELDS[kind], data, 8 * begin, 8 * stop, found)
-    if stop < end:
-        found.append(("failed", list(data[stop : end - 1])))
-    return found

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from innervate.trace.tables import Column, Table
+from innervate.trace.tables import TIME, Column, Table, reports
 
-_TIME = Column("time_us", "Int64", "us", "when, true time", "time")
 _NODE = Column("node", "Int16", "node", "who")
 _FLAGS = Column("flags", "Int16", "flags", "of its header: 2 end to end, 4 flood, 128 retry, ...")
 _KIND = Column("kind", "Int8", "type", "8 data, 10 alarm; the others: protocol/constants.py")
@@ -48,7 +47,7 @@ DELIVERIES = Table(
     "deliveries",
     "a node gave something to its user",
     (
-        _TIME,
+        TIME,
         _NODE,
         _KIND,
         _FLAGS,
@@ -82,7 +81,7 @@ ROUNDS = Table(
     "rounds",
     "a gateway knew the links after a discovery round",
     (
-        _TIME,
+        TIME,
         _NODE,
         Column("round", "Int32", "round", "which"),
         Column("links", "Int32", "links", "that it knows"),
@@ -91,16 +90,5 @@ ROUNDS = Table(
     ),
     rows="rounds",
 )
-REPORTS = Table(
-    "reports",
-    "a node reported something (codes: protocol/constants.py)",
-    (
-        _TIME,
-        _NODE,
-        Column("code", "Int8", "code", "what"),
-        Column("a", "Int32", "", "first detail"),
-        Column("b", "Int32", "", "second detail"),
-    ),
-    rows="rows",
-)
+REPORTS = reports(_NODE)
 TABLES = (MESSAGES, CROSSINGS, DELIVERIES, SENT, ROUNDS, REPORTS)

@@ -137,14 +137,3 @@ def payload_of(data: bytes | bytearray | memoryview) -> bytes:
     if len(data) <= SIZES[DATA] or data[0] & 15 == REPORT:
         return b""
     return bytes(data[SIZES[DATA] - CRC_BYTES : len(data) - CRC_BYTES])
-
-
-def fields(frame: object) -> list:  # type: ignore[type-arg]
-    """A frame record as (name, value) pairs in the order of the bytes, for display."""
-    kind = frame.kind  # type: ignore[attr-defined]
-    pairs = [("version", VERSION), ("kind", kind)]
-    for name, many, _bits, _signed in FIELDS.get(kind, ()):
-        if name != SPARE:
-            value = getattr(frame, name)
-            pairs.append((name, list(value) if many else value))
-    return pairs

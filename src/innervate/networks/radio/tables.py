@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from innervate.trace.tables import Column, Table
+from innervate.trace.tables import Column, Table, reports
 
 _STATION = Column("station", "Int16", "station", "who", "node")
 
@@ -38,16 +38,5 @@ SENT = Table(
     ),
     rows="sent",
 )
-REPORTS = Table(
-    "reports",
-    "a station reported something (codes: protocol/constants.py)",
-    (
-        Column("time_us", "Int64", "us", "when, true time", "time"),
-        _STATION,
-        Column("code", "Int8", "code", "what"),
-        Column("a", "Int32", "", "first detail"),
-        Column("b", "Int32", "", "second detail"),
-    ),
-    rows="rows",
-)
+REPORTS = reports(_STATION)
 TABLES = (PACKETS, SENT, REPORTS)

@@ -21,13 +21,7 @@ def columns(table: Table, result: Any) -> Columns:
 
 def _routes(result: Any) -> Columns:
     changes = rows.parent_changes(result)
-    return {
-        "time_us": changes.time_us,
-        "cell": changes.cell,
-        "old": changes.old,
-        "new": changes.new,
-        "balancing": changes.balancing,
-    }
+    return {column.name: getattr(changes, column.name) for column in ROUTES.columns}
 
 
 def _links(result: Any) -> Columns:
@@ -54,13 +48,9 @@ def _outages(result: Any) -> Columns:
 
 def _loops(result: Any) -> Columns:
     found = rows.loop_episodes(result)
-    closed = [None if time == rows.NEVER else time for time in found.closed_us.tolist()]
-    return {
-        "opened_us": found.opened_us,
-        "closed_us": closed,
-        "cell": found.cell,
-        "length": found.length,
-    }
+    made: Columns = {column.name: getattr(found, column.name) for column in LOOPS.columns}
+    closed = found.closed_us.tolist()
+    return {**made, "closed_us": [None if time == rows.NEVER else time for time in closed]}
 
 
 def _received(result: Any) -> Columns:

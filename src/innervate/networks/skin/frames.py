@@ -55,14 +55,9 @@ BAD_CRC = 2
 BAD_KIND = 3
 REASONS = ("ok", "length", "crc", "kind")
 
-
-def size_of(fields: tuple[tuple[str, int, int, int], ...]) -> int:
-    """Bytes of a whole frame with these fields: type, fields, zeros up to a byte, CRC."""
-    return (KIND_BITS + width(fields) + 7) // 8 + CRC_BYTES
-
-
 FIELDS = {kind: fields for kind, _name, fields in LAYOUTS}
-SIZES = {kind: size_of(fields) for kind, _name, fields in LAYOUTS}
+# Bytes of a whole frame: type, fields, zeros up to a byte, CRC.
+SIZES = {kind: (KIND_BITS + width(fields) + 7) // 8 + CRC_BYTES for kind, fields in FIELDS.items()}
 SIZE_MIN = min(SIZES.values())
 SIZE_MAX = max(SIZES.values())
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -106,8 +106,11 @@ class Answer:
 
     @property
     def where(self) -> dict[int, list[str]]:
-        """For every number of ports the names of the cells that they are on."""
-        return {ports: cells_with_ports(graph) for ports, graph in self.graphs.items()}
+        """For every number of ports the names of the cells that they are on, by port."""
+        return {
+            ports: [graph.label(cell) for cell in graph.neighbours(graph.sink)]
+            for ports, graph in self.graphs.items()
+        }
 
     def lines(self) -> list[str]:
         """It in words: a table, then how many ports, where, and what does not heal."""
@@ -178,9 +181,7 @@ def _placed(question: Question) -> tuple[Question, bool, list[str]]:
         least = joining_reach(places) * 1.001
         reach = round(max(least, REACH_PITCHES * pitch if pitch else 0.0) + 0.05, 1)
     _say_if_unjoined(path, names, places, reach, min(question.ports))
-    made = Question(question.urdf, question.links, question.rates_hz, question.ports, pitch, reach,
-                    question.loss_max, question.recovery_ms_max)  # fmt: skip
-    return made, frames, names
+    return replace(question, pitch_mm=pitch, reach_mm=reach), frames, names
 
 
 def _say_if_unjoined(
@@ -285,11 +286,6 @@ def _graph(plan: SweepPlan, ports: int) -> Graph | None:
     except ScenarioError:
         return None
     return made
-
-
-def cells_with_ports(graph: Any) -> list[str]:
-    """The names of the cells that a graph's interface ports are on, by port."""
-    return [graph.label(cell) for cell in graph.neighbours(graph.sink)]
 
 
 def parse_ports(text: str) -> tuple[int, ...]:

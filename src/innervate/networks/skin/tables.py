@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from innervate.trace.tables import Column, Table
+from innervate.trace.tables import TIME, Column, Table
 
-_TIME = Column("time_us", "Int64", "us", "when, true time", "time")
 _CELL = Column("cell", "Int32", "cell", "who")
 
 ROUTES = Table(
     "routes",
     "a cell changed its parent port",
     (
-        _TIME,
+        TIME,
         _CELL,
         Column("old", "Int8", "port", "parent port before; -1 none"),
         Column("new", "Int8", "port", "parent port after; -1 none"),
@@ -22,7 +21,7 @@ LINKS = Table(
     "links",
     "a cell found a port broken, or working again",
     (
-        _TIME,
+        TIME,
         _CELL,
         Column("port", "Int8", "port", "which of its ports"),
         Column("to", "Int32", "cell", "the cell on the other side; the number of cells = the PC"),
@@ -33,7 +32,7 @@ OUTAGES = Table(
     "outages",
     "the number of cells without a route, or of cells cut off, changed",
     (
-        _TIME,
+        TIME,
         Column(
             "unrouted", "Int32", "cells", "cells connected to the PC without a route, from now on"
         ),
@@ -56,7 +55,7 @@ RECEIVED = Table(
     "received",
     "the PC received a tactile sample",
     (
-        _TIME,
+        TIME,
         Column("interface", "Int16", "port", "interface port it came in on", "port"),
         Column("cell", "Int32", "cell", "who measured it"),
         Column("seq", "Int16", "number", "counts the cell's samples, 0..255"),

@@ -16,6 +16,7 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.frames import copy_frame, is_sound
 from innervate.networks.mesh.protocol.paths import is_known
+from tests.networks.mesh import shown
 from tests.networks.mesh.bench import Bench, Frame
 from tests.networks.mesh.net import line, ring
 
@@ -37,7 +38,7 @@ def settled(links, **settings):
 def test_a_table_goes_by_its_own_route_which_stays_whole():
     bench = settled(line(4))
     (seq,) = {f.seq for _, f in of_kind(bench, TABLE) if f.dest == 3}
-    ways = [(i, f.link_dst, dict(wire.fields(f))["route"])
+    ways = [(i, f.link_dst, dict(shown.fields(f))["route"])
             for i, f in of_kind(bench, TABLE) if f.seq == seq]  # fmt: skip
     assert ways == [(i, i + 1, [0, 1, 2, 3]) for i in range(3)]
     assert not any(f.flags & SOURCE_ROUTE for _, f in of_kind(bench, TABLE))
@@ -51,7 +52,9 @@ def test_a_response_lists_as_many_as_fit(mtu, count):
     """Of two packets one got lost, and who had responded was not asked again."""
     bench = settled([(0, i) for i in range(1, count + 1)] + [(1, i) for i in range(2, count + 1)],
                     mtu=mtu)  # fmt: skip
-    lists = {f.seq: dict(wire.fields(f)) for i, f in of_kind(bench, RESPONSE) if f.origin == i == 1}
+    lists = {
+        f.seq: dict(shown.fields(f)) for i, f in of_kind(bench, RESPONSE) if f.origin == i == 1
+    }
     most = (mtu - 11 - 2 - 24 - 4) // 2
     assert [len(one["neighbours"]) for one in lists.values()] == [
         min(most, count - at) for at in range(0, count, most)

@@ -170,7 +170,8 @@ def test_a_cell_says_which_ports_are_broken_and_where_its_way_leads():
 @pytest.mark.parametrize("rate_hz", [0.0, 4.0])
 def test_a_cell_samples_at_its_rate_without_a_burst_when_it_was_late(rate_hz):
     async def main():
-        cell = CellNode("c5", CellStack(5, skin_parameters({}), 1, []), [], rate_hz=rate_hz)
+        cell = CellNode("c5", CellStack(5, skin_parameters({}), 1, []), [])
+        cell.rate_hz = rate_hz
         times, loop = [], time_by_hand.asyncio.get_running_loop()
         async with cell:
             cell.sample = lambda **force: times.append(loop.time() - 1000)

@@ -16,11 +16,7 @@ from innervate.wire.seal import OVERHEAD_BYTES
 
 
 def build(loaded: Loaded) -> MeshNode:
-    """The node of a file, not yet started.
-
-    Raises:
-        LiveError: it cannot be as written.
-    """
+    """The node of a file, not yet started; a LiveError says what cannot be as written."""
     table = loaded.table
     assert isinstance(table, MeshFile)
     assert table.nodes is not None

@@ -40,8 +40,8 @@ class Inbox:
         self.orderly.on_up = acknowledge
         self.outcomes = outcomes
         self.pieces = Pieces()
-        self.refuse: Callable[[int, int, Piece], None] = _nobody
-        self.refused: Callable[[int, Piece], None] = _nobody
+        self.refuse: Callable[[int, int, Piece], None] = lambda *_: None
+        self.refused: Callable[[int, Piece], None] = lambda *_: None
         self._acknowledge = acknowledge
         self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before
         self._sweep: asyncio.TimerHandle | None = None
@@ -154,7 +154,3 @@ class Inbox:
         self._sweep = None
         self.pieces.forget(clock_us())
         self._arm()
-
-
-def _nobody(*_given: Any) -> None:
-    """Nobody wants to know of refusals."""

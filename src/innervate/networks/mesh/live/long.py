@@ -46,7 +46,7 @@ class Long:
         self.dest, self.flags, self.payload = dest, flags, payload
         self.in_order = chains is not None
         self.receipt = Receipt()
-        self.on_end: Callable[[str, str], None] = _nobody
+        self.on_end: Callable[[str, str], None] = lambda _state, _reason: None
         self._chains = chains
         self._room = room - HEAD_BYTES
         self._at = 0  # where the next piece begins
@@ -153,7 +153,3 @@ class PieceReceipt(Receipt):
         """Its state changes, and its message hears of that."""
         super().move(state, reason)
         self.long.told(self, state, reason)
-
-
-def _nobody(state: str, reason: str) -> None:
-    """Nobody wants to know as yet."""

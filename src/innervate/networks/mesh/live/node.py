@@ -49,13 +49,10 @@ FEW = 512  # by who was just switched on: 7 restarts one after the other lead le
 class MeshNode(LiveNode):
     """A node of a mesh: sends and receives messages.
 
-    Args:
-        name: as shown to people.
-        stack: the router.
-        links: what carries its frames.
-        sealer: seals and opens frames.
-        state: what is kept over a restart: a gateway's epoch.
+    Args as of any node, and:
         orderly: how messages are put in order.
+
+    Attributes:
         in_order: True = send and receive in order if nothing else is said.
     """
 
@@ -96,11 +93,11 @@ class MeshNode(LiveNode):
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Messages, and alarms for who asks for them."""
-        found: list[Stream] = [
-            (self.receive_messages(in_order=request.get("in_order")), message_line)
-        ]
+        messages = self.receive_messages(in_order=request.get("in_order"))
+        found: list[Stream] = [(messages, message_line)]
         if request.get("alarms"):
-            found.append((self.receive_alarms(), _alarm_line))
+            alarms = self.receive_alarms()
+            found.append((alarms, lambda one: {"from": one.reporter, "alarm": one._asdict()}))
         return found
 
     def _located(self, request: dict[str, Any]) -> dict[str, Any]:
@@ -298,7 +295,3 @@ class MeshNode(LiveNode):
     def _hand_down(self, item: Any) -> None:
         assert self.engine is not None
         self.engine.input(MESSAGE, item)
-
-
-def _alarm_line(alarm: Alarm) -> dict[str, Any]:
-    return {"from": alarm.reporter, "alarm": alarm._asdict()}

@@ -198,7 +198,7 @@ class Orderly:
     """
 
     def __init__(self, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
-        self.on_up: Callable[[int, int], None] = _nobody
+        self.on_up: Callable[[int, int], None] = lambda _sender, _seq: None
         self.wait_us = wait_us
         self.buffer = buffer
         self.arrivals: Arrivals[tuple[int, bytes]] = Arrivals(is_spread=True)
@@ -273,10 +273,6 @@ class Orderly:
             ended, order.ended = order.ended, []
             for seq in ended:
                 self.on_up(sender, seq)
-
-
-def _nobody(sender: int, seq: int) -> None:
-    """Nobody wants to know which were handed up."""
 
 
 def _in_turn(held: list[Held], near: int) -> list[Held]:

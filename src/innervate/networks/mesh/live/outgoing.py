@@ -8,15 +8,7 @@ from functools import partial
 from typing import Any
 
 from innervate.dialect.arith import MASK16
-from innervate.live.receipts import (
-    DELIVERED,
-    EXPIRED,
-    FINAL,
-    HOP_ACKED,
-    REFUSED,
-    STOPPED,
-    Receipt,
-)
+from innervate.live.receipts import DELIVERED, EXPIRED, FINAL, HOP_ACKED, REFUSED, STOPPED, Receipt
 from innervate.networks.mesh.live.chains import Chains
 from innervate.networks.mesh.live.long import WAITING_MAX, Long, PieceReceipt, Refusal
 from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD
@@ -127,9 +119,8 @@ class Outgoing:
         if dest == node.number:
             self._hand_up(dest, payload)
             long.on_end(DELIVERED, "")
-        else:
-            if self.turns.put(handle, long):
-                self.feed()
+        elif self.turns.put(handle, long):
+            self.feed()
         return long.receipt
 
     def _end_long(self, handle: int, long: Long, state: str, reason: str) -> None:
@@ -143,10 +134,9 @@ class Outgoing:
         By then its last piece can be acknowledged; else it would be tried for 26 s.
         """
         name = sender, piece.message, piece.size
-        if name in self._refusals or len(self._refusals) == REFUSALS:
+        is_full = len(self._refusals) == REFUSALS or not self.turns.has_room(sender)
+        if name in self._refusals or is_full:
             return  # the last piece comes again
-        if not self.turns.has_room(sender):
-            return
 
         def end(state: str) -> None:
             self._refusals.discard(name)

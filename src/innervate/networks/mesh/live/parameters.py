@@ -59,10 +59,8 @@ def fence_parameters(found: list[list[tuple[int, int]]], where: str = "") -> dic
 def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dict[str, Any]:
     """The router's parameters for a network of so many nodes, with what is to be different.
 
-    Memory is no matter here: all others may be neighbours, unlike in the class of a board.
-
-    Raises:
-        LiveError: no such parameter, or out of its range; the message begins with `where`.
+    That is as `check_parameters` allows it. Memory is no matter here: all others may be
+    neighbours, unlike in the class of a board.
     """
     check_parameters(changes, (field for field in PARAMS if field[0] not in OURS), where)
     width = next(size for size in CLASSES if nodes <= size)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections import Counter
+from types import SimpleNamespace
 from typing import Any
 
 from innervate.dialect import plain
@@ -47,21 +48,6 @@ TOO_LONG = "longer than our MTU"
 Params = plain.make("Params", fields.PARAMS)
 
 
-class Coder:
-    """Frames of at most as many bytes as a node's parameters say."""
-
-    def __init__(self, params: Any) -> None:
-        self._params = params
-
-    def encode(self, frame: Any) -> bytes:
-        """The bytes of a frame."""
-        return wire.encode(frame, self._params.mtu)
-
-    def decode(self, data: bytes, frame: Any) -> int:
-        """Read bytes into a frame; OK, or why not."""
-        return wire.decode(data, frame, self._params.mtu)
-
-
 class MeshStack:
     """One node of a mesh.
 
@@ -94,7 +80,10 @@ class MeshStack:
         self.out, self.inbox = plain.Outbox(frame, OUTBOX), frame()
         self.item = plain.make("Item", fields.item(mtu))
         self.do: Any = mesh
-        self.coder: Any = Coder(self.params)
+        self.coder: Any = SimpleNamespace(
+            encode=lambda frame: wire.encode(frame, self.params.mtu),
+            decode=lambda data, frame: wire.decode(data, frame, self.params.mtu),
+        )
         self.epoch = 0  # newest one that was followed before a restart
         self.first = -1  # our packets' numbers go on from here after a restart; -1 = anywhere
         self.places: dict[int, list[int]] = {}  # neighbour: ports, the newest first

@@ -185,7 +185,7 @@ class Places:
         self._held = list(compress(node.wait_dest[:], kinds))  # recipients
         self._tries = list(compress(node.wait_tries[:], kinds))
         self._tries_most = max(self._tries, default=0)
-        self._is_calm = self._tries_most <= SURE_AFTER and not any_unreachable(node)
+        self._is_calm = self._tries_most <= SURE_AFTER and UNREACHABLE not in node.bad_neighbour[:]
         after = node.seq + 1
         ages = [(after - seq) & MASK16 for seq in compress(node.wait_seq[:], kinds)]
         self._is_near = max(ages, default=0) <= AHEAD_MAX
@@ -238,8 +238,3 @@ class Places:
             k = place_of(node, self._params, dest)
             return k < 0 or bool(node.suspect[k])
         return not self._is_calm and bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))
-
-
-def any_unreachable(node: Any) -> bool:
-    """True if everything to some recipient was in vain, and nothing was heard of it since."""
-    return UNREACHABLE in node.bad_neighbour[:]

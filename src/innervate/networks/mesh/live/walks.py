@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from innervate.live.asking import sleep_until
+from innervate.live.deployment import sleep_until
 from innervate.live.errors import LiveError
 
 ANSWER_S = 5.0
@@ -64,11 +64,7 @@ class Robot:
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
     async def locate(self, at_cm: Pair, speed_cm_s: Pair) -> None:
-        """Say where it is.
-
-        Raises:
-            LiveError: the node is no robot.
-        """
+        """Say where it is; LiveError if the node is no robot."""
         request = {"do": "locate", "at_cm": at_cm, "speed_cm_s": speed_cm_s}
         try:
             async with asyncio.timeout(ANSWER_S):

@@ -349,7 +349,9 @@ def on_tick(node, gate, params, now, out):
         beacon(node, params, now, out)
     if not node.leading:
         node.quiet = min(node.quiet + 1, 65_535)
-        if not node.known and node.quiet > 1 and node.quiet & (node.quiet - 1) == 0:
+        # The first round is on its way at the first beat, but for who has led it.
+        late = node.quiet > 1 or node.rank == 0
+        if not node.known and late and node.quiet & (node.quiet - 1) == 0:
             ask_round(node, params, now, out)
     if node.rank >= 0:
         tick(node, gate, params, now, out)

@@ -15,11 +15,7 @@ STATIONS_MAX = 1023  # a frame has ten bits for its sender's number, of which on
 
 
 def build(loaded: Loaded) -> RadioNode:
-    """The station of a file, not yet started.
-
-    Raises:
-        LiveError: it cannot be as written.
-    """
+    """The station of a file, not yet started; a LiveError says what cannot be as written."""
     table = loaded.table
     text, where = medium_of(loaded)
     params = radio_parameters(dict(table.protocol), f"{loaded.path}")

@@ -24,9 +24,7 @@ Packet = plain.make("Packet", fields.PACKET)
 class RadioNode(AirNode):
     """A station: sends packets to all, receives theirs.
 
-    Args:
-        name: as shown to people.
-        stack: the medium access protocol.
+    Args as of any node, and:
         radio: what it sends and hears with.
         channel: what its path is called.
     """

@@ -20,21 +20,13 @@ RADIO: dict[str, int] = {
 
 
 def radio_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
-    """A station's parameters, with what is to be different.
-
-    Raises:
-        LiveError: no such parameter, or out of its range; the message begins with `where`.
-    """
+    """A station's parameters, with what is to be different, as `check_parameters` allows it."""
     check_parameters(changes, PARAMS, where)
     return {**RADIO, **changes}
 
 
 def check_slots(params: dict[str, int]) -> None:
-    """Refuse what cannot work in real time.
-
-    Raises:
-        LiveError: a slot is shorter than a PC can keep.
-    """
+    """Refuse what cannot work in real time; LiveError if a slot is shorter than a PC can keep."""
     if params["slot_us"] < SLOT_US_MIN:
         raise LiveError(
             f"protocol.slot_us = {params['slot_us']}: a PC keeps slots of {SLOT_US_MIN} us or more"

@@ -15,11 +15,7 @@ from innervate.networks.skin.protocol.constants import PORTS
 
 
 def build(loaded: Loaded) -> LiveNode:
-    """The node of a file, not yet started.
-
-    Raises:
-        LiveError: it cannot be as written.
-    """
+    """The node of a file, not yet started; a LiveError says what cannot be as written."""
     table, links, state = loaded.table, links_of(loaded), state_of(loaded)
     assert isinstance(table, SkinFile)
     params = skin_parameters(dict(table.protocol), f"{loaded.path}")
@@ -37,4 +33,6 @@ def build(loaded: Loaded) -> LiveNode:
             "each once: W, E, up, down = 0 to 3"
         )
     stack = CellStack(table.number, params, machine().chance.getrandbits(60), ports)
-    return CellNode(loaded.name, stack, links, sealer, state, table.rate_hz)
+    cell = CellNode(loaded.name, stack, links, sealer, state)
+    cell.rate_hz = table.rate_hz
+    return cell

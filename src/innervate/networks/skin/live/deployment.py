@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
 import re
-from collections.abc import Coroutine
-from typing import Any
+from collections.abc import Iterator
 
-from innervate.live.asking import ask, sleep_until
-from innervate.live.deployment import Deployment, Pairs, Stage, Table
+from innervate.live.deployment import Deployment, Pairs, Table
 from innervate.topology import Graph
 
 _FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,39}", re.ASCII)
@@ -49,14 +46,9 @@ class SkinDeployment(Deployment):
         ports = [self.port_of(number, k) for k in cables]
         return {"role": "cell", "ports": ports, "rate_hz": rate_hz}, tables
 
-    def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
+    def inputs(self) -> Iterator[tuple[float, str, Table]]:
         """The PC sends the scenario's commands."""
-        return [self._play_orders(stage)]
-
-    async def _play_orders(self, stage: Stage) -> None:
-        began = asyncio.get_running_loop().time()
         for order in self.plan.orders:
-            await sleep_until(began + order.at_us / 1e6)
             cell = None if order.cell < 0 else order.cell
             request = {"do": "command", "code": order.code, "value": order.value, "cell": cell}
-            await ask(stage.socket("pc"), request)
+            yield order.at_us / 1e6, "pc", request

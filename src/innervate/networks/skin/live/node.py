@@ -4,57 +4,40 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncGenerator, Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from innervate.live.engine import clock_us
-from innervate.live.links import Link
 from innervate.live.machine import machine
 from innervate.live.node import Answerer, LiveNode, is_broken
-from innervate.live.state import State
 from innervate.live.streams import Stream
 from innervate.networks.skin.live.items import Command, Frame, Sent, Touch, put
 from innervate.networks.skin.live.stack import CellStack, SinkStack
 from innervate.networks.skin.protocol.constants import EVERYBODY, GIVE, REPORT_PARENT, SAMPLE
 
-if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
-    from innervate.live.keys import Sealer
-
 
 class CellNode(LiveNode):
     """A cell: hands its samples to the skin, gives commands of the PC.
 
-    Args:
-        name: as shown to people.
-        stack: the cell.
-        links: its cables.
-        sealer: seals and opens frames.
-        state: what is kept over a restart.
+    Attributes:
         rate_hz: a sample made up by the cell itself so often; 0 = only what `sample` is given.
+        moves: how often it took another parent.
+        command: the number of the newest command for it; None = there was none.
     """
 
     stack: CellStack
+    rate_hz = 0.0
+    moves = 0
+    command: int | None = None
+    _due = 0.0
+    _beat: asyncio.TimerHandle | None = None
 
-    def __init__(
-        self,
-        name: str,
-        stack: CellStack,
-        links: list[Link],
-        sealer: Sealer | None = None,
-        state: State | None = None,
-        rate_hz: float = 0.0,
-    ) -> None:
-        super().__init__(name, stack, links, sealer, state)
-        self.moves = 0
-        self._period_s = 1 / rate_hz if rate_hz else 0.0
-        self._due = 0.0
-        self._beat: asyncio.TimerHandle | None = None
-        self._item = Frame()
-        self.requests["command"] = refuse_command
-        self.command: int | None = None
+    def own_requests(self) -> dict[str, Answerer]:
+        """It says that it sends no commands."""
+        return {"command": refuse_command}
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Commands for this cell, for those who follow them by the status socket."""
-        return [(self.receive_commands(), _command_line)]
+        return [(self.receive_commands(), lambda one: {"from": "pc", "command": one._asdict()})]
 
     def receive_commands(
         self, callback: Callable[[Command], None] | None = None
@@ -64,7 +47,7 @@ class CellNode(LiveNode):
 
     async def _switch_on(self) -> None:
         await super()._switch_on()
-        if self._period_s:
+        if self.rate_hz:
             self._due = asyncio.get_running_loop().time()
             self._sample_again()
 
@@ -87,12 +70,12 @@ class CellNode(LiveNode):
         Raises:
             ValueError: a value leaves its range, or the cell does not run.
         """
-        engine = self.running()
+        engine, item = self.running(), Frame()
         values = {"proximity": (proximity,), "force": force,
                   "temperature": (temperature,), "accel": accel}  # fmt: skip
         for name, given in values.items():
-            put(self._item, name, given)
-        engine.input(SAMPLE, self._item)
+            put(item, name, given)
+        engine.input(SAMPLE, item)
 
     def _reported(self, code: int, a: int, b: int) -> None:
         if code == REPORT_PARENT:
@@ -112,7 +95,7 @@ class CellNode(LiveNode):
     def _sample_again(self) -> None:
         self.sample(force=(self.stack.node.number, self.stack.node.seq, 0))
         loop = asyncio.get_running_loop()
-        self._due = max(self._due + self._period_s, loop.time())
+        self._due = max(self._due + 1 / self.rate_hz, loop.time())
         self._beat = loop.call_at(self._due, self._sample_again)
 
 
@@ -134,7 +117,7 @@ class SinkNode(LiveNode):
 
     def streams(self, request: dict[str, Any]) -> list[Stream]:
         """Samples of all cells, for those who follow them by the status socket."""
-        return [(self.receive_touch(), _touch_line)]
+        return [(self.receive_touch(), lambda one: {"from": one.cell, "touch": one._asdict()})]
 
     def receive_touch(
         self, callback: Callable[[Touch], None] | None = None
@@ -192,17 +175,5 @@ class SinkNode(LiveNode):
 
 
 def refuse_command(request: dict[str, Any]) -> dict[str, Any]:
-    """Cells send no commands.
-
-    Raises:
-        ValueError: always.
-    """
+    """Cells send no commands: always a ValueError."""
     raise ValueError("only the PC of a skin sends commands")
-
-
-def _command_line(command: Command) -> dict[str, Any]:
-    return {"from": "pc", "command": command._asdict()}
-
-
-def _touch_line(touch: Touch) -> dict[str, Any]:
-    return {"from": touch.cell, "touch": touch._asdict()}

@@ -16,10 +16,6 @@ SKIN: dict[str, int] = {
 
 
 def skin_parameters(changes: dict[str, int], where: str = "") -> dict[str, int]:
-    """The skin's parameters, with what is to be different.
-
-    Raises:
-        LiveError: no such parameter, or out of its range; the message begins with `where`.
-    """
+    """The skin's parameters, with what is to be different, as `check_parameters` allows it."""
     check_parameters(changes, PARAMS, where)
     return {**SKIN, **changes}

@@ -22,12 +22,8 @@ Params = plain.make("Params", fields.PARAMS)
 class SkinStack(CabledStack):
     """What cells and the PC have in common.
 
-    Args:
-        do: the module with its handlers.
-        node: its record.
+    Args as of CabledStack, but:
         params: the protocol's parameters by name (`skin_fields.PARAMS`).
-        room: actions that an outbox must hold.
-        ports: the port of each path, in order of the paths.
     """
 
     timers = TIMERS
