@@ -232,8 +232,8 @@ CLAIMS = (
     Fewer("root", f"{PEERS}_lost", TREE,
           "fewer messages among others are lost than by RPL while the root is off"),
     Fewer("root", f"{AFTER}_lost", TREE, "fewer alarms are lost than by RPL when it is back",
-          "measured: they come again some seconds later; a gateway that was off listens before it "
-          "leads again, and RPL's root says at once that it is there"),
+          "measured: they come again some seconds later; a gateway that was off asks its "
+          "neighbours at a beat and leads at the next, RPL's root says at once that it is there"),
     Fewer("root", f"{ALARMS}_again_s", TREE,
           "with a standby alarms come again sooner than by RPL while the root is off", "", STOOD),
     Fewer("root", f"{ALARMS}_again_s", FLOOD,
