@@ -8,8 +8,6 @@ many cables a skin needs. `innervate.Network` describes a network of one's own, 
 The simulator behind them is loaded at the first use, so that `import innervate` stays cheap.
 """
 
-from __future__ import annotations
-
 TYPE_CHECKING = False  # `typing` would be the slowest part of this import
 if TYPE_CHECKING:
     from innervate.live.errors import LiveError as LiveError

@@ -3,8 +3,6 @@
 A folder is a package with a `network.py` whose `NETWORK` says what it is. Loading it runs its code.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import linecache

@@ -5,8 +5,6 @@ and where each part of it stands. A part is imported when it is first asked for,
 loads only what it needs; one that a network leaves out is the default for any network.
 """
 
-from __future__ import annotations
-
 import os
 import pkgutil
 from difflib import get_close_matches

@@ -5,8 +5,6 @@ that is under way and running nodes all have. Summary, report, terminal, live pa
 sweeps show what that function says; none of them judges by itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, NamedTuple, TypedDict
 

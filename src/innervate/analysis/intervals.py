@@ -1,7 +1,5 @@
 """Means, quantiles and shares with their confidence intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from math import atan, comb, cos, pi, sin, sqrt

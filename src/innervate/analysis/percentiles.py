@@ -5,8 +5,6 @@ networks are compared in a field, they are the nearest value that was measured; 
 in classes (sim/delays.py), and are the least value that so many do not exceed.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where to draw nodes of which only the links are known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

@@ -3,8 +3,6 @@
 A network that knows more of its runs has a summary of its own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, TypedDict
 

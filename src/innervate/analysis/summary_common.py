@@ -4,8 +4,6 @@ A key's unit is the end of its name: `_s` seconds, `_ms` milliseconds, `_slots` 
 channel, `_m` metres; `ratio`, `share` and `recall` are 0 .. 1. What never happened is None.
 """
 
-from __future__ import annotations
-
 from typing import Any, NotRequired, TypedDict
 
 from innervate.analysis.headline import HeadlineEntry

@@ -1,7 +1,5 @@
 """Chains of next hops: where they lead, after how many hops, and which lead nowhere."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The command `innervate`: which commands there are, and what is done when one fails."""
 
-from __future__ import annotations
-
 import io
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """`innervate live capture`: frames of running nodes to a capture, while they run."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import signal

@@ -1,7 +1,5 @@
 """`innervate demo`: one chapter for each kind of network that has one."""
 
-from __future__ import annotations
-
 import webbrowser
 from pathlib import Path
 from typing import Any

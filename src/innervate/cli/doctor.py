@@ -1,7 +1,5 @@
 """`innervate doctor`: what is installed, what is missing, what will be slow."""
 
-from __future__ import annotations
-
 import json
 import os
 import platform

@@ -1,7 +1,5 @@
 """What a failure is to the user: one line that says what to change, and an exit code."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

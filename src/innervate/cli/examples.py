@@ -1,7 +1,5 @@
 """What stands below the help of each command: examples, and the page that says more."""
 
-from __future__ import annotations
-
 from cyclopts import App
 
 # Command: its page of `innervate docs`, and examples, each of which a test parses.

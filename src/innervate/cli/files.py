@@ -1,7 +1,5 @@
 """`innervate scenarios`, `new`, `check`, `schema`: scenario files, without a simulation."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

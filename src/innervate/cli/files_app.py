@@ -1,7 +1,5 @@
 """Commands that read and write files, and nothing else: what is said before anything is loaded."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """`innervate firmware`: a node's protocol as C."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`innervate fit`: a scenario out of a capture."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`innervate live`: its commands and their options."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

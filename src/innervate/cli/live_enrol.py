@@ -1,7 +1,5 @@
 """`innervate live enrol` and `revoke`: who is a node of a network, and who is one no more."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`innervate live recovery`: how a network healed, from a capture."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What running nodes say of themselves, as `innervate live status` prints it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`innervate new network` and `check-protocol`: a network of one's own."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

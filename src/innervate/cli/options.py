@@ -1,7 +1,5 @@
 """The options of the commands that have many; below each is what `--help` says of it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

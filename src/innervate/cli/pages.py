@@ -1,7 +1,5 @@
 """`innervate docs`: the pages of the documentation, which come with the toolkit."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

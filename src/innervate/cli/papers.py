@@ -1,7 +1,5 @@
 """`innervate papers`: figures and claims of a paper, made anew."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Mapping
 from importlib import import_module

@@ -1,7 +1,5 @@
 """What a person sees while work goes on: a bar on a terminal, lines elsewhere; on stderr."""
 
-from __future__ import annotations
-
 import sys
 import time
 from typing import Any, Self

@@ -4,8 +4,6 @@
 anything. Writes {"code", "reached", "unreached": [[name, file, line], ...]} to OUT.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import sys

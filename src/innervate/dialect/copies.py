@@ -3,8 +3,6 @@
 A copy is a package of its own, with the dialect and the protocols of all networks as they lie.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib
 import itertools

@@ -4,8 +4,6 @@ The functions stay as they are written, with the lines of their files. Where two
 function of the same name, the later one's is called after its file.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib
 import inspect

@@ -3,8 +3,6 @@
 It reads the same layouts; a test holds every byte against `wire`'s.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

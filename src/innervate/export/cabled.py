@@ -1,7 +1,5 @@
 """Any network of cables as a capture and as a graph, from its plan's `graph` and frame layouts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A run as a capture: simulated again, with every frame written as it leaves and comes in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

@@ -3,8 +3,6 @@
 What a network says of its frames is its part `dissector`; any network with frame layouts has one.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Mapping
 from importlib.resources import files as resources

@@ -1,7 +1,5 @@
 """Files are there whole or not at all: written beside their place, and moved there at the end."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress

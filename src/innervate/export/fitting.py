@@ -1,7 +1,5 @@
 """A scenario out of a capture, and how well its simulation matches what was captured."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ Links of a skin are cables, undirected; a mesh's and a radio team's are directed
 quality or a delay of its own.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any, NamedTuple

@@ -6,8 +6,6 @@ for people, and a description in these words for programs, its parts after "; ":
 one cable only, from one end to the other. The interface at the cable's other end says "B to A".
 """
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

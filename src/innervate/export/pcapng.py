@@ -4,8 +4,6 @@ Pure Python on the standard library, so that live nodes can be captured on a sma
 block holds is in the draft's sections 4.1 (section header), 4.2 (interface), 4.3 (packet).
 """
 
-from __future__ import annotations
-
 import struct
 
 SECTION, INTERFACE, PACKET, SIMPLE = 0x0A0D0D0A, 1, 6, 3

@@ -1,7 +1,5 @@
 """Reading captures in pcapng, anybody's: any bytes at all give frames, or one clear line."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A run as MCAP: every row of its tables, its states and its scene, as JSON with schemas."""
 
-from __future__ import annotations
-
 import heapq
 import json
 from collections.abc import Iterator, Mapping

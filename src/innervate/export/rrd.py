@@ -4,8 +4,6 @@ Every entity has the timeline `sim_time`, the duration since the start of the si
 not change has no row: the viewer shows the newest one before.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any

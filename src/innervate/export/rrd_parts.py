@@ -1,7 +1,5 @@
 """What a recording for Rerun is made of, and its colours."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 Colours are safe for colour-blind readers; what they say is in the other messages, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 

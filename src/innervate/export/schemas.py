@@ -6,8 +6,6 @@ Foxglove reads plain schemas only: one type each, lists whose items are describe
 a table is left out of its message.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.trace.tables import Table

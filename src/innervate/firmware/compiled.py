@@ -4,8 +4,6 @@ It knows neither Python nor a C library. A name in the cache is a hash of all th
 and stands in the library, too: what was made from other sources is never taken.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import platform

@@ -1,7 +1,5 @@
 """Constants of a protocol: what C calls them, and the comments that stand where they are set."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 from collections.abc import Iterable

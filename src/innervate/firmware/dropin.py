@@ -4,8 +4,6 @@ Records lie in C's memory and are seen from Python where they are, so that statu
 else reads a node's state does so as ever.
 """
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Iterator
 from importlib import import_module

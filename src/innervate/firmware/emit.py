@@ -1,7 +1,5 @@
 """A role as C: the texts of one header and one source."""
 
-from __future__ import annotations
-
 import ast
 import hashlib
 from collections.abc import Mapping

@@ -6,8 +6,6 @@ what the board sends leaves on the path; a fifth UART tells state, reports and d
 (c/bare/role_main.c).
 """
 
-from __future__ import annotations
-
 import asyncio
 import ctypes
 import os

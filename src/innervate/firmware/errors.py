@@ -1,7 +1,5 @@
 """What can be wrong with what is to become C; each message is one line."""
 
-from __future__ import annotations
-
 import ast
 
 

@@ -1,7 +1,5 @@
 """Expressions of a protocol as C has them."""
 
-from __future__ import annotations
-
 import ast
 
 from innervate.firmware.facts import Facts

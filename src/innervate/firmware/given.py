@@ -1,7 +1,5 @@
 """Whether variables have a value wherever they are looked at: C takes any, Python raises."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable, Iterator, Set
 

@@ -1,7 +1,5 @@
 """What a protocol in C needs besides its functions: Python's arithmetic, how records begin."""
 
-from __future__ import annotations
-
 from innervate.firmware.records import Field, initial, name_of
 from innervate.firmware.texts import shipped
 

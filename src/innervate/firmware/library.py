@@ -1,7 +1,5 @@
 """What a maker gets: the role that was meant, its parameters, and the files of its library."""
 
-from __future__ import annotations
-
 import re
 from importlib import import_module, resources
 from pathlib import Path

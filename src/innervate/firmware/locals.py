@@ -1,7 +1,5 @@
 """Where a variable is declared in C: at its first value where that is possible, else ahead."""
 
-from __future__ import annotations
-
 import ast
 
 

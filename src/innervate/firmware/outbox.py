@@ -4,8 +4,6 @@ Frames are whole, each in a place of its own; or, where a role says how many byt
 together, one behind the other, none longer than what it has of its last array.
 """
 
-from __future__ import annotations
-
 from innervate.firmware.records import BYTES, Field, name_of
 from innervate.firmware.texts import filled, shipped
 from innervate.live.board import Role

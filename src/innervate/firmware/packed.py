@@ -1,7 +1,5 @@
 """Records as they lie in a board's memory: little-endian, each number as wide as its range."""
 
-from __future__ import annotations
-
 import struct
 from array import array
 from collections.abc import Callable, Iterable

@@ -1,7 +1,5 @@
 """A scenario's nodes as firmware: what each emulated board runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

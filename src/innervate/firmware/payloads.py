@@ -1,7 +1,5 @@
 """Payloads in C: what says whether bytes are what a frame's kind has, from layouts."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.firmware.errors import FirmwareError

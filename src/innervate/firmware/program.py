@@ -4,8 +4,6 @@ Python says of no argument what it is; C has to. Types flow from the handlers, w
 known, through all calls. A function that is called with different records is made once for each.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Set
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Records as C has them: structs from declarations, each number as wide as its range."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.firmware.errors import FirmwareError

@@ -1,7 +1,5 @@
 """Statements of a protocol as C has them, with the comments that stand at them."""
 
-from __future__ import annotations
-
 import ast
 import io
 import re

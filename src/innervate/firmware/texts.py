@@ -1,7 +1,5 @@
 """Texts that lie in c/: the sections of them that somebody has, with a network's names."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from importlib import resources

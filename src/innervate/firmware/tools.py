@@ -1,7 +1,5 @@
 """Compilers and emulators: where they are, and what they say."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A role's records in the memory of C, read and written like those of `dialect.plain`."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Iterable
 from operator import attrgetter

@@ -1,7 +1,5 @@
 """Frames on the wire in C: an encoder and a decoder from the same layouts as Python's."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

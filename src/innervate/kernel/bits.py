@@ -4,8 +4,6 @@ Each has a plain body here and a compiled one in lowering.py with the same resul
 holds them together.
 """
 
-from __future__ import annotations
-
 MASK64 = (1 << 64) - 1
 FACTOR = 0x9E3779B97F4A7C15
 

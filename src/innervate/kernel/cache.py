@@ -1,7 +1,5 @@
 """Where what was compiled is kept, and how processes take turns there; it knows no compiler."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import tempfile

@@ -4,8 +4,6 @@ Numba's own cache does not notice an edit in another file, so the cache folder c
 every source that can end up in compiled code, of where it lies, and of the compiler's version.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import inspect

@@ -19,8 +19,6 @@ never be, and whatever makes an array in this process would end it.
 This reaches into Numba's insides: where they have changed, everything is compiled as Numba does it.
 """
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -8,8 +8,6 @@ Whatever is read has 64 bits, however many it is kept in, and an array in a reco
 a function is compiled for each mix of types that it is called with, half of all would be twice.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import operator

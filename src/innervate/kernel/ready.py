@@ -7,8 +7,6 @@ processor, and for tables of exactly this form. `readying.py` makes them, `make 
 into the wheel; without them loops are compiled (compilation.py). To go without: INNERVATE_READY=0.
 """
 
-from __future__ import annotations
-
 import ctypes
 import hashlib
 import json

@@ -5,8 +5,6 @@ object file without its wrappers for Python. Each is loaded back and has to give
 the compiled one before it is taken.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """Record types and plain twins from field declarations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from itertools import groupby

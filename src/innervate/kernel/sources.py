@@ -1,7 +1,5 @@
 """Which sources end up in compiled code, and a hash of them; it knows no compiler."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable
 from pathlib import Path

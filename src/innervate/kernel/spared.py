@@ -9,8 +9,6 @@ and does the same.
 This reaches into Numba's insides: what is not there any more stays as Numba does it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cache

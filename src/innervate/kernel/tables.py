@@ -8,8 +8,6 @@ What compiled code does with them is in
 lowering.py.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Counts as people read them."""
 
-from __future__ import annotations
-
 
 def number_of(count: int, thing: str) -> str:
     """A count with its noun: "1 cell", "12 cells"."""

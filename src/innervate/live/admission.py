@@ -1,7 +1,5 @@
 """Lets so many callers in that a node never runs out of files or of time, whoever calls."""
 
-from __future__ import annotations
-
 import asyncio
 import socket
 from collections import Counter

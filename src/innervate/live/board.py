@@ -4,8 +4,6 @@ A role is one protocol: a node's own, or a layer below it. A network whose proto
 frame layouts are declared, and that lies over cables, has a role without saying so.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

@@ -5,8 +5,6 @@ its end; it receives a frame that was the only signal from start to end while it
 and medium run on one machine: what happened is stamped with the clock that they share.
 """
 
-from __future__ import annotations
-
 import asyncio
 import socket
 from collections import deque

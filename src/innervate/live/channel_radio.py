@@ -1,7 +1,5 @@
 """The radio of a station on a channel made of a process, and what the two say to each other."""
 
-from __future__ import annotations
-
 import asyncio
 import socket
 import struct

@@ -4,8 +4,6 @@ The protocol is a module with the handlers of a node; every port is a cable. Wha
 was declared, so that its status and what it delivers can be told without knowing what it is.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable, Iterator
 from functools import partial

@@ -1,7 +1,5 @@
 """A protocol on an asyncio loop: its timers, its outbox. Knows no protocol by name."""
 
-from __future__ import annotations
-
 import asyncio
 from collections import Counter
 from collections.abc import Callable

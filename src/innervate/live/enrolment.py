@@ -1,7 +1,5 @@
 """The authority of a network: a folder in which nodes are enrolled, and put out again."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Node files as text: what `live up` writes and nodes read."""
 
-from __future__ import annotations
-
 import json
 
 from innervate.live.deployment import Table

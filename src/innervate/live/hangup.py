@@ -1,7 +1,5 @@
 """SIGHUP asks a node to read its file again, and ends a process that does not listen for it yet."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Which names a server answers to: a name that a page of somebody else's leads here is not ours."""
 
-from __future__ import annotations
-
 import ipaddress
 import socket
 

@@ -4,8 +4,6 @@ A node proves that it has the private keys; nobody needs a list of all. What was
 that is lost is put out by a list of serial numbers that the authority signs.
 """
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 from typing import NamedTuple

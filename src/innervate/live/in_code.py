@@ -1,7 +1,5 @@
 """live_up(scenario) -> a scenario's nodes as processes, held by a program or a notebook."""
 
-from __future__ import annotations
-
 import asyncio
 import atexit
 import os

@@ -4,8 +4,6 @@ The air between processes is none: nothing collides, and what a medium access is
 queues. What a link loses is in the scenario, and not played.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect.access import ALL

@@ -1,7 +1,5 @@
 """What a node proves itself with: keys that all have, or an identity of its own."""
 
-from __future__ import annotations
-
 import hmac
 import struct
 from hashlib import blake2s

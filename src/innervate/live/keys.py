@@ -1,7 +1,5 @@
 """Seals what leaves a node and opens what comes in; see docs/decisions/0028-nobody-pretends.md."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """How much of strangers' messages a node stands before it shuts its door for a moment."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """What carries frames: a link has one or more paths, each to one neighbour or to a group."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """In-process links: nodes of one program, joined without sockets."""
 
-from __future__ import annotations
-
 import asyncio
 
 from innervate.live.links import Link, Path, Receiver

@@ -4,8 +4,6 @@ Whatever runs live asks `machine()` for them. A test hands in another machine (`
 networks run in one process under simulated time; the loop is asyncio's, and can be replaced too.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import random

@@ -1,7 +1,5 @@
 """`innervate live node FILE`: one node as a process."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

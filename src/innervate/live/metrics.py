@@ -1,7 +1,5 @@
 """A page for Prometheus: the status as text, for whoever asks by HTTP."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 import socket

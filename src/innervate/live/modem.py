@@ -6,8 +6,6 @@ it: `T`, age, slots, frame: it decided so long ago to send this. Ages, so that t
 not know each other.
 """
 
-from __future__ import annotations
-
 import asyncio
 import struct
 

@@ -3,8 +3,6 @@
 Needs root, iproute2 and, to cut cables, nftables. Namespaces are named PREFIX-NUMBER.
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from ipaddress import IPv4Address

@@ -1,7 +1,5 @@
 """Node files: TOML that names a node's identity, links, keys and role."""
 
-from __future__ import annotations
-
 import ipaddress
 import re
 from dataclasses import dataclass

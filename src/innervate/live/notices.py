@@ -1,7 +1,5 @@
 """What is the matter for a while is said once in a while, not as often as it happens."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from innervate.live.machine import machine

@@ -1,7 +1,5 @@
 """A live node on a shared channel: a protocol over any `Radio` (see radio.py)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.live.declared import DeclaredFile, DeclaredNode, DeclaredStack

@@ -1,7 +1,5 @@
 """Node files of a plan whose nodes share a channel, which is a process of its own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.live.channel import SLOT_US, SLOT_US_MIN, TURNAROUND_US

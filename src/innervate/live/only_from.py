@@ -5,8 +5,6 @@ lost with the rest. A filter on the socket (classic BPF, no privilege needed) le
 neighbour's address and, where frames are sealed, an index that this node drew for its sessions.
 """
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import socket

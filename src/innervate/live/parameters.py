@@ -1,7 +1,5 @@
 """What a node file may set of a protocol: its declared parameters, each within its range."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

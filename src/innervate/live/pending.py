@@ -1,7 +1,5 @@
 """What waits for somebody who reads at a node's socket: so much, and what is more is counted."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from typing import Generic, TypeVar

@@ -1,7 +1,5 @@
 """What no file of a node can hold, whatever the field: said by its name before anybody uses it."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

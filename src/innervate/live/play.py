@@ -1,7 +1,5 @@
 """What a scenario tells happens to the processes of a network: events at their times, and more."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Files and folders that are nobody else's: keys, what nodes keep, captures, sockets."""
 
-from __future__ import annotations
-
 import os
 import stat
 from pathlib import Path

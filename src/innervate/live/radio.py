@@ -4,8 +4,6 @@ It has a carrier-detect line, and listens or not. The one in channel.py is on a 
 process; a serial modem with such a line is another.
 """
 
-from __future__ import annotations
-
 from typing import Protocol
 
 from innervate.live.links import Path

@@ -1,7 +1,5 @@
 """Receipts: what becomes of a message."""
 
-from __future__ import annotations
-
 import asyncio
 
 ACCEPTED = "accepted"

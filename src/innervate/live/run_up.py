@@ -1,7 +1,5 @@
 """`innervate live up`: a scenario's network, and what happens to it, until somebody ends it."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """Serial ports: frames between zeros (COBS), raw 8N1; a pty is a serial port, too."""
 
-from __future__ import annotations
-
 import asyncio
 import errno
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Serial cables between processes of one machine: two ptys each, joined by this process."""
 
-from __future__ import annotations
-
 import os
 import selectors
 import threading

@@ -1,7 +1,5 @@
 """A serial port of this machine, as the system knows it."""
 
-from __future__ import annotations
-
 import os
 import termios
 

@@ -1,7 +1,5 @@
 """A session: what two neighbours seal for each other on one path, with keys of their own."""
 
-from __future__ import annotations
-
 from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 

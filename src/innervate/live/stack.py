@@ -1,7 +1,5 @@
 """What engines run of protocols whose handlers take a node, its parameters and an outbox."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect import plain

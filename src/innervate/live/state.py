@@ -1,7 +1,5 @@
 """What a node keeps on disk over a restart: the epoch that it has seen, who was put out."""
 
-from __future__ import annotations
-
 import errno
 import json
 from contextlib import suppress

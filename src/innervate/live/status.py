@@ -1,7 +1,5 @@
 """A node's Unix socket: a line of JSON asks, lines of JSON answer."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

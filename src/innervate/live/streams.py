@@ -1,7 +1,5 @@
 """What comes in at a node, for callbacks, async iterators and listeners at its socket."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncGenerator, Callable
 from typing import Any, Generic, TypeVar

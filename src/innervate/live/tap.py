@@ -3,8 +3,6 @@
 They are told in the clear, opened where they are sealed: only the node's own user can ask.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.live.node import LiveNode

@@ -1,7 +1,5 @@
 """A whole scenario as processes, on loopback or in network namespaces."""
 
-from __future__ import annotations
-
 import asyncio
 import signal
 import socket

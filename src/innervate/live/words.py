@@ -1,7 +1,5 @@
 """What running nodes of any network say of themselves, as `innervate live` prints it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.network import networks

@@ -4,8 +4,6 @@ The registry knows networks only when a program runs; type checkers and editors 
 what `run.skin` holds. Nothing is loaded from here but by who asks for one of these names.
 """
 
-from __future__ import annotations
-
 from innervate.networks.mesh.analysis.summary_keys import MeshSummary as MeshSummary
 from innervate.networks.radio.analysis.summary_keys import RadioSummary as RadioSummary
 from innervate.networks.radio.analysis.summary_keys import SlottedSummary as SlottedSummary

@@ -1,7 +1,5 @@
 """Functions that only look something up: whatever they answer, they answer the same again."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable, Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Has the solver try to refute what is to hold, and sees that nothing holds for want of cases."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field

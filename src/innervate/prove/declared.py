@@ -6,8 +6,6 @@ loops end, what is used has a value; and every branch is taken by some state. Th
 have layouts, and draws a generator that is theirs alone, rests on no range: see laid.py.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """What the user of a proof is told in one line."""
 
-from __future__ import annotations
-
 from importlib.util import find_spec
 
 

@@ -4,8 +4,6 @@ Paths part at an `if` and are merged behind it; loops are unrolled, calls follow
 keep (indices within arrays, numbers within 32 bits, room, bounds of loops) is noted as it goes.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable
 from typing import Any

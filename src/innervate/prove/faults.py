@@ -1,7 +1,5 @@
 """A proof can fail: mistakes are planted in the protocol, and each has to be refuted."""
 
-from __future__ import annotations
-
 from innervate.network import Network
 from innervate.prove.theory import Fault, prove
 

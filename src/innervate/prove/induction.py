@@ -1,7 +1,5 @@
 """A loop by induction: any one of its passes is run, and what follows the last."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

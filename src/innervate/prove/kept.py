@@ -5,8 +5,6 @@ that has a part in that, of Python's version and of the solver's. Only what hold
 refuted is refuted anew each time. INNERVATE_CACHE says where notes lie.
 """
 
-from __future__ import annotations
-
 import ast
 import contextlib
 import hashlib

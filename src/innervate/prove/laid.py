@@ -4,8 +4,6 @@ A kind without a layout is in range, and cannot go over a wire. A draw is taken 
 its n, which it is not where a handler writes what the generator lives on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any

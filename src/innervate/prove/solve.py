@@ -3,8 +3,6 @@
 The only door to z3, which is an extra.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

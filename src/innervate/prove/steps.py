@@ -1,7 +1,5 @@
 """A step: one handler, run on any state that may come, and what has to hold behind it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

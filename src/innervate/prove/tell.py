@@ -1,7 +1,5 @@
 """A refuted goal in sentences: what was, what happened, what is."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 from innervate.dialect.arith import MASK30

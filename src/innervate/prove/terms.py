@@ -4,8 +4,6 @@ Equal terms are one object. What the ranges decide is decided here, so that a fo
 what is left open. Nothing here knows a solver.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 

@@ -1,7 +1,5 @@
 """What is proved of a network: theories, each of steps and lemmas, and how they come out."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 from collections.abc import Callable, Iterator

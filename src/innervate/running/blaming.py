@@ -4,8 +4,6 @@ In a watched plain run states note the line that put a value out of its range, a
 below 0, which compiled code would take as somebody else's memory, is an error.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from bdb import BdbQuit

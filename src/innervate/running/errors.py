@@ -1,7 +1,5 @@
 """The error of this room."""
 
-from __future__ import annotations
-
 
 class RunError(Exception):
     """A run folder that cannot be written or read: one line that says what to change."""

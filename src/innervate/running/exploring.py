@@ -1,7 +1,5 @@
 """explore(network) -> what `innervate verify` finds, from Python."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from types import SimpleNamespace

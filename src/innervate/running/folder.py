@@ -1,7 +1,5 @@
 """Run folders: written whole or not at all, replaced only where a run was before."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

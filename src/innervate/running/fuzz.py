@@ -6,8 +6,6 @@ a first number has to lie for one to be drawn; `drawn(generator, seed)`; `smalle
 `trouble(summary)`, what a run broke that no checker is for.
 """
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

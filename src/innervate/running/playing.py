@@ -4,8 +4,6 @@ What broke as it was explored breaks here; so does nothing once the protocol is 
 a millisecond, so that rows have a time.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections import Counter
 from dataclasses import dataclass, field

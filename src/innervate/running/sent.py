@@ -1,7 +1,5 @@
 """What a watched plain run sees of frames: who set what in them, and what nobody did."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """How far work is, in the cell of a notebook that began it; elsewhere nothing is shown."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable

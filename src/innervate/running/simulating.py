@@ -3,8 +3,6 @@
 Its `simulation` takes what is to be kept by name: plain, checks, observe, deliveries, trail, tap.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass

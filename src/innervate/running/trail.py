@@ -1,7 +1,5 @@
 """Where the handler calls of two runs begin to differ, without keeping them all."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The scenarios that come with innervate, and those to start from."""
 
-from __future__ import annotations
-
 from importlib.resources import files
 from pathlib import Path
 from typing import Any

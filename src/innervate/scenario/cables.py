@@ -1,7 +1,5 @@
 """The plan of a network over cables: what `sim/cables` runs and `live` sets up."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """A scenario as TOML text, defaults and overrides written out."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Collection

@@ -1,7 +1,5 @@
 """The error of this room."""
 
-from __future__ import annotations
-
 
 class ScenarioError(Exception):
     """A scenario that cannot be run as written: one line that says what to change.

@@ -1,7 +1,5 @@
 """What [[event]] tables of all networks have in common: when, which keys, how they are told."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from heapq import merge

@@ -3,8 +3,6 @@
 msgspec says what failed and where; the sentence is built from the field's own description.
 """
 
-from __future__ import annotations
-
 import difflib
 import re
 import sys

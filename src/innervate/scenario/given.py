@@ -1,7 +1,5 @@
 """A scenario however it is given: a file, a bundled name, tables, or one that is loaded."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Mapping
 from typing import Any

@@ -5,8 +5,6 @@ the published JSON Schema. It is made of the limits here; that of flags, tables 
 is made of the type (see explain.py).
 """
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from msgspec import Meta, Struct

@@ -4,8 +4,6 @@ The standard parser gives values without places. This scan runs after it, over t
 valid, and only feeds error messages: where it gives up, keys just have no line.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import re

@@ -1,7 +1,5 @@
 """From a file, a text or a dict to a validated scenario."""
 
-from __future__ import annotations
-
 import os
 import re
 import tomllib

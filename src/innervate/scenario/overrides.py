@@ -1,7 +1,5 @@
 """`--set a.b=c`: values given on the command line in place of the file's."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable
 from typing import Any

@@ -1,7 +1,5 @@
 """Scenarios that are simpler than one that was drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

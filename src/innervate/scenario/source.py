@@ -1,7 +1,5 @@
 """Where a scenario's values came from, so that an error can point at the line."""
 
-from __future__ import annotations
-
 import datetime
 import json
 import math

@@ -1,7 +1,5 @@
 """What a medium counts of a network, whatever runs on it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ on from there, for a whole run (`finish`), for a page that holds the network at 
 (`web/engine.py`), and for whoever wants to look at its tables now and then.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple

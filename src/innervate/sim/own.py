@@ -1,7 +1,5 @@
 """What a network says itself, of a run on any medium: its invariants, and what messages are."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence

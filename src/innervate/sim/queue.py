@@ -1,7 +1,5 @@
 """What is queued in a simulation, looked at from outside of its loop."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Declared ranges of records that are not looked at after every event: few, large, or both."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a run keeps of what happens, whatever the medium."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

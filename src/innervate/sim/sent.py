@@ -4,8 +4,6 @@ On a wire a value has the bits of its layout, and in C the width of its declared
 that would be another there, or none, and only a simulation would carry it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -4,8 +4,6 @@ Records are declared like the protocols' (see the `fields.py` of a network's pro
 fields where the simulator keeps true time.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
 from functools import cache

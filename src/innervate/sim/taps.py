@@ -4,8 +4,6 @@ Nothing is kept unless a simulation was asked to: `run.tap_limit` is 0 then. A f
 has a row (`world.TAP`) of its own, and one more for whoever received it, or could have and did not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

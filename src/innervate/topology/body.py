@@ -5,8 +5,6 @@ come first (so that the skin is connected where it can be), then the shortest ot
 ends have a port left.
 """
 
-from __future__ import annotations
-
 import math
 from array import array
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A network in clusters: where their heads stand, and which of them each node is nearest to."""
 
-from __future__ import annotations
-
 import heapq
 from collections import Counter
 from collections.abc import Mapping, Sequence

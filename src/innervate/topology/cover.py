@@ -5,8 +5,6 @@ than the pitch (trimesh); same mesh, same pitch, same cells. A mesh is taken as 
 also lie on walls inside of it, if it has some.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec

@@ -1,7 +1,5 @@
 """The error of this room."""
 
-from __future__ import annotations
-
 
 class TopologyError(Exception):
     """A network that cannot be cabled as asked; the message says what to change, in one line.

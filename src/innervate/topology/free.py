@@ -4,8 +4,6 @@ An end is written `name` (its first free port), `name.port` (0..3, or W, E, up, 
 next interface port) or `pc.<i>`.
 """
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Sequence
 

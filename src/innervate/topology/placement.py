@@ -4,8 +4,6 @@ Everything is a whole number (cm, 0.01 dB) before it is compared, so that the sa
 same network on any machine. `draw` is a stream of random numbers (see trace/streams.py).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from statistics import NormalDist

@@ -1,7 +1,5 @@
 """Cells that are as far from one interface port as from another: those that can balance."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 from innervate.topology.graph import Graph

@@ -4,8 +4,6 @@ Standard library only. Lengths in a URDF are metres, angles radians (roll, pitch
 fixed axes of the parent); positions come back in mm.
 """
 
-from __future__ import annotations
-
 import fnmatch
 import math
 import re

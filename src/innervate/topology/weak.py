@@ -3,8 +3,6 @@
 One depth-first search from the PC [Tarjan 1972, low points]: as much work as there are cables.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from innervate.topology.graph import Graph

@@ -1,7 +1,5 @@
 """Where a result comes from: enough to get it again, and nothing of whose machine it was."""
 
-from __future__ import annotations
-
 import hashlib
 import platform
 import subprocess

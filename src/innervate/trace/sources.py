@@ -1,7 +1,5 @@
 """A hash of the sources that results depend on: results of other sources are not mixed in."""
 
-from __future__ import annotations
-
 import hashlib
 from functools import cache
 from pathlib import Path

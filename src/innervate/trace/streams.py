@@ -4,8 +4,6 @@ A stream depends on the root seed and its name only, so adding a draw to one pur
 other. Pure integer arithmetic (splitmix64 seeded by BLAKE2b): the same on any machine.
 """
 
-from __future__ import annotations
-
 import hashlib
 
 _MASK64 = (1 << 64) - 1

@@ -5,8 +5,6 @@ each a function that explores it and returns a `Case`; `notice(options)`: what t
 first, if it takes long to compile; MUTANTS and `hunt(mutant)`, if there are any.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field

@@ -8,8 +8,6 @@ happen (a timer is set, or a frame is on its way). A network's own `invariants` 
 What nodes draw is tried in every way, as far as draws.py says.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

@@ -7,8 +7,6 @@ loop that draws again) are what a stream says; and at most OUTCOMES ways, those 
 draws give something else than the first. What was left out is noted.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterator
 from typing import Any

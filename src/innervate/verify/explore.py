@@ -4,8 +4,6 @@ A model says what is explored: `layout()` of a state's row (width, body, moves()
 `world(plain)` to work in, `system()` and `compiled_parts` (see search.py), `first_row(system)`.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field

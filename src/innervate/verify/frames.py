@@ -1,7 +1,5 @@
 """Frames that an explored call puts into its outbox: what of them is not set, or out of range."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect.folder import LOOKED_AT, MEASURED

@@ -1,7 +1,5 @@
 """Small graphs for the explorer of any network, by name or by their cables."""
 
-from __future__ import annotations
-
 from innervate.scenario.declared.shared import cabled
 from innervate.topology import Graph, TopologyError
 from innervate.verify.errors import VerifyError

@@ -4,8 +4,6 @@ A mistake is a text of the protocol's sources replaced by another. The copy is a
 in a temporary folder and runs uncompiled; the real protocol is not touched.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from types import ModuleType
 

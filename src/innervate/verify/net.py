@@ -5,8 +5,6 @@ Nodes know only their own time, so that a state holds timers and moments relativ
 meanwhile is left open.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from operator import itemgetter
 from types import ModuleType

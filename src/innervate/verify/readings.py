@@ -4,8 +4,6 @@ An explored call is made at a reading near 0. Of the first calls of each handler
 one of them with the clock, and all moments that the node keeps, moved on by half a turn or so.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect.arith import MASK30

@@ -4,8 +4,6 @@ A step of a script is what a story says of an event, but for what it changed: "n
 n0 E, n1 draws 3 out of 8". Times cannot say it: a story lets any time pass between two nodes.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """States of any network that declares its protocol, as they are explored, and what made them."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass

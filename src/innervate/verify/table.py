@@ -1,7 +1,5 @@
 """The tables of a search: arrays for compiled code, views of the same memory for plain Python."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

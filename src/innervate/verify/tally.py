@@ -1,7 +1,5 @@
 """How far a search is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """How a declared protocol breaks, in sentences: what happened, and which fields it changed."""
 
-from __future__ import annotations
-
 import traceback
 from collections.abc import Iterator, Mapping
 from pathlib import Path

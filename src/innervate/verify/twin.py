@@ -1,7 +1,5 @@
 """A model's plain state, stepped by hand: how a kept state was reached is looked up again."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """States of nodes as tuples of numbers, and back."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect.arith import HALF30 as HALF

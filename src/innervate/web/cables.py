@@ -1,7 +1,5 @@
 """A simulated network of cables as pages have it: who is joined to whom, and what is on its way."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

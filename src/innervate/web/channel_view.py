@@ -1,7 +1,5 @@
 """What pages show of any simulated network on a channel: its nodes by the fields they declare."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """What pages show of any simulated network of cables: its nodes by the fields that they declare."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A simulation that can be held at any microsecond, changed there, and gone on with."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, insort
 from typing import Any, NamedTuple
 

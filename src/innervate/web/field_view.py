@@ -1,7 +1,5 @@
 """What pages show of any simulated network in a field: nodes where they lie, who hears whom."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import numpy as np

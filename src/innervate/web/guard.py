@@ -4,8 +4,6 @@ A page of somebody else's, open in the same browser, can reach this server. It c
 token, it cannot hide its origin, and a name that it has lead here (DNS rebinding) is not ours.
 """
 
-from __future__ import annotations
-
 import os
 import secrets
 from collections.abc import Mapping

@@ -4,8 +4,6 @@ Every item has a number that is never used again, so that a page is told what is
 it was told last, however slow it is.
 """
 
-from __future__ import annotations
-
 import threading
 from bisect import bisect_right
 from typing import Any, NamedTuple

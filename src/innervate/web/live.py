@@ -1,7 +1,5 @@
 """Running nodes as a source: asked over their status sockets, cut by telling their drivers."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections import Counter

@@ -5,8 +5,6 @@ socket, one that ended does not; its file says where it would be, what it is and
 to, so that it has its place on the map.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Asks running nodes over their status sockets, all at once, and waits for none of them long."""
 
-from __future__ import annotations
-
 import json
 import selectors
 import socket

@@ -1,7 +1,5 @@
 """Where running nodes are drawn: as their scenario has it, which `live up` leaves beside them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path

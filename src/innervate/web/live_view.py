@@ -1,7 +1,5 @@
 """What pages show of running nodes, as far as it is a network's own; here that of any network."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

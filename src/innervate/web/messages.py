@@ -1,7 +1,5 @@
 """What a page may send: every command with its fields, checked before anything is done."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """How fast a simulated network's time goes: seconds of it per second of ours, held, or unpaced."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

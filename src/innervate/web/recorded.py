@@ -4,8 +4,6 @@ The tables of a run folder hold what happened, not what every node knew at every
 scenario and seed give all of it again, on any machine; the fingerprint says that it is the same.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar

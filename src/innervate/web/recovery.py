@@ -1,7 +1,5 @@
 """How a network gets over what was done to it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A watched network as a scenario: what was done to it by hand becomes its events."""
 
-from __future__ import annotations
-
 import tomllib
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Serves a source until Ctrl-C."""
 
-from __future__ import annotations
-
 import asyncio
 import signal
 import socket

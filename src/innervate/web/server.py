@@ -1,7 +1,5 @@
 """The web server: the page, its files, a run's report, and the socket."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """A simulation as a source: paced, held, taken back, and changed while it runs."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple

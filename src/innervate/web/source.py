@@ -1,7 +1,5 @@
 """What can be watched: one interface for simulated, recorded and running networks."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The thread in which a network runs: commands come in, snapshots go out."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections import deque

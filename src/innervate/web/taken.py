@@ -1,7 +1,5 @@
 """What faults took away and nothing gave back yet: to take it once more changes nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a simulated network looks like: what all kinds have in common."""
 
-from __future__ import annotations
-
 import copy
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field

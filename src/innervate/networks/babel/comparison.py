@@ -1,7 +1,5 @@
 """Babel at the job of the skin: a network over cables whose nodes all want to reach the PC."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate import scenario

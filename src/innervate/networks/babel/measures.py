@@ -1,7 +1,5 @@
 """What a run of Babel measures beside what every network does."""
 
-from __future__ import annotations
-
 from typing import Any
 
 REPORT_ROUTE, REPORT_DROP, REPORT_LINK = 1, 2, 3

@@ -6,8 +6,6 @@ data, which Babel leaves to IP, is a TLV for experiments. Not looked at: other p
 trailer; Unicast Hellos, which a node may do without.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from struct import pack
 from typing import Any

@@ -5,8 +5,6 @@ its address fd69:6e6e:6572:7661:696e:6e65:7276:n, its address on a link fe80::69
 one prefix that is spoken of is the address of the node `pc`, of 128 bits; others are passed over.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from struct import pack, unpack_from
 

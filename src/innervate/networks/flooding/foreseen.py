@@ -1,7 +1,5 @@
 """What of a scenario of managed flooding cannot work, told before it runs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.topology.placement import distances, neighbours

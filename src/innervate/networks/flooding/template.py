@@ -1,7 +1,5 @@
 """A scenario of managed flooding to start from: without an input nobody would send anything."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.scenario.declared import field

@@ -1,7 +1,5 @@
 """Areas that are bounded by rings of corners, in whole numbers: an outer one, with holes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """What is particular to mesh runs: the simulation, the summary, the tables."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The tables of a mesh run (see tables.py)."""
 
-from __future__ import annotations
-
 from innervate.trace.tables import TIME, Column, Table, reports
 
 _NODE = Column("node", "Int16", "node", "who")

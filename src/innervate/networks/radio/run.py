@@ -1,7 +1,5 @@
 """What is particular to radio runs: the simulation, the summary, the tables."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The tables of a radio run (see tables.py)."""
 
-from __future__ import annotations
-
 from innervate.trace.tables import Column, Table, reports
 
 _STATION = Column("station", "Int16", "station", "who", "node")

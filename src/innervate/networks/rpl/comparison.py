@@ -1,7 +1,5 @@
 """RPL at the jobs of other networks."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What of a scenario of RPL cannot work, told before it runs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.rpl import frames

@@ -1,7 +1,5 @@
 """From the rows of a simulation to the columns of a run's tables."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

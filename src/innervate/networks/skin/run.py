@@ -1,7 +1,5 @@
 """What is particular to runs of a skin: the simulation, the summary, the tables."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

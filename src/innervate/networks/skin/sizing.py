@@ -1,7 +1,5 @@
 """How many interface ports a robot's skin needs: a sweep over ports, sample rates and cuts."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The tables of a skin's run (see trace/tables.py)."""
 
-from __future__ import annotations
-
 from innervate.trace.tables import TIME, Column, Table
 
 _CELL = Column("cell", "Int32", "cell", "who")

@@ -1,7 +1,5 @@
 """What an action is: a thing that can be done to a network, and its words."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

@@ -3,8 +3,6 @@
 Built in code they are the same: `CablesScenario(kind="ring", nodes=5)`.
 """
 
-from __future__ import annotations
-
 import math
 from array import array
 from typing import Annotated, Any, Literal

@@ -3,8 +3,6 @@
 Built in code they are the same: `ChannelScenario(kind="aloha", nodes=5)`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 

@@ -3,8 +3,6 @@
 Built in code they are the same: `FieldScenario(kind="flood", nodes=20)`.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal

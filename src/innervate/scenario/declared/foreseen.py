@@ -1,7 +1,5 @@
 """What cannot work of a declared network's scenario, whatever its medium, told before it runs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

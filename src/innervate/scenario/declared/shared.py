@@ -1,7 +1,5 @@
 """What scenarios of declared networks have in common, whatever medium their nodes are on."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from operator import itemgetter

@@ -6,8 +6,6 @@ node; TIMERS; perhaps OUTBOX) and `fields` (STATE, FRAME, PARAMS). All nodes are
 first sender: latencies are taken from it; 0 is for what no user handed in, which has none.
 """
 
-from __future__ import annotations
-
 import functools
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping

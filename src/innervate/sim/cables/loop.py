@@ -4,8 +4,6 @@ It takes events off the wheel, lets the node's protocol handle them, drains the 
 when the time, the commands or the room in a table is used up; `run.status` says which.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any

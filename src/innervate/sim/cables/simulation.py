@@ -1,7 +1,5 @@
 """A network of cables under way (see sim/driver.py)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar

@@ -5,8 +5,6 @@ Records are declared like the protocols' (see the `fields.py` of a network's pro
 fields where the simulator keeps true time.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.sim import tables

@@ -1,7 +1,5 @@
 """From a radio plan to a world: all tables of a simulation, compiled (arrays) or plain (lists)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A protocol's functions as the loop of a channel calls them: with the world first."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any

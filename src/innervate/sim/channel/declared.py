@@ -5,8 +5,6 @@ on_carrier; TIMERS up to 2) and `fields`. A frame says by `slots` how long it is
 `made_at` of a frame, where declared, is when its content was handed in.
 """
 
-from __future__ import annotations
-
 import functools
 from bisect import bisect_right
 from collections.abc import Callable, Mapping

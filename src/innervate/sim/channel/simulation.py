@@ -1,7 +1,5 @@
 """A shared channel under way (see sim/driver.py)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Everything a running radio simulation holds, as tuples of tables (see sim/world.py)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.sim.tables import Out

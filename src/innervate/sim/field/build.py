@@ -1,7 +1,5 @@
 """From a plan of declared nodes in a field to a world, compiled (arrays) or plain (lists)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

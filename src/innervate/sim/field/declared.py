@@ -6,8 +6,6 @@ frame's fields the medium knows `to` (only that node is given it, ALL = every on
 it came in, dBm) and `made_at` (when its content was handed in), each where it is declared.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib
 from bisect import bisect_right

@@ -5,8 +5,6 @@ than 1 mW (0 dBm) count as that. 254 such signals and a jammer add up to 3e17, a
 for the ratio of capture, is 4e18: below 2^63.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

@@ -1,7 +1,5 @@
 """A field under way (see sim/driver.py)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """Everything a simulated field of declared protocols holds (see sim/tables.py)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.sim.channel.world import Heap

@@ -1,7 +1,5 @@
 """Crossings of a mesh's fence: who noticed, when the monitor knew, how far the robot got."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whom messages to all did not reach."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How far a walk leads out of a fence, and when it crosses; floats, cm and us of true time."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Sequence
 from heapq import heappop, heappush

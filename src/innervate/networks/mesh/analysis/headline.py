@@ -1,7 +1,5 @@
 """Is all well with a mesh, in one sentence: for a finished run, a running one, running nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

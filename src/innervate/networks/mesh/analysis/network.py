@@ -1,7 +1,5 @@
 """How a mesh came to know itself: discovery rounds, tables, gateways; what it cost on the air."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Node by node: who hears whom, what each knows at the end of a run, what it sent."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Who is there and who is connected, over the good links of a mesh's plan; shortest paths."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections import deque
 from typing import Any

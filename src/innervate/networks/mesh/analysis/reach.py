@@ -10,8 +10,6 @@ What nodes know comes from the tables of a simulation (`choices`), or from what 
 `ways` is the same for both.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

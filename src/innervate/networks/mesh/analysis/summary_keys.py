@@ -1,7 +1,5 @@
 """The keys of a mesh's summary."""
 
-from __future__ import annotations
-
 from typing import Literal, NotRequired, TypedDict, final
 
 from innervate.analysis.summary_common import Common, Percentiles

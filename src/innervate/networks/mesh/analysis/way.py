@@ -1,7 +1,5 @@
 """The way an alarm took through a mesh, put together from what was on the air."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

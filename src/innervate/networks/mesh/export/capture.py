@@ -1,7 +1,5 @@
 """A mesh as a capture: every node is an interface."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What Wireshark has to know of the mesh's frames."""
 
-from __future__ import annotations
-
 from innervate.export.dissector import Frames, fields_of, kinds, lua, meanings
 from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.meanings import MEANINGS

@@ -1,7 +1,5 @@
 """A mesh out of a capture: who hears whom, how well, how soon, who sends what; as a scenario."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median

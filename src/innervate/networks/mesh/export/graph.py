@@ -1,7 +1,5 @@
 """A mesh's links as a graph: each way has a quality of its own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.export.graphs import Attributes, Graph

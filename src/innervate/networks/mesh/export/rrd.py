@@ -1,7 +1,5 @@
 """A mesh in its field: nodes, good links and the fence, robots on their ways, alarms."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

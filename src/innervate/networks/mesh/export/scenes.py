@@ -1,7 +1,5 @@
 """A mesh in a recording: nodes, good links and the fence, and robots as they move."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

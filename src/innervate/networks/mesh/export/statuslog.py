@@ -4,8 +4,6 @@ A node counts the frames that a neighbour should acknowledge and those that it d
 the link back, so that the share is the product of both directions' qualities; each gets its root.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

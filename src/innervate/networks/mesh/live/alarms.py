@@ -1,7 +1,5 @@
 """Alarms of the virtual fence, as they come in at the monitor [mesh 2 FENCE_ALARM]."""
 
-from __future__ import annotations
-
 from collections import deque
 from typing import Any, NamedTuple
 

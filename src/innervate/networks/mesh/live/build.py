@@ -1,7 +1,5 @@
 """From a node file to a node of a mesh."""
 
-from __future__ import annotations
-
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
 from innervate.live.links import Link

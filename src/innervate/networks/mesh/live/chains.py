@@ -3,8 +3,6 @@
 What was delivered was handed up, and needs not be waited for; what has expired will not come.
 """
 
-from __future__ import annotations
-
 import zlib
 from collections import defaultdict
 

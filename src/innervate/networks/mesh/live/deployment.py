@@ -1,7 +1,5 @@
 """Node files of a mesh's plan, and its robots on their way."""
 
-from __future__ import annotations
-
 from collections.abc import Coroutine
 from typing import Any
 

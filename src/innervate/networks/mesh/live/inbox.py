@@ -1,7 +1,5 @@
 """What comes in for a node's user: messages, pieces put together, in order where asked for."""
 
-from __future__ import annotations
-
 import asyncio
 from collections import Counter
 from collections.abc import Callable

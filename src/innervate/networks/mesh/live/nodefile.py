@@ -1,7 +1,5 @@
 """Node files of a mesh."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar
 
 from msgspec import Meta, Struct

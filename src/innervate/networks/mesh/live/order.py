@@ -5,8 +5,6 @@ yet. Numbers are the router's, of 16 bits; those between them went to others. It
 when it was handed up: what waits here dies with its recipient, and its sender tries again.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections import Counter, deque
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Messages of a node's user, until each has its end: handed to the router as it has room."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """Parameters of the router on live links: the profile "ip" [mesh 5]; whole numbers."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.live.errors import LiveError

@@ -6,8 +6,6 @@ node was started anew meanwhile, or had to forget. It says so, by a piece of a k
 the sender tells its user that the message has expired.
 """
 
-from __future__ import annotations
-
 import struct
 from collections import deque
 from typing import NamedTuple

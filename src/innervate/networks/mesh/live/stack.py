@@ -1,7 +1,5 @@
 """The mesh on live links: a node's records bound to the router's functions."""
 
-from __future__ import annotations
-
 import functools
 from collections import Counter
 from types import SimpleNamespace

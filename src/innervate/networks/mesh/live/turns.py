@@ -5,8 +5,6 @@ all places, and hold up who does; so places are given out with the others in min
 a few at first, and one more with each message that arrives, up to three quarters.
 """
 
-from __future__ import annotations
-
 from collections import Counter, deque
 from itertools import compress
 from typing import Any

@@ -1,7 +1,5 @@
 """Robots of a scenario tell the nodes that they bear where they are."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from itertools import pairwise

@@ -6,8 +6,6 @@ packet comes forward to a node twice. A packet of which lost acks made two copie
 one hop twice, which is told as a story of three nodes.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -4,8 +4,6 @@ The router as a whole is too large to be unrolled; its duplicate caches decide b
 their functions is proved by itself, of any contents. Two origins stand for any number.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Which medium access a mesh runs over, and whether that one can work there."""
 
-from __future__ import annotations
-
 from math import ceil, hypot
 from typing import Any
 

@@ -5,8 +5,6 @@ hands on what is for a node elsewhere; it is not simulated. A run is that of one
 are on other channels, and nothing of them is heard.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -5,8 +5,6 @@ a node's neighbours as next hop and alternate. `failover = "auto"` takes what is
 decision 0056 holds them against runs.
 """
 
-from __future__ import annotations
-
 from math import ceil
 from types import SimpleNamespace
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """What happens to a mesh: from [[event]] tables to faults, in order of time."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The fence of a mesh: a polygon with holes, as whole numbers in its own coordinates [mesh 6]."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 

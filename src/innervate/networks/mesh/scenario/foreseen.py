@@ -1,7 +1,5 @@
 """What a mesh's own events, messages and robots will do to it, as far as a plan alone tells."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterator
 from heapq import heappop, heappush

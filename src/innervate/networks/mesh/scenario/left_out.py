@@ -1,7 +1,5 @@
 """Why a node of an imported network is not in the mesh, and what would keep it."""
 
-from __future__ import annotations
-
 from bisect import bisect_left
 
 from innervate.networks.mesh.scenario.model import ImportTable

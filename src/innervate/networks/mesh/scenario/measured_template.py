@@ -1,7 +1,5 @@
 """Commented scenarios of networks that were measured (`innervate new mesh --network`)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.mesh.protocol.fields import NEIGHBOURS

@@ -4,8 +4,6 @@ Nodes are named by number (from 0, in the order of the file) or by name. What on
 show is checked in rules.py; what needs the network, when it is planned.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta, field

@@ -1,7 +1,5 @@
 """Who is in a mesh, where everybody lies, and who hears whom how well [mesh 6]."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import ceil, exp, isqrt, log
 from typing import Any

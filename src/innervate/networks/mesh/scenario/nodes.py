@@ -1,7 +1,5 @@
 """The nodes of a mesh: their names and numbers, and links or places that are given."""
 
-from __future__ import annotations
-
 import difflib
 import os
 from collections.abc import Callable

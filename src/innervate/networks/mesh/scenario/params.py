@@ -1,7 +1,5 @@
 """The protocol's parameters of a mesh scenario (`mesh_fields.PARAMS`) [mesh 5]."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any
 

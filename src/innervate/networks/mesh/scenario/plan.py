@@ -1,7 +1,5 @@
 """The plan of a mesh run: whole numbers only. Floats end here."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """From a mesh scenario to the plan of its run."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What radios and their timers are like, by profile [mesh 5, 6]."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from innervate.networks.mesh.protocol.constants import ACK_BYTES

@@ -1,7 +1,5 @@
 """How the robots of a mesh move: whole microseconds and centimetres."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import sqrt
 

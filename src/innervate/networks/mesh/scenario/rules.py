@@ -1,7 +1,5 @@
 """What the keys of a mesh scenario must fulfil together, as far as no network is needed for it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from innervate.networks.mesh.scenario import fence as mesh_fence

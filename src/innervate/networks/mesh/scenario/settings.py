@@ -3,8 +3,6 @@
 What is left out comes from the radio's profile (see profiles.py, params.py).
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from innervate.networks.mesh.protocol.constants import MTU_MAX

@@ -1,7 +1,5 @@
 """The messages of a mesh: from [[flow]] tables to what is handed to whom, and when."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import msgspec

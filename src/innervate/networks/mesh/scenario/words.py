@@ -1,7 +1,5 @@
 """A mesh scenario in a few lines, without running it; and what somebody should know before."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as c

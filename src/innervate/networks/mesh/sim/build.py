@@ -1,7 +1,5 @@
 """From a mesh plan to a world: all tables of a simulation, compiled (arrays) or plain (lists)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

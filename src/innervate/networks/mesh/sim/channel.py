@@ -1,7 +1,5 @@
 """The channel below a mesh whose nodes all hear each other: a world of `sim/channel`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.mesh.scenario.plan import ONE

@@ -1,7 +1,5 @@
 """Runs a mesh plan: builds the world, drives the loop in slices, collects its tables."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

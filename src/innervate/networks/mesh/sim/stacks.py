@@ -1,7 +1,5 @@
 """Binds a router and the medium access below it to the simulator."""
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable
 from types import ModuleType

@@ -1,7 +1,5 @@
 """Everything a running mesh simulation holds, as tuples of tables (see sim/world.py)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.networks.mesh.protocol import constants as mesh_const

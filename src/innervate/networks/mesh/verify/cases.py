@@ -1,7 +1,5 @@
 """What `innervate verify mesh` does: which networks, one after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any

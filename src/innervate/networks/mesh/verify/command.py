@@ -1,7 +1,5 @@
 """What `innervate verify mesh` does: messages, alarms and gateways, on a few nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any

@@ -4,8 +4,6 @@ Then every message whose recipient is connected to its origin is delivered, no p
 ever, and of several gateways one is left, which all follow.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from innervate.networks.mesh.protocol import constants as const

@@ -1,7 +1,5 @@
 """A mesh's first round: from nodes that are off to tables in force, if nothing fails."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from innervate.networks.mesh.verify import local

@@ -1,7 +1,5 @@
 """Meshes drawn from one number: radios, settings, messages, robots, deaths and noise."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterator
 

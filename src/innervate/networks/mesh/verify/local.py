@@ -4,8 +4,6 @@ A node's state is a number; its record is brought to life only for a call that w
 A state has, besides the record, when its timers fire and the frame that it has handed down.
 """
 
-from __future__ import annotations
-
 from types import ModuleType
 from typing import Any, NamedTuple
 

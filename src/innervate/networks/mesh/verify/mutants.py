@@ -1,7 +1,5 @@
 """The mesh's explorer can fail: copies of the router with a small mistake in each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from innervate.networks.mesh.verify import local as mesh_local

@@ -9,8 +9,6 @@ go out and timers fire at any moment. Timed, all clocks run alike, frames take n
 waits to go out goes out first, from the lowest node; then only faults are a choice.
 """
 
-from __future__ import annotations
-
 import struct
 from itertools import combinations
 from typing import NamedTuple

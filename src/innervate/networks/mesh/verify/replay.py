@@ -6,8 +6,6 @@ on the air; when that is, a run with all losses before it tells. Seeds are tried
 choices fall as the story has them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

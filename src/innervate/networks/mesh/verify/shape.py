@@ -6,8 +6,6 @@ one value, so that states which differ in nothing else are one. A test plays the
 and without (`tidy`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from operator import attrgetter
 from typing import Any

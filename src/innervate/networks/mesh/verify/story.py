@@ -1,7 +1,5 @@
 """How a mesh breaks, in plain sentences, and the network after each event."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A running mesh on the page: who hears whom, who reaches the gateway."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

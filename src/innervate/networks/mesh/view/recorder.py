@@ -1,7 +1,5 @@
 """What became of a running mesh's messages and alarms so far, counted as a summary does."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 from types import SimpleNamespace

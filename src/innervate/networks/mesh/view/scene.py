@@ -1,7 +1,5 @@
 """The field of a mesh: who is where, which links there are, the fence. Metres, y down."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a simulated mesh looks like: the map, routes, alarms, robots and fence."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 

@@ -4,8 +4,6 @@ Recomputed from the run's transmissions and pair delays alone, so that it can be
 moment of any run. Times are us of true time; intervals hold their first moment, not their last.
 """
 
-from __future__ import annotations
-
 from typing import Any, Literal, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How much of a radio channel's time delivered packets fill."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ Times in slots unless a name ends in _us; n stations, packets of T slots; shares
 `load` is G, packets per packet time by all stations together, retransmissions included.
 """
 
-from __future__ import annotations
-
 from math import comb
 
 

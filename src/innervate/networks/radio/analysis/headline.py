@@ -1,7 +1,5 @@
 """The headline of a radio team, from facts that runs, running simulations and stations all have."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 

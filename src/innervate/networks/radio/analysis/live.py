@@ -1,7 +1,5 @@
 """What is known of running stations at one moment, from what they say of themselves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

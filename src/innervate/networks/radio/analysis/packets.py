@@ -1,7 +1,5 @@
 """Which packets of a radio run count as delivered, as settled, as timed; and what was offered."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is known of a simulated radio team at one moment: while it runs, and when it has ended."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -4,8 +4,6 @@ A *success* is a packet that its sender takes for delivered and that somebody di
 saturation the first tenth of the successes is left out of every mean: the channel settles there.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

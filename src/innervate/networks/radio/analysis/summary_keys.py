@@ -1,7 +1,5 @@
 """The keys of a radio team's summary, on the event level and on the slotted one."""
 
-from __future__ import annotations
-
 from typing import Literal, TypedDict, final
 
 from innervate.analysis.summary_common import Common

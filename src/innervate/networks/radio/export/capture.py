@@ -1,7 +1,5 @@
 """A radio team as a capture: every station is an interface."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

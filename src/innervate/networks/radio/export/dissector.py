@@ -1,7 +1,5 @@
 """What Wireshark has to know of the radio's frames."""
 
-from __future__ import annotations
-
 from innervate.export.dissector import Frames, kinds, lua, meanings
 from innervate.networks.radio import frames
 from innervate.networks.radio.protocol.constants import CRR, REPORT

@@ -1,7 +1,5 @@
 """Who hears whom in a radio team as a graph, and after how long."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.export.graphs import Graph

@@ -1,7 +1,5 @@
 """From a node file to a station."""
 
-from __future__ import annotations
-
 from innervate.live.channel_radio import MediumRadio
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine

@@ -1,7 +1,5 @@
 """Node files of a radio team's plan."""
 
-from __future__ import annotations
-
 from innervate.live.channel import SLOT_US, TURNAROUND_US
 from innervate.live.deployment import Pairs, Table
 from innervate.live.errors import LiveError

@@ -1,7 +1,5 @@
 """A radio station on a live channel: the medium access protocol over any `Radio`."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncGenerator, Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Node files of a radio team."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from innervate.live.nodefile import NodeFile

@@ -1,7 +1,5 @@
 """Parameters of a live station; whole numbers."""
 
-from __future__ import annotations
-
 from innervate.live.channel import SLOT_US_MIN
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters

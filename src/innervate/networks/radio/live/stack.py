@@ -1,7 +1,5 @@
 """A radio station on a live channel, as an engine runs it: practical CSMA/CD-R."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect import plain

@@ -1,7 +1,5 @@
 """What running stations say of themselves, as `innervate live` prints it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.live.words import message as heard

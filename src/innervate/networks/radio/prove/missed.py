@@ -4,8 +4,6 @@ Places are named by the report, so a data frame that was missed before does not 
 report that was missed does: whoever was in a place that it gives out stays there.
 """
 
-from __future__ import annotations
-
 from functools import partial
 
 from innervate.networks.radio.protocol import fields

@@ -5,8 +5,6 @@ is shown before the first minislot and, of any minislot, behind it wherever it w
 it is so behind the last.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect.arith import MASK30

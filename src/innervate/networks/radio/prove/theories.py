@@ -4,8 +4,6 @@ That no two turns overlap is proved of stations that heard the same frames (turn
 others: `innervate verify radio` tries those.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

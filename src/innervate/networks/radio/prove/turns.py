@@ -6,8 +6,6 @@ last has ended there, nor so late that it would be taken for dead. What stations
 frame, and how windows and openings end, is not proved.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

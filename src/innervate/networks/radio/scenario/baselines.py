@@ -1,7 +1,5 @@
 """Parameters of the baselines of a shared channel [radio 9], and the devices each is granted."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 # How stations know their protocol (params.mac); 0 is CSMA/CD-R.

@@ -3,8 +3,6 @@
 What one key alone cannot show is checked in rules.py.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta

@@ -1,7 +1,5 @@
 """From a radio scenario to the plan of its run."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.radio.scenario.baselines import Draws, baseline

@@ -1,7 +1,5 @@
 """What the keys of a radio scenario must fulfil together."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from innervate.networks.radio.scenario import slotted as radio_slotted

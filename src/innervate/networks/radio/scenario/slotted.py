@@ -4,8 +4,6 @@ The slotted level counts slots: whole collisions, no delays, no events. A settin
 for would be read and never asked again, so a scenario that gives one is refused, whatever it says.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """When each station is offered packets, and how long they are; from named streams."""
 
-from __future__ import annotations
-
 from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.networks.radio.scenario.rules import pair
 from innervate.trace.streams import Stream, stream

@@ -1,7 +1,5 @@
 """A radio scenario in a few lines, without running it."""
 
-from __future__ import annotations
-
 from innervate.analysis.words import number_of
 from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioScenario

@@ -1,7 +1,5 @@
 """From a radio plan to a world: which records its stations have, and what may be checked of it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.radio.protocol import fields

@@ -1,7 +1,5 @@
 """Binds the protocols of a shared channel to the simulator, by name."""
 
-from __future__ import annotations
-
 from types import ModuleType
 from typing import Any, NamedTuple
 

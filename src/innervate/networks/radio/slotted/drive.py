@@ -1,7 +1,5 @@
 """Which loop runs which protocol of the slotted level, with which times. Times in ticks."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass

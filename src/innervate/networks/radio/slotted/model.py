@@ -17,8 +17,6 @@ Backoff runs on while others send and never gives up: with the attempt limit of 
 be lost, and capture, its main effect here, would look milder than it is.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 

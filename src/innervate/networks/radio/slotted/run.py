@@ -1,7 +1,5 @@
 """Radio runs on the slotted level: the reference model instead of the event-level channel."""
 
-from __future__ import annotations
-
 import hashlib
 from dataclasses import dataclass
 from typing import Any

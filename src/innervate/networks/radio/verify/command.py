@@ -1,7 +1,5 @@
 """What `innervate verify radio` does: offers, delays and draws on a grid, and trees of draws."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Radio teams drawn from one number: stations, traffic, delays, who comes and goes."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterator
 from typing import Any

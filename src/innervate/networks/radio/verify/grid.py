@@ -5,8 +5,6 @@ ever, that no two turns overlap, that turns come in the order of their places, a
 is taken for delivered that nobody received.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace

@@ -1,7 +1,5 @@
 """The radio's search can fail: copies of the protocol with a small mistake in each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from innervate.networks.radio.verify import grid as grid

@@ -6,8 +6,6 @@ values, draws of a time with the first, the middle and the last of its range. Be
 every station goes on with a generator of its own.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass

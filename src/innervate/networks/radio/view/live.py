@@ -1,7 +1,5 @@
 """A running radio team on the page: who sends, who has a packet, who is off the channel."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a simulated radio team looks like: stations in a ring, and what was on the air."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """What became of the PC's commands: whom they were for, whom they reached, how long it took."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

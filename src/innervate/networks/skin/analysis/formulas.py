@@ -4,8 +4,6 @@ Times in s, frequencies in Hz, `k` in missed beacons, `h` in cells between the i
 (both included, E24), shares as fractions.
 """
 
-from __future__ import annotations
-
 FRAME_BITS = 240  # packet, framing and gap [skin 2]
 LINK_BIT_S = 4_000_000
 

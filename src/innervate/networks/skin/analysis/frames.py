@@ -1,7 +1,5 @@
 """Where all frames went: sent, arrived, lost by reason, still on their way."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 From plain facts, so that a finished run, a simulation under way and running nodes can all ask.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """How long samples took from the sensor to the PC."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

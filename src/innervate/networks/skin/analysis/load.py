@@ -1,7 +1,5 @@
 """Whose data leave through which interface port at the end of a run, and how evenly."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

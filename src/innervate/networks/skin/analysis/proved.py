@@ -1,7 +1,5 @@
 """What a run says when it leaves what the proofs assume (docs/prove.md): a sentence each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

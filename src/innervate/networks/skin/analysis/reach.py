@@ -1,7 +1,5 @@
 """Which cells have no way to the PC at the end of a run: cut off, seeking one, switched off."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

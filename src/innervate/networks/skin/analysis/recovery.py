@@ -1,7 +1,5 @@
 """How a skin recovers from each of its scenario's events: detected, converged, routed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

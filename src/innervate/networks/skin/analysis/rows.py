@@ -3,8 +3,6 @@
 All functions take a `sim.simulate.Result`; times are in us of true time.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The summary of a skin's run: what a person wants to know of it, as plain numbers and words."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

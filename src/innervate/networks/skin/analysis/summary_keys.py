@@ -1,7 +1,5 @@
 """The keys of a skin's summary."""
 
-from __future__ import annotations
-
 from typing import Literal, TypedDict, final
 
 from innervate.analysis.summary_common import Common

@@ -1,7 +1,5 @@
 """The touch as the cells felt it and as the PC had it: a lost sample is a hole in the image."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A skin as a capture: every cabled port is an interface."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.export import cabled

@@ -1,7 +1,5 @@
 """A skin out of a capture: who is cabled to whom, how soon, how well; and as a scenario."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A skin's cables as a graph."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.export.cabled import edges

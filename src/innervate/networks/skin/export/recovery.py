@@ -5,8 +5,6 @@ route at every moment. What was hurt is said by the capture itself: frames onto 
 that went away and came back.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Cables of a skin that was captured, and the ways that its cells' parents make."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from innervate.networks.skin import frames as skin

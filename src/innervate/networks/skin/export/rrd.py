@@ -1,7 +1,5 @@
 """A skin in space: cells where they lie and the way they face, and what each of them did."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A skin in a recording: cells as balls, lines to their parents, the touch as it was received."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 

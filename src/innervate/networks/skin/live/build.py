@@ -1,7 +1,5 @@
 """From a node file to a cell, or to the PC."""
 
-from __future__ import annotations
-
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine

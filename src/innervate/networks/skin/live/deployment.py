@@ -1,7 +1,5 @@
 """Node files of a skin's plan: its cells, and the PC, which is the last."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

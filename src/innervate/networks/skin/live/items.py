@@ -1,7 +1,5 @@
 """What goes in and out at the ends of a live skin: samples, commands; and their ranges."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.dialect import plain

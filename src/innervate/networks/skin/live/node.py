@@ -1,7 +1,5 @@
 """The skin on live cables: a cell that senses, and the PC that all touch comes to."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncGenerator, Callable
 from typing import Any

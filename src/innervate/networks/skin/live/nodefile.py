@@ -1,7 +1,5 @@
 """Node files of a skin."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar
 
 from msgspec import Meta

@@ -1,7 +1,5 @@
 """Parameters of a live skin; whole numbers."""
 
-from __future__ import annotations
-
 from innervate.live.parameters import check_parameters
 from innervate.networks.skin.protocol.constants import RULE_FEASIBLE, WAVE
 from innervate.networks.skin.protocol.fields import PARAMS

@@ -1,7 +1,5 @@
 """The skin on live cables: a cell with its four ports, and the PC, as an engine runs them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.dialect import plain

@@ -1,7 +1,5 @@
 """What running cells and their PC say of themselves, as `innervate live` prints it."""
 
-from __future__ import annotations
-
 from datetime import datetime
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Mistakes that a proof must refute, beside those of the explorer's that concern an invariant."""
 
-from __future__ import annotations
-
 from innervate.prove.theory import Fault
 
 EXPLORERS = True  # all of the explorer's mutants are refuted, too

@@ -4,8 +4,6 @@ Each step starts from any state that satisfies the invariants, with whatever a n
 sent, and has to end in such a state. What neighbours meanwhile do to it is a step of its own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

@@ -7,8 +7,6 @@ may be taken for one that cannot be had, wherever the handler asks; that it is s
 places is a goal, too.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable
 from functools import partial

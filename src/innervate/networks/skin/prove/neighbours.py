@@ -5,8 +5,6 @@ one, and whether what this cell has of it may be older than that it forgot one. 
 how many cells there are, nor of how they are joined.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 Proved for up to four ports; every port is treated alike, and none is read for another.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

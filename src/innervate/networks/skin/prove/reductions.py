@@ -6,8 +6,6 @@ changes nothing, and, by two runs of a handler side by side, that without balanc
 anything.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any

@@ -4,8 +4,6 @@ That is so because a cell's choice is up to date between any two events (K1 .. K
 handler that the explorer calls keeps; so there is nothing that hearing the same again could bring.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any

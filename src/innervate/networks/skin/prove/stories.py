@@ -4,8 +4,6 @@ Both run the protocol's own handlers. Under `paper` they can with nothing but tw
 `strict` only where the PC's number goes back; under `feasible` not at all.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

@@ -5,8 +5,6 @@ who reach the PC through it have numbers no newer than its own; so none of them 
 Conditions: the PC is not restarted, and a cable keeps the order of its frames.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

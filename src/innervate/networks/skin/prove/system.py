@@ -5,8 +5,6 @@ own step does to its feasible distance leaves this cell's invariants standing. T
 the ways in which it moves is what F, F1 and W1 .. W3 say of the neighbour's handlers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """What `innervate prove` claims of a skin, and what it must refute."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

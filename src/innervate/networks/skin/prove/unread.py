@@ -5,8 +5,6 @@ does not read; the number of a cell without a route; the penalty of a port that 
 what a PC hears that it knows already.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """What refutes a claim about cells, told of the two cells it concerns."""
 
-from __future__ import annotations
-
 from innervate.networks.skin.protocol.constants import INFINITY, NONE, PORTS
 from innervate.prove.records import Record, Store
 from innervate.prove.solve import Question

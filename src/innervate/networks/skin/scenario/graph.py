@@ -1,7 +1,5 @@
 """From a scenario's tables to its graph."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -4,8 +4,6 @@ What one key alone cannot show is checked in rules.py; what needs the network, i
 targets.py.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta

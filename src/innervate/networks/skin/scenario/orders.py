@@ -1,7 +1,5 @@
 """Commands that the PC sends down to the cells: [[command]] tables as orders at their times."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from innervate.networks.skin.scenario.graph import cell_at

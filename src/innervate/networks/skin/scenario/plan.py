@@ -1,7 +1,5 @@
 """The plan of a run: the graph and whole numbers only. Floats end here."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor

@@ -1,7 +1,5 @@
 """What the tables of a scenario must hold together, as far as no network is needed to see it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import ceil
 

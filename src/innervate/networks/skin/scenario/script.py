@@ -13,8 +13,6 @@
 With `keepalive` every cable that `detect` does not name has brought something before each tick.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from innervate.networks.skin.scenario.graph import node_and_port

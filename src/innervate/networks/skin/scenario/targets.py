@@ -1,7 +1,5 @@
 """Whom an event means: the end of a cable or a node, named or drawn from the seed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from innervate.networks.skin.scenario.graph import cell_at, node_and_port, numbered, port_at

@@ -1,7 +1,5 @@
 """What makes a skin's scenario weaker than it looks, told before it runs."""
 
-from __future__ import annotations
-
 from math import ceil
 
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan

@@ -1,7 +1,5 @@
 """A skin scenario in a few lines, without running it."""
 
-from __future__ import annotations
-
 from innervate.analysis.words import number_of
 from innervate.networks.skin.scenario.foreseen import foreseen
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan

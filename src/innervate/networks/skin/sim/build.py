@@ -1,7 +1,5 @@
 """From a skin's plan to a world: its records, what its observer keeps, what its cells feel."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ Nothing happens by itself. Timers and frames on their way lie in the event queue
 one it names and has it handled. A step takes a millisecond, so that rows have a time.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.dialect import plain

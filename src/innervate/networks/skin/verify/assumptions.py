@@ -7,8 +7,6 @@ without a route is told of every refused route there can be in small numbers, in
 a tick, and must not take it.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterator
 from itertools import product

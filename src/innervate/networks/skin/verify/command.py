@@ -1,7 +1,5 @@
 """What `innervate verify skin` does: which explorations, and what it says of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 from typing import Any

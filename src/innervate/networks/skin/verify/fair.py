@@ -5,8 +5,6 @@ arrives before the next one ticks. A round leads from a set of states to the set
 are not settled yet, by every order of the nodes; the set has to be empty after the bound.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """Skins drawn from one number: patches, settings, faults."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Small skins: all connected graphs of a PC and a few cells, one of each shape; symmetries."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import combinations, permutations
 

@@ -1,7 +1,5 @@
 """Where everything stands in a row: a state of a skin as bytes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.skin.protocol.constants import NONE, PORTS

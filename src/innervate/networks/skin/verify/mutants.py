@@ -1,7 +1,5 @@
 """The skin's explorer can fail: it runs on copies of the protocol with a small mistake in each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from innervate.networks.skin.verify import assumptions, fair, graphs, story

@@ -1,7 +1,5 @@
 """Events of a counterexample, played on the whole network and put into words."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

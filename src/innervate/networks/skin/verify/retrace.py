@@ -5,8 +5,6 @@ that are reduced to the next one are looked for: some steps of the path may take
 of which all but one deliver what the reduced search has forgotten.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from innervate.networks.skin.verify import reduction

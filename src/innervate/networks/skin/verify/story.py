@@ -5,8 +5,6 @@ story is told of a network without either: every event is looked up again, and w
 delivered frame by frame.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

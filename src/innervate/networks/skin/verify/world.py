@@ -5,8 +5,6 @@ flight on every direction of every cable, oldest first. One byte holds one numbe
 symmetries of a graph are plain permutations of bytes.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from innervate.sim.tables import Out

@@ -1,7 +1,5 @@
 """A skin that can be touched while it is watched."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from innervate.networks.skin.scenario.orders import Order

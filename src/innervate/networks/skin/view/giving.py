@@ -1,7 +1,5 @@
 """Commands of the PC that are given by hand to a simulated skin, and what became of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A running skin on the page: its cells, the PC by its ports, who sends to whom."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

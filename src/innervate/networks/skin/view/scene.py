@@ -1,7 +1,5 @@
 """Where the cells and interface ports of a skin are drawn, in cell pitches."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What the tables of a running skin say of all its cells at once."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

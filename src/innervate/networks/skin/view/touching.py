@@ -4,8 +4,6 @@ A scenario's touch is a path, sampled to steps before the run. A hand moves what
 the next step on, and what it did is written as a path again that gives the same samples.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a simulated skin looks like."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
