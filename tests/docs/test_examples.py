@@ -118,9 +118,10 @@ def test_standby_or_posts(monkeypatch, capsys, tmp_path):
     shares = [[float(cell.split()[-1]) for cell in row.split("%")[:-1]] for row in rows]
     assert len(shares) == 6
     for row, (letter, _routed, search, graph) in enumerate(shares):
-        assert search >= 80
-        # Four alarms in one field: where nobody is dead, at first, all may come by the letter, too.
-        assert letter < 80 <= graph or (row % 3 == 0 and letter <= graph)
+        # Four alarms in one field: one of them may be late, and where nobody is dead, at first, all
+        # may come by the letter, too.
+        assert min(search, graph) >= 75
+        assert letter < 75 or (row % 3 == 0 and letter <= graph)
     assert sum(letter for letter, *_ in shares) < 50 * len(shares)
     without, with_one = (
         [line for line in lines if f"{which} standby" in line]
