@@ -148,8 +148,8 @@ def tell_round(node, params, now, out):
         if i >= 0:
             for _ in range(node.depth - 1):
                 add_hop(node, i)
-            step = params.jitter_us >> 2
-            node.q_due[i] = (now + step * node.depth + draw(node, step + 1)) & MASK30
+            quarter = params.jitter_us >> 2
+            node.q_due[i] = (now + quarter * node.depth + draw(node, quarter + 1)) & MASK30
 
 
 def compose_request(node, params, now, rank, flags, out):
