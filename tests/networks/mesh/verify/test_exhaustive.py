@@ -29,16 +29,16 @@ MESSAGES = [
     ("line", "search", {"robot": 2, "budget": CALM}, 16_658),
 ]
 GATEWAYS = [
-    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 74_962),
+    ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 75_908),
     ("line", "search", {"standby": (2,), "beats": 6, "budget": LOSSES}, 69_676),
-    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 47_038),
+    ("triangle", "search", {"standby": (1, 2), "beats": 6, "budget": RETURNS}, 47_717),
 ]
 ASKING = [
     (links, "search", {"standby": standby, "beats": 3, "budget": budget, "settings": ASKED}, states)
     for links, standby, budget, states in (
         ("line", (2,), DEATH, 10_899),
         ("line", (2,), LOSS, 67_788),
-        ("line", (2,), RETURNS, 280_220),
+        ("line", (2,), RETURNS, 282_168),
         ("triangle", (1, 2), DEATH, 34_358),
     )
 ]
