@@ -242,10 +242,15 @@ def test_every_draw_out_of_few_is_tried_with_every_other():
 
 @pytest.mark.parametrize(("path", "broken"), [
     ([], 0), ([1], 0), ([1, 2, 1], 0), ([1, 2, 1, 2], local.BROKEN_ROUND),
-    ([0, 1, 2, 0, 1], local.BROKEN_ROUND), ([0, 1, 2, 0, 2], 0), ([2, 2, 2, 2], 0),
+    ([0, 1, 2, 0, 1], local.BROKEN_ROUND), ([0, 1, 2, 0, 2], 0), ([2, 2, 2], local.BROKEN_ROUND),
 ])  # fmt: skip
 def test_a_packet_that_takes_a_hop_twice_goes_round(path, broken):
-    assert local.goes_round(Of(path=bytes(path))) == broken
+    assert local.goes_round(Of(path=bytes(path), kind=const.DATA)) == broken
+
+
+def test_a_request_that_is_said_again_has_its_sender_in_its_path_for_each_hop():
+    assert local.goes_round(Of(path=bytes([2, 2, 2, 2]), kind=const.REQUEST)) == 0
+    assert local.goes_round(Of(path=bytes([1, 2, 1, 2]), kind=const.REQUEST)) == local.BROKEN_ROUND
 
 
 def test_what_is_broken_has_a_number_of_its_own_each():

@@ -128,7 +128,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 | off        | on, `rank` 0, first time        | `on_start`, `lead`: an epoch     | leads          |
 |            |                                 | nobody has had                   |                |
 | off        | on, else                        | `on_start`                       | unknown        |
-| unknown    | `TICK`, the 2nd, 4th, 8th, ...  | `ask_round`: `REQUEST` of `ALL`  |                |
+| unknown    | `TICK` 2, 4, 8, ...; 1: `rank` 0| `ask_round`: `REQUEST` of `ALL`  |                |
 | any other  | a `REQUEST` of `ALL`            | `tell_round`: ours once more     |                |
 | a `rank`   | `TICK`, it led, neighbours say  | `on_tick`, `tick`, `lead`        | leads          |
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |

@@ -296,5 +296,7 @@ def goes_round(packet: Packet) -> int:
 
     Whoever says a request again puts its own number into the path once for each hop of its depth.
     """
-    hops = [hop for hop in zip(packet.path, packet.path[1:], strict=False) if hop[0] != hop[1]]
+    hops = list(zip(packet.path, packet.path[1:], strict=False))
+    if packet.kind == const.REQUEST:
+        hops = [(a, b) for a, b in hops if a != b]
     return BROKEN_ROUND if len(set(hops)) < len(hops) else 0
