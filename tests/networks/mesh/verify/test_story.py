@@ -130,7 +130,7 @@ def test_a_story_says_what_is_broken_and_between_whom_a_packet_goes():
 @pytest.mark.parametrize(("dest", "shown"), [(1, 1), (2, 2), (3, 0), (254, 0)])
 def test_a_packet_that_goes_round_is_shown_on_its_way_to_its_recipient(dest, shown):
     """Or to node 0 where that is who leads, whoever it is."""
-    gone = SimpleNamespace(path=[0, 1, 0, 1], path_len=4, dest=dest)
+    gone = SimpleNamespace(kind=const.DATA, path=[0, 1, 0, 1], path_len=4, dest=dest)
 
     def handed(number):
         return 0 if number == 12 else story.NONE
