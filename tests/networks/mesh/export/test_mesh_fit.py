@@ -1,10 +1,13 @@
 """A mesh's tables out of made-up measurements whose answers are known beforehand."""
 
+from types import SimpleNamespace as Of
+
 import pytest
 
 from innervate.export.measure import Way
 from innervate.networks.mesh.export import fit
 from innervate.networks.mesh.export.fit import Flow, Mesh
+from innervate.networks.mesh.protocol.constants import ALL, REQUEST
 
 # Bytes on the air before a frame's own, and us a byte, as the data sheets have it.
 RADIOS = {"250k": (6, 32.0), "38k4": (8, 8 / 0.0384)}
@@ -26,6 +29,15 @@ def test_links_have_a_quality_each_way_and_none_where_nothing_was_heard():
 @pytest.mark.parametrize(("gateway", "told"), [(3, "n3"), (-1, None), (5, None)])
 def test_the_gateway_is_one_of_the_nodes_or_nobody(gateway, told):
     assert fit.tables_of(mesh({(3, 7): (1, 0)}, gateway=gateway)).get("gateway") == told
+
+
+@pytest.mark.parametrize(("named", "seen"), [(4, 4), (ALL, -1)])
+def test_the_gateway_is_whom_a_request_names_and_not_who_says_it_again_or_asks(named, seen):
+    reader = fit.Reader.__new__(fit.Reader)
+    reader.found = Mesh()
+    reader.frame = Of(kind=REQUEST, link_src=2, origin=2, body=[named])
+    reader._look(None)
+    assert reader.found.gateway == seen
 
 
 def test_flows_are_those_between_nodes_that_were_seen():
