@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from innervate.live import noise
-from innervate.live.contact import REKEY_US
 from innervate.live.keyring import PROLOGUE, About
+from innervate.live.session import REKEY_US
 from innervate.wire import seal
 from tests.firmware import in_c
 from tests.live import time_by_hand

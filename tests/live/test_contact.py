@@ -3,8 +3,9 @@
 import pytest
 
 from innervate.cli import live_status
-from innervate.live.contact import KNOCKS, REKEY_US
+from innervate.live.contact import KNOCKS
 from innervate.live.knocks import ANSWERED, SHUT_S
+from innervate.live.session import REKEY_US
 from innervate.wire import seal
 from tests.live import time_by_hand
 from tests.live.net import Mesh

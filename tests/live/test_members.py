@@ -5,11 +5,10 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.live import group, noise
-from innervate.live.contact import REKEY_US
 from innervate.live.engine import clock_us
 from innervate.live.group import CALL_US, CALLS, SEEK_US, GroupContact
 from innervate.live.keyring import ANYBODY, LIFE_BYTES, About, Proven, read_about
-from innervate.live.session import COUNTERS
+from innervate.live.session import COUNTERS, REKEY_US, Session
 from tests.live.pair import Wire, begin, join, network_sealer, own_sealer, settle
 from tests.live.test_rotation import timed
 
@@ -28,10 +27,10 @@ def member(number=1):
 
 
 def session(number, age_us=0, life=1):
-    return SimpleNamespace(
-        who=who(number, life), made_at=clock_us() - age_us, counter=0, own=number,
-        is_initiator=True, heard_at=1, proof=b"",
-    )  # fmt: skip
+    keys = (key(number), key(number))
+    one = Session(number, number, keys, who(number, life), clock_us() - age_us, True)
+    one.heard_at = 1
+    return one
 
 
 def key(number):

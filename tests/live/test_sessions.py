@@ -7,10 +7,9 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.live import contact
-from innervate.live.contact import REKEY_US, is_worn
 from innervate.live.keyring import is_same_end
 from innervate.live.rotation import Rotation
-from innervate.live.session import COUNTERS
+from innervate.live.session import COUNTERS, REKEY_US, Session
 from innervate.wire import seal
 from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, settle, two
 from tests.live.test_rotation import timed
@@ -38,7 +37,7 @@ def asked(wire):
 )
 def test_who_began_a_session_has_it_made_anew_first(age_us, counter, began, worn):
     session = SimpleNamespace(made_at=5, counter=counter, is_initiator=began)
-    assert is_worn(session, 5 + age_us) == worn
+    assert Session.is_worn(session, 5 + age_us) == worn
 
 
 @pytest.mark.parametrize(
@@ -90,6 +89,22 @@ async def test_a_session_is_asked_for_anew_once_nothing_comes_back():
     b.frame(b"and answered")
     await settle(50.0)
     assert len(asked(a)) == begun
+
+
+@timed
+async def test_a_path_on_which_nothing_goes_is_looked_after_rarely_until_something_does():
+    a, b = await two()
+    looks = []
+    contact_of(a).path.let_in = lambda *_: looks.append(asyncio.get_running_loop().time())
+    await settle(100.0)
+    assert len(looks) <= 100 / contact.Contact.rest_s + 2
+    looks.clear()
+    for _ in range(50):
+        b.frame(b"heard")
+        await settle(0.2)
+    gaps = [after - before for before, after in pairwise(looks)]
+    assert len(looks) > 10
+    assert max(gaps) <= 2 * contact.IDLE_S
 
 
 @timed

@@ -17,7 +17,7 @@ from innervate.live.knocks import ANSWERED, Knocks
 from innervate.live.links import Path
 from innervate.live.machine import machine
 from innervate.live.noise import KEY_BYTES, Broken, Handshake
-from innervate.live.session import COUNTERS, Session
+from innervate.live.session import COUNTERS, REKEY_US, Session
 from innervate.wire import seal
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ WAIT_MAX_S = 1.0
 IDLE_S = 0.5  # between looks at a session that is well
 PROOF_US = 2_000_000  # a session in which nothing was heard for so long never came about
 SILENT_US = 3_000_000  # nothing was heard while we send: the neighbour may have lost the session
-REKEY_US = 600_000_000
 OLD_US = 3 * REKEY_US  # an older session is not taken any more
 ASKED = 4  # of our questions may be answered late
 ANSWERS = 8  # of ours are remembered
@@ -60,6 +59,7 @@ class Contact:
     """
 
     most_knocks = KNOCKS
+    rest_s = 10.0  # between looks while nothing is sent or heard
 
     def __init__(self, sealer: Sealer, path: Path) -> None:
         self.sealer, self.path = sealer, path
@@ -73,6 +73,7 @@ class Contact:
         self._timer: asyncio.TimerHandle | None = None
         self._wait_s = WAIT_S
         self._sent_at = 0  # first frame since something was heard, us
+        self._rests = False  # nothing was sent or heard since the last look
         self._due: set[int] = set()  # neighbours who are to prove themselves with another key
 
     def start(self) -> None:
@@ -110,12 +111,23 @@ class Contact:
                 else:
                     self._prove(session)
                     wait_s = WAIT_S
-        if self._wants_session(now):
+        is_asking = self._wants_session(now)
+        if is_asking:
             self.ask(ANYBODY)
             wait_s = self._wait_s * (0.75 + machine().chance.random() / 2)
             self._wait_s = min(2 * self._wait_s, WAIT_MAX_S)
+        elif self._rests and not self._sent_at and wait_s == IDLE_S:
+            wait_s = self.rest_s
+        self._rests = not is_asking and wait_s >= IDLE_S
         self.listen()
         self._timer = asyncio.get_running_loop().call_later(wait_s, self.beat)
+
+    def _stir(self) -> None:
+        """Something is sent or heard: look again soon."""
+        if self._rests and self._timer is not None:
+            self._timer.cancel()
+            self._timer = asyncio.get_running_loop().call_later(IDLE_S, self.beat)
+        self._rests = False
 
     def listen(self) -> None:
         """Say to the path what is taken: nobody has to read the rest."""
@@ -143,11 +155,8 @@ class Contact:
 
     def _wants_session(self, now: int) -> bool:
         session = self._current
-        if session is None or self._due:
-            return True
-        if self._sent_at and now - self._sent_at > SILENT_US:
-            return True
-        return is_worn(session, now)
+        is_silent = self._sent_at > 0 and now - self._sent_at > SILENT_US
+        return session is None or bool(self._due) or is_silent or session.is_worn(now)
 
     def ask(self, whom: int) -> None:
         """Begin a handshake with somebody, or with anybody."""
@@ -171,6 +180,7 @@ class Contact:
             return None
         if not self._sent_at:
             self._sent_at = clock_us()
+        self._stir()
         return session.close(data)
 
     def send(self, data: bytes) -> None:
@@ -205,6 +215,7 @@ class Contact:
             if not session.is_initiator:
                 self._up(session)
         session.heard_at = clock_us()
+        self._stir()
 
     def control(self, session: Session, data: bytes) -> None:
         """The neighbour says something below the protocol."""
@@ -386,9 +397,3 @@ class Contact:
             index: int = machine().chance.getrandbits(32)
             if index not in self._by_index and index not in self._asked:
                 return index
-
-
-def is_worn(session: Session, now: int) -> bool:
-    """True if a new session should take this one's place; who began it asks for it first."""
-    late = REKEY_US if session.is_initiator else REKEY_US * 6 // 5
-    return now - session.made_at > late or session.counter > COUNTERS // 2

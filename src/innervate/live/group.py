@@ -14,7 +14,7 @@ from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
-from innervate.live.contact import ALIVE, ANSWER, HELD_US, KNOCKS, Contact, is_worn
+from innervate.live.contact import ALIVE, ANSWER, HELD_US, IDLE_S, KNOCKS, Contact
 from innervate.live.engine import clock_us
 from innervate.live.identity import SIGNATURE_BYTES, is_signed
 from innervate.live.keyring import ANYBODY, KEY_BYTES, About, Proven
@@ -48,6 +48,7 @@ class GroupContact(Contact):
     """What the node of a sealer knows of the members of a group, on the group's path."""
 
     most_knocks = 4 * KNOCKS  # many members may come at once
+    rest_s = IDLE_S  # there is always somebody to call
 
     def __init__(self, sealer: Sealer, path: Path) -> None:
         super().__init__(sealer, path)
@@ -152,7 +153,7 @@ class GroupContact(Contact):
     def _wants_session(self, now: int) -> bool:
         """Ask members whose sessions are worn or of an old key; then whether to call all."""
         for session in self.all_sessions():
-            if session.who.number in self._due or is_worn(session, now):
+            if session.who.number in self._due or session.is_worn(now):
                 self.ask(session.who.number)
         if self._counter > COUNTERS // 2:
             self.renew()

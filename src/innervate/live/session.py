@@ -8,6 +8,7 @@ from innervate.live.noise import nonce
 from innervate.wire import seal
 
 COUNTERS = seal.COUNTER_MAX - 1000  # then nothing is sealed any more
+REKEY_US = 600_000_000
 
 
 class Session:
@@ -55,3 +56,8 @@ class Session:
             return self._in.decrypt(nonce(counter), data[seal.HEADER_BYTES :], head)
         except InvalidTag:
             return None
+
+    def is_worn(self, now: int) -> bool:
+        """True if a new one should take its place; who began this one asks for it first."""
+        late = REKEY_US if self.is_initiator else REKEY_US * 6 // 5
+        return now - self.made_at > late or self.counter > COUNTERS // 2

@@ -36,13 +36,15 @@ class UdpPath(Path):
             self.ends = (here, f"{address[0]}:{address[1]}")
         self.link = link
         self.address = address
+        self.doors: Doors | None = None
         self.filter = of_peer(address)
 
     def let_in(self, anybody: Ranges, known: Mapping[int, int]) -> None:
         """Have the system drop the rest, if it can."""
-        steps = self.link.filter_of(self, Doors(anybody, known))
-        if steps != self.filter:
-            self.filter = steps
+        doors = Doors(anybody, known)
+        if doors != self.doors:
+            self.doors = doors
+            self.filter = self.link.filter_of(self, doors)
             self.link.guard()
 
     def bound_ends(self) -> tuple[str, str]:
