@@ -128,6 +128,8 @@ USUAL = {lossy: 4, doubled: 2, changing: 2, late: 2, sluggish: 1, cut: 4, flappi
          rotation: 1, replays: 2}  # fmt: skip
 SEALED = (rotation, replays)
 OPEN_ONLY = (full,)  # see test_known.py
+EVERY_S = (0.3, 1.0, 4.0)
+RARELY = 60  # so much more time passes between them where a mesh is slow
 BY_NAME = {hurt.__name__: hurt for hurt in USUAL}
 
 
@@ -139,7 +141,7 @@ def storm(stage, seconds):
     usual = {one: weight for one, weight in USUAL.items()
              if (one.__name__ in named if named is not None
                  else one not in (OPEN_ONLY if stage.plan.sealed else SEALED))}  # fmt: skip
-    at_s, every_s = 0.0, stage.chance.choice((0.3, 1.0, 4.0))
+    at_s, every_s = 0.0, stage.chance.choice(EVERY_S) * (RARELY if stage.plan.slow > 1 else 1)
     while usual and at_s < seconds:
         hurt = stage.chance.choices(list(usual), list(usual.values()))[0]
         stage.world.after(at_s, hurt, stage)
@@ -153,7 +155,9 @@ def over(stage):
 
 
 def _while(stage):
-    return stage.chance.choice((0.05, 0.5, 2.0, 10.0)) * stage.chance.uniform(0.5, 1.5)
+    some_s = stage.chance.choice((0.05, 0.5, 2.0, 10.0)) * stage.chance.uniform(0.5, 1.5)
+    slow = stage.plan.slow
+    return some_s * slow if slow > 1 and stage.chance.random() < 0.5 else some_s
 
 
 def _for_a_while(stage, ways, name, value, both=False):

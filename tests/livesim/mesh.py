@@ -10,9 +10,11 @@ from tests.livesim.host import TERM
 from tests.livesim.stage import GRACE_S, Stage
 from tests.livesim.world import SECOND, PowerCut, inside
 
-AGAIN_S = 45.0  # so long after all is whole again everybody reaches everybody
+AGAIN_S = 15.0  # so long, and these ticks, after all is whole everybody reaches everybody
+AGAIN_TICKS = 120
 ENDS_S = 60.0  # a message has its end, if its sender lives
 GONE_S = 30.0  # a message to a node that is not there has its end
+TICK_US = 250_000
 ALL = 255
 PIECES_MOST = 16 * 65_536  # bytes of messages that a node puts together
 PIECES_EACH = 2  # of a sender
@@ -32,6 +34,7 @@ class Plan:
         rate: messages a second, of all nodes.
         long: share of messages that are longer than a frame.
         in_c: every so many-th node runs its protocol as C; 0 = none does.
+        slow: by how much its ticks are longer than usual.
     """
 
     def __init__(self, world, **given):
@@ -51,6 +54,7 @@ class Plan:
         self.mtu = longer.choice((127, 127, 1200))
         self.long = longer.choice((0.0, 0.05, 0.3))
         self.in_c = 0
+        self.slow = 1
         self.old_lives = False  # what a process received is played back to those after it, too
         for name, value in given.items():
             assert hasattr(self, name), name
@@ -58,6 +62,23 @@ class Plan:
         self.links = links(chance, self.nodes)
         if self.multicast:
             self.links = list(combinations(range(self.nodes), 2))
+
+
+class Weeks(Plan):
+    """A mesh with beacons 5 to 15 s apart, as on batteries: hours of hurts, then hours of calm."""
+
+    def __init__(self, world, **given):
+        chance = world.chance("weeks")
+        slow = {
+            "nodes": chance.choice((5, 6, 8)),
+            "slow": chance.choice((20, 40, 60)),
+            "sealed": chance.random() < 0.5,
+            "storm_s": 3600 * chance.choice((1, 6)),
+            "calm_s": 3600 * chance.choice((6, 24, 72)),
+            "rate": chance.choice((0.005, 0.02, 0.1)),
+            "standbys": chance.randint(0, 2),
+        }
+        super().__init__(world, **slow | given)
 
 
 def links(chance, count):
@@ -77,6 +98,7 @@ class Mesh(Stage):
     def __init__(self, world, plan):
         super().__init__(world, plan)
         self.messages = Messages(self, ENDS_S)
+        self.look_s = 0.2 * plan.slow
         self.places = {}
         self.is_sending = False
         self.lengths = world.chance("lengths")
@@ -91,7 +113,8 @@ class Mesh(Stage):
             head["rank"] = number
         if plan.in_c and number % plan.in_c == 0:
             head["engine"] = "c"
-        tables = {"protocol": {"mtu": plan.mtu}, "deliver": {"in_order": plan.in_order}}
+        protocol = {"mtu": plan.mtu, "tick_us": TICK_US * plan.slow}
+        tables = {"protocol": protocol, "deliver": {"in_order": plan.in_order}}
         return files.text(head, tables | self.key_tables(), self.links(number))
 
     def listen(self, number, life):
@@ -106,7 +129,7 @@ class Mesh(Stage):
     def begin(self):
         """Start all nodes, and users who send."""
         super().begin()
-        self.world.after(0.2, self._look)
+        self.world.after(self.look_s, self._look)
         self.world.after(1.0, self._send_some)
 
     def _look(self):
@@ -114,7 +137,8 @@ class Mesh(Stage):
         for host in self.hosts:
             if host.life is not None:
                 self._look_at_pieces(host.life)
-        self.world.after(0.2, self._look)
+        self.messages.forget()
+        self.world.after(self.look_s, self._look)
 
     def _look_at_pieces(self, life):
         """What a node puts together is bounded, for each sender and in all."""
@@ -163,6 +187,10 @@ class Mesh(Stage):
         sent.receipt = receipt if dest != ALL else None
         self.messages.accepted(sent)
         return sent
+
+    def again_s(self):
+        """How long after all is whole everybody reaches everybody."""
+        return AGAIN_S + AGAIN_TICKS * self.plan.slow * TICK_US / 1e6
 
     def everybody_reaches_everybody(self):
         """Messages between all, or many, pairs: what was sent."""

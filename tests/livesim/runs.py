@@ -55,8 +55,12 @@ def kind_of(seed):
     return kinds[seed % len(kinds)]
 
 
-def _mesh(world, watch, told, given):
-    plan = mesh.Plan(world, **given)
+def _weeks(world, watch, told, given):
+    _mesh(world, watch, told, given, mesh.Weeks)
+
+
+def _mesh(world, watch, told, given, plan_of=mesh.Plan):
+    plan = plan_of(world, **given)
     stage = mesh.Mesh(world, plan)
     watch(stage.net)
     told["what"] = f"mesh of {plan.nodes}, {len(plan.links)} links" + _words(plan)
@@ -79,7 +83,7 @@ def _mesh_storm(world, stage):
     world.run(plan.storm_s)
     hurts.over(stage)
     stage.is_sending = False
-    world.run(mesh.AGAIN_S)
+    world.run(stage.again_s())
     sent = stage.everybody_reaches_everybody()
     world.run(10.0)
     stage.check_reach(sent)
@@ -143,4 +147,4 @@ def _words(plan):
     return "".join(f", {name.replace('_', ' ')}" for name in how if getattr(plan, name, False))
 
 
-KINDS = {"mesh": _mesh, "radio": _radio, "skin": _skin}
+KINDS = {"mesh": _mesh, "radio": _radio, "skin": _skin, "weeks": _weeks}

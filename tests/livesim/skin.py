@@ -30,6 +30,7 @@ class Plan:
         self.calm_s = chance.choice((0, 60, 300))
         self.delay_us = (50, 300)
         self.in_c = 0
+        self.slow = 1
         self.old_lives = False
         for name, value in given.items():
             assert hasattr(self, name), name

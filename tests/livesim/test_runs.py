@@ -55,6 +55,14 @@ def test_in_order_with_restarting_recipients_delivered_means_handed_up(seed):
     assert found.told["delivered"] > 500
 
 
+def test_a_slow_mesh_that_runs_for_days_keeps_what_it_promises():
+    found = runs.run(3, "weeks", storms=1, storm_s=3600, calm_s=7200, slow=60, nodes=5, rate=0.05)
+    assert found.broken == []
+    assert found.seconds > 3 * 3600
+    assert found.told["delivered"] > 100
+    assert found.told["lives"] > 10
+
+
 def test_a_seed_shows_the_same_again():
     assert hurt(1) == runs.run(1, "mesh", **SMALL)
     assert hurt(1).fingerprint != hurt(2).fingerprint
