@@ -36,29 +36,23 @@ def plan(scenario: Any) -> MeshPlan:
     Raises:
         ScenarioError: it cannot be run as written.
     """
-    model: MeshScenario = scenario.model
-    source = scenario.source
+    model, network, cluster = _site(scenario)
+    nodes, fence = network.nodes, model.fence
+    count = len(nodes.names)
     duration_us = max(1, round(model.duration_s * 1e6))
-    nodes = nodes_of(model, source)
-    network = _network(model, nodes, profile_of(model.radio.profile, len(nodes.names)))
-    cluster = None
-    if model.clusters is not None:
-        model, network, cluster = clusters.cut(model, network)
-        nodes = network.nodes
-    profile = profile_of(model.radio.profile, len(nodes.names))
-    profile = suited(model, profile, len(nodes.names))
+    profile = suited(model, profile_of(model.radio.profile, count), count)
     ranks = _ranks(model, network)
     gateway = ranks.index(0)
     monitor = MONITOR if model.monitor == "gateway" else nodes.number(("monitor",), model.monitor)
     roles = {"gateway": gateway, "monitor": gateway if monitor == MONITOR else monitor}
     params = _parameters(model, network, profile, monitor)
     if model.protocol.failover == "auto":
-        near = neighbours(len(nodes.names), network.good)
+        near = neighbours(count, network.good)
         params["mode"] = less_of_both(network.radio, params, near, gateway)
     walks = mesh_robots.walks(model, nodes, network.points, duration_us)
-    if model.fence is not None:
+    if fence is not None:
         visited = [(x, y) for walk in walks for _, x, y in walk.points]
-        params |= mesh_fence.parameters(source, model.fence, visited, len(walks))
+        params |= mesh_fence.parameters(scenario.source, fence, visited, len(walks))
     flows = mesh_traffic.pairs(model, nodes, gateway, monitor)
     robots = {walk.node for walk in walks}
     spared = {*roles.values(), *robots, *_ends(model, flows)}
@@ -68,12 +62,12 @@ def plan(scenario: Any) -> MeshPlan:
         kind="mesh",
         seed=scenario.seed,
         duration_us=duration_us,
-        nodes=len(nodes.names),
+        nodes=count,
         capacity=params["width"],
         names=nodes.names,
         params=params,
         ranks=ranks,
-        robots=[int(node in robots) for node in range(len(nodes.names))],
+        robots=[int(node in robots) for node in range(count)],
         absent=mesh_events.absent(model, nodes, roles),
         starts_us=_starts(model, ranks),
         mac=mac,
@@ -82,14 +76,22 @@ def plan(scenario: Any) -> MeshPlan:
         positions_cm=network.points,
         good=network.good,
         walks=walks,
-        sample_us=round(1e6 / model.fence.sample_hz) if model.fence is not None else 20_000,
-        origin_cm=mesh_fence.origin_of(mesh_fence.rings_cm(model.fence)) if model.fence else (0, 0),
-        offers=mesh_traffic.offers(
-            model, nodes, flows, profile.settled, duration_us, params["mtu"]
-        ),
+        sample_us=round(1e6 / fence.sample_hz) if fence else 20_000,
+        origin_cm=mesh_fence.origin_of(mesh_fence.rings_cm(fence)) if fence else (0, 0),
+        offers=mesh_traffic.offers(model, nodes, flows, profile.settled, duration_us, params["mtu"]),
         faults=mesh_events.faults(model, nodes, network.good, spared, roles, profile.rssi50_cdb),
         cluster=cluster,
     )
+
+
+def _site(scenario: Any) -> tuple[MeshScenario, Network, Any]:
+    """Where nodes stand, and of several meshes the one that runs: what is its, and which it is."""
+    model: MeshScenario = scenario.model
+    nodes = nodes_of(model, scenario.source)
+    network = _network(model, nodes, profile_of(model.radio.profile, len(nodes.names)))
+    if model.clusters is None:
+        return model, network, None
+    return clusters.cut(model, network)
 
 
 def _ends(model: MeshScenario, flows: list[list[tuple[int, int]]]) -> set[int]:

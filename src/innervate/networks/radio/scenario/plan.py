@@ -100,8 +100,6 @@ def parameters(
 ) -> dict[str, int]:
     """Derived times of CSMA/CD-R; names and reasons in docs/radio.md [radio 4, radio-practical 2].
 
-    What baselines need besides comes from `baselines.baseline`.
-
     Args:
         packet_slots: T, length of the longest packet, 3 .. 4095.
         turnaround_us: ta, from deciding to send to being on the air, and back.
