@@ -56,7 +56,8 @@ def plan(scenario: Any) -> MeshPlan:
     flows = mesh_traffic.pairs(model, nodes, gateway, monitor)
     robots = {walk.node for walk in walks}
     spared = {*roles.values(), *robots, *_ends(model, flows)}
-    mac, mac_params = access(model, network, profile, params["mtu"], walks)
+    mtu = params["mtu"]
+    mac, mac_params = access(model, network, profile, mtu, walks)
     return MeshPlan(
         scenario=scenario,
         kind="mesh",
@@ -78,13 +79,13 @@ def plan(scenario: Any) -> MeshPlan:
         walks=walks,
         sample_us=round(1e6 / fence.sample_hz) if fence else 20_000,
         origin_cm=mesh_fence.origin_of(mesh_fence.rings_cm(fence)) if fence else (0, 0),
-        offers=mesh_traffic.offers(model, nodes, flows, profile.settled, duration_us, params["mtu"]),
+        offers=mesh_traffic.offers(model, nodes, flows, profile.settled, duration_us, mtu),
         faults=mesh_events.faults(model, nodes, network.good, spared, roles, profile.rssi50_cdb),
         cluster=cluster,
     )
 
 
-def _site(scenario: Any) -> tuple[MeshScenario, Network, Any]:
+def _site(scenario: Any) -> tuple[MeshScenario, Network, clusters.Cluster | None]:
     """Where nodes stand, and of several meshes the one that runs: what is its, and which it is."""
     model: MeshScenario = scenario.model
     nodes = nodes_of(model, scenario.source)
