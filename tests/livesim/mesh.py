@@ -77,6 +77,7 @@ class Weeks(Plan):
             "calm_s": 3600 * chance.choice((6, 24, 72)),
             "rate": chance.choice((0.005, 0.02, 0.1)),
             "standbys": chance.randint(0, 2),
+            "multicast": chance.random() < 0.05,
         }
         super().__init__(world, **slow | given)
 
