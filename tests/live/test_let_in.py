@@ -5,6 +5,7 @@ import errno
 import socket
 import sys
 from contextlib import contextmanager
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given, settings
@@ -14,7 +15,7 @@ from innervate.live import only_from as filters
 from innervate.live.errors import LiveError
 from innervate.live.only_from import Doors, of_peer, only_from, packed, unread
 from innervate.live.receipts import DELIVERED
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.udp import MulticastLink, UdpLink, UdpPath
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.wire import seal
@@ -257,3 +258,17 @@ def test_where_neighbours_cannot_be_kept_apart_one_socket_hears_them_all(monkeyp
 
     monkeypatch.setattr("innervate.live.udp.share", refuse)
     assert asyncio.run(main()) == ([(0, b"x"), (1, b"x")], 0)
+
+
+def test_the_system_is_told_of_changes_alone():
+    made, told = [], []
+    link = SimpleNamespace(
+        bind=("10.0.0.1", 4700),
+        filter_of=lambda path, doors: made.append(doors) or doors.steps(),
+        guard=lambda: told.append(len(made)),
+    )
+    path = UdpPath(link, ("10.0.0.2", 4700), 0)
+    for known in ({7: 0}, {7: 0}, {7: 0}, {7: 5}, {7: 5}, {7: 5, 8: 0}):
+        path.let_in([(0, 9)], dict(known))
+    assert [len(doors.known) for doors in made] == [1, 1, 2]
+    assert told == [1, 2, 3]
