@@ -20,8 +20,8 @@ from innervate.analysis.headline import (
 )
 from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import Common, Percentiles, measured
-from innervate.analysis.words import number_of
 from innervate.folders import blamed
+from innervate.kernel.words import number_of
 from innervate.network import NetworkError, networks
 from innervate.scenario.declared.shared import script_of
 from innervate.sim.counts import Counts

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.spread import spread
+from innervate.kernel.words import number_of
 from innervate.network import networks
 from innervate.plot import charts, page, svg
 from innervate.plot.happened import event_words
 from innervate.plot.lines import traffic_lines
 from innervate.plot.page import figure, pictures, section, table, tiles
-from innervate.plot.words import count_words, figure_words, number_of
+from innervate.plot.words import count_words, figure_words
 from innervate.sim.tables import get
 
 SIDE = 420.0

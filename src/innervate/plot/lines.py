@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from innervate.plot.words import figure_words, headline_line, ms_words, number_of
+from innervate.kernel.words import number_of
+from innervate.plot.words import figure_words, headline_line, ms_words
 
 
 def summary_lines(run: Any) -> list[str]:

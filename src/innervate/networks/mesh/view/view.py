@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from innervate.analysis.headline import Headline
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Ways, of_simulation
 from innervate.networks.mesh.plot.words import fault_words
@@ -14,7 +15,6 @@ from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
-from innervate.plot.words import number_of
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE, TABLE
 from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
 from innervate.web.engine import Engine, Rows
