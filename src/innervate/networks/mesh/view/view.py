@@ -17,6 +17,7 @@ from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE, TABLE
 from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
+from innervate.topology.placement import neighbours
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
@@ -62,11 +63,7 @@ class MeshView(View):
         self.field = Field(self.plan)
         count = self.plan.nodes
         self.memory = MeshMemory(air_us=np.zeros(count), load=np.zeros(count))
-        near: list[list[int]] = [[] for _ in range(count)]
-        for a, b in self.plan.good:
-            near[a].append(b)
-            near[b].append(a)
-        self.neighbours = near
+        self.neighbours = neighbours(count, self.plan.good)
         self.recorder = TrafficRecorder(engine)
         self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody
