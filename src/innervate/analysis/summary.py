@@ -33,6 +33,8 @@ COUNTED = ("frames.lost_by", "messages.dropped_by", "reports")
 class Frames(TypedDict):
     """Frames on their links; one counts once for every link that it takes.
 
+    On the air it counts as a reception, once for each node that could hear it.
+
     Attributes:
         sent: handed to a link.
         arrived: reached a node that is on.

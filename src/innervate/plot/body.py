@@ -46,7 +46,6 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{figure_words(result.ended_us / 1e6, 4)} s, seed {summary['seed']}"
     )
     frames, messages = summary["frames"], summary["messages"]
-    # On the air a frame counts once for each that could hear it.
     frame, sent = ("reception", " due") if result.counts.is_shared else ("frame", " sent")
     numbers = [
         _counted(frames["sent"], frame, sent),
@@ -54,7 +53,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         _counted(messages["delivered"], "message", " delivered"),
         _counted(summary["events"], "event"),
     ]
-    said = page.paragraphs(f"{line}." for line in traffic_lines(summary))
+    said = page.paragraphs(f"{line}." for line in traffic_lines(summary, result.counts.is_shared))
     return page.top(over, summary, tiles(numbers), said)
 
 
