@@ -217,12 +217,12 @@ class SkinView(View):
             return BEFORE_ALL
         found, most = world_facts(self.engine.world, self.cells), self.memory.apart_most
         sent, lost = self._samples()
-        early = int(self.engine.world.counters[EARLY])
         return skin_headline(
             found._replace(
                 cut_off_before=most if most > len(found.cut_off) else 0,
-                sent=sent - early,
-                lost=lost - early,
+                sent=sent,
+                lost=lost,
+                early=int(self.engine.world.counters[EARLY]),
             ),
             self.plan.graph.label,
         )
