@@ -95,7 +95,11 @@ def test_a_command_goes_to_a_cell_or_to_all_by_the_ports_that_have_some(cell, to
     for wrong in ({"code": 1.5}, {"code": 1, "value": "2"}, {"code": 1, "cell": "c3"}):
         with pytest.raises(ValueError, match="are whole numbers"):
             one._asked_for_command(wrong)
-    assert one._asked_for_command({"code": 1, "cell": 7}) == {"number": 41, "ports": 2, "checked": False}
+    assert one._asked_for_command({"code": 1, "cell": 7}) == {
+        "number": 41,
+        "ports": 2,
+        "checked": False,
+    }
     assert one.send_command(3).checked
     assert [item.cell for _, item in one.engine.told] == [to, 7, EVERYBODY]
     assert [item.proximity for _, item in one.engine.told] == [65_535, 0, 0]
