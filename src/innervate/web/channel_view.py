@@ -32,7 +32,7 @@ class ChannelView(DeclaredView):
     def __init__(self, engine: Engine, history: History) -> None:
         View.__init__(self, engine, history)
         network = networks()[self.plan.kind]
-        self.saves = network.has("event")
+        self.saves = network.writes_events
         self.shown, self.own = shown_by(network)
         self.memory = Memory()
 
