@@ -107,6 +107,15 @@ class Network:
         """True if there is such a part, its own or the default."""
         return part in self.parts
 
+    @property
+    def writes_events(self) -> bool:
+        """True if what was done to it can be written as [[event]]s.
+
+        Nobody knows those of a network whose scenarios have keys of its own, and that says not how.
+        """
+        usual = {**DEFAULTS, **MEDIA[self.medium]}
+        return [self.parts[one] == usual[one] for one in ("model", "event")] != [False, True]
+
 
 def nothing_to_anchor(tables: dict[str, Any], source: Any) -> None:
     """A scenario without relative paths."""

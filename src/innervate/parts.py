@@ -45,7 +45,8 @@ PARTS = {
     "unwatchable": '(plan) -> str: why it cannot be watched; "" if it can',
     "engine": "class: web.engine.Engine, or what can do more",
     "view": "class: what the live page shows of its simulation (web/view.py)",
-    "event": "(plan, fault) -> dict: the [[event]] table of a fault, without its time",
+    "event": "(plan, fault) -> dict: the [[event]] table of a fault, without its time; if absent, "
+    "as its `model` is absent",
     "protocol": "module: on_start, on_frame, on_timer, on_input of a node; OUTBOX, TIMERS",
     "fields": "module: PARAMS, STATE, FRAME: the declared fields of its protocol",
     "frames": "module: LAYOUTS, KIND_BITS of its frames; encode, decode, REASONS if it has own",
@@ -89,7 +90,7 @@ def _declared(medium: str, model: str, *more: str) -> dict[str, str]:
 
 
 DEFAULTS = {
-    **_declared("cables", "CablesScenario"),
+    **_declared("cables", "CablesScenario", "event"),
     "run": "innervate.running.simulating",
     "tables": "innervate.running.simulating:TABLES",
     "report": "innervate.plot.body:body",
@@ -123,7 +124,7 @@ DEFAULTS = {
 MEDIA: dict[str, dict[str, str]] = {
     "cables": {},
     "channel": {
-        **_declared("channel", "ChannelScenario", "fault_words"),
+        **_declared("channel", "ChannelScenario", "fault_words", "event"),
         "view": "innervate.web.channel_view:ChannelView",
         "live_node": "innervate.live.on_air:build",
         "deployment": "innervate.live.on_channel:ChannelDeployment",

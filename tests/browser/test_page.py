@@ -88,7 +88,9 @@ def test_the_state_of_the_network_is_one_line(look, fresh):
     page = look(fresh)
     level, line = page.locator("#level"), page.locator("#headline")
     expect(level).to_have_text("✓ ok")
-    expect(line).to_have_text("Every cell has a way to the PC, and no sample was lost.")
+    expect(line).to_have_text(
+        "Every cell has a way to the PC, and no sample was lost after the start."
+    )
     click(page, "p0 r3 c3")
     expect(level).to_have_text("! degraded")
     expect(line).to_contain_text("1 of 48 cells (p0 r3 c3) is switched off")

@@ -183,6 +183,15 @@ def test_a_command_goes_down_by_as_many_ports_as_there_are(folder, capsys, cell,
     assert node.asked == [{"do": "command", "code": 5, "value": 6, "cell": cell}] * 2
 
 
+@pytest.mark.parametrize("checked", [False, True])
+def test_of_a_cell_that_may_not_be_there_is_said_so(folder, capsys, checked):
+    Node(folder, "pc", [{"number": 9, "ports": 1, "checked": checked}])
+    assert live.command("pc", 5, 6, 900, False) == 0
+    shown = capsys.readouterr()
+    assert shown.out == "command 9 to cell 900, by 1 interface port\n"
+    assert ("nobody knows whether there is a cell 900" in shown.err) == (not checked)
+
+
 @pytest.mark.parametrize("what", ["cut", "restore"])
 def test_a_cable_is_cut_and_restored_at_one_node(folder, what):
     node = Node(folder, "n1", [{"ok": True}])

@@ -256,6 +256,17 @@ def test_what_a_medium_looks_at_has_bits_in_every_layout(file):
     assert found[0].endswith("the medium looks at to; give it bits in every layout")
 
 
+@pytest.mark.parametrize(("low", "high", "is_said"), [
+    (0, 9, 0), (-9, 0, 0), (-4, 3, 0), (1, 9, 1), (-9, -1, 1),
+])  # fmt: skip
+def test_what_a_layout_has_no_bits_for_is_0_where_it_arrives(file, low, high, is_said):
+    frame = (*FRAME, ("hops", 0, low, high, "", ""), ("made_at", 0, 1, 9, "us", ""))
+    more = (2, "more", (*laid()[0][2], ("hops", 0, 5, low < 0)))
+    found = said(folder.of_layouts(file("LAYOUTS = ()\n"), [*laid(), more], 2, frame))
+    what = f"news: hops is {low} to {high} in FRAME, and 0 where it arrives, as it has no bits here"
+    assert found == [(1, f"{what}; give it some, or let it be 0")] * is_said
+
+
 SENDS = """NEWS = 1
 def fill(frame, value):
     frame.kind = 0

@@ -106,6 +106,26 @@ def test_those_that_run_on_are_found_again_when_a_newer_live_up_has_ended(own, t
         assert status.where() == own, "nobody runs there any more"
 
 
+def test_the_first_of_three_is_found_again_when_those_between_and_after_it_have_ended(
+    own, tmp_path
+):
+    runs = [tmp_path / name for name in ("first", "second", "third")]
+    ups = [status.findable(run) for run in runs]
+    with running(runs[0], "n1") as sock:
+        sock.listen()
+        for run, up in zip(runs, ups, strict=True):
+            run.mkdir(exist_ok=True)
+            up.__enter__()
+            assert status.where() == run
+        ups[1].__exit__(None, None, None)
+        assert status.where() == runs[2]
+        ups[2].__exit__(None, None, None)
+        assert status.where() == runs[0]
+    ups[0].__exit__(None, None, None)
+    assert status.where() == own
+    assert list(own.iterdir()) == []
+
+
 def test_where_the_own_folder_is_not_ours_nodes_run_all_the_same(tmp_path, monkeypatch):
     for name in ("INNERVATE_RUN", "XDG_RUNTIME_DIR"):
         monkeypatch.delenv(name, raising=False)

@@ -104,3 +104,6 @@ def test_messages_in_words(sent, came, words):
     lines = traffic_lines({"frames": frames, "messages": messages})
     assert lines[0] == "Frames: 1,234 sent, 1,200 arrived, 34 lost: 31 noise, 3 cut"
     assert lines[1:] == ([words] if words else [])
+    shared = traffic_lines({"frames": frames, "messages": messages}, is_shared=True)
+    assert shared[0] == "Receptions: 1,234 due, 1,200 arrived, 34 lost: 31 noise, 3 cut"
+    assert shared[1:] == lines[1:]

@@ -4,7 +4,7 @@ import pytest
 from msgspec import to_builtins
 
 from innervate import scenario as scenarios
-from innervate.network import networks
+from innervate.network import Network, networks
 from innervate.scenario.errors import ScenarioError
 from tests.own import alone, made
 
@@ -75,3 +75,44 @@ def test_events_that_are_the_networks_own_are_told_among_the_others(own, capsys)
         f"             at 1 s warm {who.format(1)}, value 9",
         f"             at 1.5 s kill {who.format(0)}",
     ]
+
+
+EVENTS = {
+    "cables": [("cut", {"link": "n1-n0"}), ("restore", {"link": "n1.E-n2.W"}),
+               ("kill", {"node": 3}), ("loose", {"link": "n2-n3", "loss": 0.25}),
+               ("lose", {"link": "n2-n3", "frames": 7}), ("revive", {"node": 3}),
+               ("restart", {"node": 2})],
+    "channel": [("kill", {"node": 3}), ("revive", {"node": 3}), ("join", {"node": 1})],
+    "field": [("kill", {"node": 3}), ("cut", {"node": 0, "other": 1}),
+              ("jam", {"node": 2, "noise_dbm": -71.5}), ("restart", {"node": 3})],
+}  # fmt: skip
+
+
+def test_what_was_done_is_written_as_events_that_do_the_same(own):
+    kind = loaded(own).model.kind
+    network = networks()[kind]
+    events = [{"at_s": 0.1 * place, "action": word, **more}
+              for place, (word, more) in enumerate(EVENTS[network.medium])]  # fmt: skip
+    plan = scenarios.plan(loaded(own, event=events))
+    written = [{"at_s": fault.at_us / 1e6, **network.event(plan, fault)} for fault in plan.faults]
+    assert scenarios.plan(loaded(own, event=written)).faults == plan.faults
+
+
+def test_of_two_cables_between_the_same_nodes_either_is_cut_by_its_ends(alone):
+    own = made(alone / "own")
+    kind = loaded(own).model.kind
+    network = networks()[kind]
+    cables = ["n0.E-n1.W", "n0.up-n1.down", "n1.E-n2.W"]
+    events = [{"at_s": 0.1, "action": "cut", "link": name} for name in (*cables, "n1.down-n0.up")]
+    plan = scenarios.plan(loaded(own, cables=cables, event=events, input=[]))
+    named = [network.event(plan, fault)["link"] for fault in plan.faults]
+    assert named == [*cables, cables[1]]
+    with pytest.raises(ScenarioError, match=r"there is no cable .n0\.W-n1\.E."):
+        loaded(own, cables=cables, event=[{**events[0], "link": "n0.W-n1.E"}], input=[])
+
+
+def test_events_of_keys_of_its_own_are_written_by_nobody_else():
+    own = {"model": "scenario:Mine"}
+    assert Network("mine", "mine", medium="channel").writes_events
+    assert not Network("mine", "mine", medium="field", **own).writes_events
+    assert Network("mine", "mine", **own, event="scenario:event").writes_events

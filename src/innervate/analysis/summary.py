@@ -20,8 +20,8 @@ from innervate.analysis.headline import (
 )
 from innervate.analysis.percentiles import percentiles
 from innervate.analysis.summary_common import Common, Percentiles, measured
-from innervate.analysis.words import number_of
 from innervate.folders import blamed
+from innervate.kernel.words import number_of
 from innervate.network import NetworkError, networks
 from innervate.scenario.declared.shared import script_of
 from innervate.sim.counts import Counts
@@ -32,6 +32,8 @@ COUNTED = ("frames.lost_by", "messages.dropped_by", "reports")
 
 class Frames(TypedDict):
     """Frames on their links; one counts once for every link that it takes.
+
+    On the air it counts as a reception, once for each node that could hear it.
 
     Attributes:
         sent: handed to a link.

@@ -1,7 +1,5 @@
 """Figures as people read them: a part is never said to be the whole, no number has an exponent."""
 
-from innervate.kernel.words import number_of as number_of
-
 LEAST = 1e-5  # of a whole: less is not told apart
 
 

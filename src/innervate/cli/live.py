@@ -131,6 +131,9 @@ def command(name: str, code: int, value: int, cell: int | None, as_json: bool) -
         print(f"command {sent['number']} to {whom}, by {ports}")
     else:
         print("nobody is there to hand it down: no cell has the PC as its parent", file=sys.stderr)
+    if not sent.get("checked", True):
+        why = "the PC's file does not say how many numbers there are; add nodes ="
+        print(f"nobody knows whether there is a cell {cell}: {why}", file=sys.stderr)
     return 0 if sent["ports"] else 1
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from innervate.analysis.words import number_of
 from innervate.cli import errors
 from innervate.cli.progress import Display
 from innervate.cli.verifying import named
+from innervate.kernel.words import number_of
 from innervate.network import Network
 
 if TYPE_CHECKING:

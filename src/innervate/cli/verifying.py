@@ -7,10 +7,10 @@ from itertools import count as numbers
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from innervate.analysis.words import number_of
 from innervate.cli import errors
 from innervate.cli.progress import Display
 from innervate.export import files
+from innervate.kernel.words import number_of
 from innervate.network import Network, find, networks, use
 
 if TYPE_CHECKING:

@@ -270,6 +270,11 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset()):
         for field in sorted(looked_at & declared.keys() - {one[0] for one in fields}):
             what = f"{name}: the medium looks at {field}; give it bits in every layout"
             found.append(Finding(path, line, what))
+        for field, _length, low, high, *_ in frame:
+            if field not in NOTED.union(one[0] for one in fields) and not low <= 0 <= high:
+                what = (f"{name}: {field} is {low} to {high} in FRAME, and 0 where it arrives, as "
+                        "it has no bits here; give it some, or let it be 0")  # fmt: skip
+                found.append(Finding(path, line, what))
     for field in declared:
         if field not in laid | NOTED:
             what = f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out"

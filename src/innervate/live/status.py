@@ -21,7 +21,7 @@ from innervate.live.machine import is_left as is_left
 
 LOOK_S = 1.0  # between two looks whether who has ended asking has gone
 LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits
-UP = "up"  # in a user's own folder: a link to where the newest `live up` has its nodes
+UP = "up."  # in a user's own folder, and a number: links to where each `live up` has its nodes
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
 BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)
 
@@ -52,18 +52,20 @@ def where() -> Path:
     here = folder()
     if os.environ.get("INNERVATE_RUN") or _sockets(here):
         return here
-    try:
-        there = Path(os.readlink(here / UP))
-    except OSError:
-        return here
-    return there if there.is_dir() else here
+    return next((there for note in _notes(here) if (there := note.readlink()).is_dir()), here)
+
+
+def _notes(here: Path) -> list[Path]:
+    """The links that those `live up`s left that have not ended, the newest first."""
+    found = [note for note in here.glob(f"{UP}*") if note.suffix[1:].isdecimal()]
+    return sorted(found, key=lambda note: -int(note.suffix[1:]))
 
 
 @contextmanager
 def findable(run: Path) -> Iterator[None]:
-    """Leave a note of where the nodes of a `live up` are, until it ends or a newer one does.
+    """Leave a note of where the nodes of a `live up` are, until it ends.
 
-    Those whose note it took the place of are found again if they run on.
+    The newest one's counts. When that ends, it is the newest's of which a node runs on.
     """
     if os.environ.get("INNERVATE_RUN"):
         yield  # who said where has their own way to find them
@@ -73,21 +75,28 @@ def findable(run: Path) -> Iterator[None]:
     except LiveError:  # somebody else's: nodes run all the same, and are found by their folder
         yield
         return
-    link, before = here / UP, None
-    with suppress(OSError):
-        before = Path(os.readlink(link))
+    own = here
     with suppress(OSError):  # then they are found by their folder alone
         here.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
-        link.unlink(missing_ok=True)
-        link.symlink_to(run)
+        newest = next((int(note.suffix[1:]) for note in _notes(here)), 0)
+        note = here / f"{UP}{newest + 1}"
+        note.symlink_to(run)
+        own = note
     try:
         yield
     finally:
         with suppress(OSError):
-            if Path(os.readlink(link)) == run:
-                link.unlink()
-                if before is not None and before != run and any(map(answers, _sockets(before))):
-                    link.symlink_to(before)
+            _forget(here, own)
+
+
+def _forget(here: Path, own: Path) -> None:
+    """Take a note away; of older ones, if it was the newest, those of whom nobody runs any more."""
+    notes = _notes(here)
+    own.unlink()
+    for older in notes[1:] if notes[0] == own else []:
+        if any(map(answers, _sockets(older.readlink()))):
+            break
+        older.unlink()
 
 
 class Writer:

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.spread import spread
+from innervate.kernel.words import number_of
 from innervate.network import networks
 from innervate.plot import charts, page, svg
 from innervate.plot.happened import event_words
 from innervate.plot.lines import traffic_lines
 from innervate.plot.page import figure, pictures, section, table, tiles
-from innervate.plot.words import count_words, figure_words, number_of
+from innervate.plot.words import count_words, figure_words
 from innervate.sim.tables import get
 
 SIDE = 420.0
@@ -45,7 +46,6 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{figure_words(result.ended_us / 1e6, 4)} s, seed {summary['seed']}"
     )
     frames, messages = summary["frames"], summary["messages"]
-    # On the air a frame counts once for each that could hear it.
     frame, sent = ("reception", " due") if result.counts.is_shared else ("frame", " sent")
     numbers = [
         _counted(frames["sent"], frame, sent),
@@ -53,7 +53,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         _counted(messages["delivered"], "message", " delivered"),
         _counted(summary["events"], "event"),
     ]
-    said = page.paragraphs(f"{line}." for line in traffic_lines(summary))
+    said = page.paragraphs(f"{line}." for line in traffic_lines(summary, result.counts.is_shared))
     return page.top(over, summary, tiles(numbers), said)
 
 

@@ -2,8 +2,9 @@
 
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.network import networks
-from innervate.plot.words import number_of, share_words
+from innervate.plot.words import share_words
 from innervate.scenario.cables import LOSS_ONE
 
 NODES = {

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from innervate.plot.words import figure_words, headline_line, ms_words, number_of
+from innervate.kernel.words import number_of
+from innervate.plot.words import figure_words, headline_line, ms_words
 
 
 def summary_lines(run: Any) -> list[str]:
@@ -12,24 +13,29 @@ def summary_lines(run: Any) -> list[str]:
     took = f"{figure_words(run.result.ended_us / 1e6, 4)} s simulated in {summary['wall_s']:.2f} s"
     first = f"{summary['name']}: {number_of(summary['nodes'], 'node')}; {took}, "
     lines = [f"{first}seed {summary['seed']}", headline_line(summary["headline"])]
-    lines += [f"{line}." for line in traffic_lines(summary)]
+    is_shared = run.result.counts.is_shared
+    lines += [f"{line}." for line in traffic_lines(summary, is_shared)]
     if "interrupted_at_s" in summary:
         lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
     return lines
 
 
-def traffic_lines(summary: Mapping[str, Any]) -> list[str]:
-    """Frames, messages and latencies, a sentence each, without full stops."""
+def traffic_lines(summary: Mapping[str, Any], is_shared: bool = False) -> list[str]:
+    """Frames, messages and latencies, a sentence each, without full stops.
+
+    `is_shared`: on the air, where a frame counts as a reception for each that could hear it.
+    """
     frames, messages = summary["frames"], summary["messages"]
+    counted, sent = ("Receptions", "due") if is_shared else ("Frames", "sent")
     lines = [
-        f"Frames: {frames['sent']:,} sent, {frames['arrived']:,} arrived, "
+        f"{counted}: {frames['sent']:,} {sent}, {frames['arrived']:,} arrived, "
         f"{frames['lost']:,} lost{_reasons(frames['lost_by']).replace(', ', ': ', 1)}"
     ]
     if messages["sent"] or messages["delivered"]:
         # A protocol that hands up what no user gave (a token, say) delivers without being sent.
-        sent, came = messages["sent"], messages["delivered"]
-        given = f"{sent:,} sent, " if sent else ""
-        told = f"delivered {came:,} times" if came > sent > 0 else f"{came:,} delivered"
+        offered, came = messages["sent"], messages["delivered"]
+        given = f"{offered:,} sent, " if offered else ""
+        told = f"delivered {came:,} times" if came > offered > 0 else f"{came:,} delivered"
         lines.append(f"Messages: {given}{told}{_reasons(messages['dropped_by'])}")
     latency = messages["latency_ms"]
     if latency["p50"] is not None:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 from innervate.analysis.words import figure_words as figure_words
-from innervate.analysis.words import number_of as number_of
 from innervate.analysis.words import share_words as share_words
 
 

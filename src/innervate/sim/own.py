@@ -5,9 +5,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+import numpy as np
+
 from innervate.folders import invariants_of
 from innervate.network import networks
 from innervate.scenario.cables import Happening
+from innervate.sim.came import Came
+from innervate.sim.counts import Counts
+from innervate.sim.tables import Tables
 
 OWN_BROKEN = 64  # `run.broken` of the first of them; below it are those of the media
 
@@ -43,23 +48,26 @@ def message_times(plan: Any) -> list[int]:
     return sorted(one.at_us for one in given if kinds is None or one.kind in kinds)
 
 
-def unheard(
-    given_us: Sequence[int], now_us: int, came: Iterable[tuple[int, int]], delivered: int
-) -> int:
-    """Of messages given so far, of how many at least nothing was delivered.
+def came_of(plan: Any, tables: Tables) -> Came:
+    """Nothing of what users give has been delivered yet."""
+    moments = sorted({one.at_us for one in plan.inputs})
+    return Came(tables.given(moments, np.int64), tables.numbers(len(moments), 0, np.int64))
+
+
+def with_messages(counts: Counts, given_us: Sequence[int], now_us: int, came: Came) -> Counts:
+    """Counts with what users gave, and of how much of that at least nobody got anything.
 
     Args:
-        given_us: when each was given, in order of time.
+        counts: the others; what was delivered is among them.
+        given_us: when each message was given, in order of time.
         now_us: the time until which they count.
-        came: moments at which something was given, and how much of it was delivered.
-        delivered: how much was delivered, of whatever moment.
+        came: what was delivered of those of which it is known when they were given.
     """
     given = Counter(given_us[: bisect_right(given_us, now_us)])
-    known: Counter[int] = Counter()
-    for at_us, many in came:
-        known[at_us] += many
-    missing = sum(max(many - known[at_us], 0) for at_us, many in given.items())
-    return max(missing - (delivered - known.total()), 0)  # of some nobody knows when
+    known = {int(at_us): int(many) for at_us, many in zip(came.moments, came.counts, strict=True)}
+    missing = sum(max(many - known.get(at_us, 0), 0) for at_us, many in given.items())
+    unknown = counts.delivered - sum(known.values())
+    return counts._replace(offered=given.total(), unheard=max(missing - unknown, 0))
 
 
 def words_of(kind: str) -> dict[int, str]:

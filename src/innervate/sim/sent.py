@@ -22,7 +22,7 @@ WORDS = {
 def look_of(declared: Declaration, layouts: Any = ()) -> Callable[..., None]:
     """`look(world, node)`: marks a run as broken by what a call has put into its outbox.
 
-    What a layout has no bits for is not sent: as on a wire, it is what it is in a blank frame.
+    What a layout has no bits for is not sent: as on a wire, it is 0 where it arrives.
 
     Args:
         declared: the fields of a frame.
@@ -61,16 +61,15 @@ def look_of(declared: Declaration, layouts: Any = ()) -> Callable[..., None]:
 
 
 def _clears(declared: Declaration, dropped: dict[int, set[str]]) -> list[str]:
-    """The lines that make what a frame's layout has no bits for as in a blank frame."""
+    """The lines that make 0 what a frame's layout has no bits for."""
     lines = []
     for kind, names in dropped.items():
         lines += [f"    if frame.kind == {kind}:"] if names else []
-        for name, length, low, high, *_ in declared:
-            blank, by = min(max(0, low), high), "        "
-            if name in names:
-                lines += [f"{by}for k in range({length}):"] if length else []
-                lines += [f"{by}    frame.{name}[k] = {blank}" if length
-                          else f"{by}frame.{name} = {blank}"]  # fmt: skip
+        for name, length, *_ in declared:
+            if name in names and length:
+                lines += [f"        for k in range({length}):", f"            frame.{name}[k] = 0"]
+            elif name in names:
+                lines += [f"        frame.{name} = 0"]
     return lines or ["    return"]
 
 

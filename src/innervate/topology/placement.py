@@ -10,6 +10,7 @@ from statistics import NormalDist
 from typing import Protocol
 
 UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
+UNREACHABLE = -1  # in `distances`: there is no way
 NEAREST_CM = 100  # closer than 1 m the path loss is that of 1 m
 _NORMAL = NormalDist()
 _STEPS = 1 << 53
@@ -117,13 +118,13 @@ def neighbours(count: int, links: Sequence[tuple[int, int]]) -> list[list[int]]:
 
 
 def distances(near: Sequence[Sequence[int]], start: int) -> list[int]:
-    """Hops from a node to every other; -1 = there is no way."""
-    found = [-1] * len(near)
+    """Hops from a node to every other; UNREACHABLE where there is no way."""
+    found = [UNREACHABLE] * len(near)
     found[start] = 0
     line = [start]
     for node in line:
         for other in near[node]:
-            if found[other] < 0:
+            if found[other] == UNREACHABLE:
                 found[other] = found[node] + 1
                 line.append(other)
     return found

@@ -52,7 +52,7 @@ class Frames:
                 found = (f"{name} of a frame that {handler} {does} is {out[0]}, "
                          f"declared {low} to {high}")  # fmt: skip
             if action == SEND and name in self.dropped.get(kind, ()):
-                each = [min(max(0, low), high)] * len(each)
+                each = [0] * len(each)
             setattr(frame, name, each if length else each[0])
         if action == SEND and self.laid and kind not in self.laid and not found:
             found = f"{handler} sends a frame of kind {kind}, which has no layout"

@@ -23,12 +23,16 @@ class ChannelView(DeclaredView):
     can: tuple[str, ...] = ("kill", "revive")
     actions: ClassVar[tuple[Action, ...]] = TABLE
     fault_type: ClassVar[Any] = Fault
+    series: ClassVar[list[dict[str, Any]]] = [
+        {"id": "lost", "label": "receptions lost so far", "unit": "receptions"},
+        DeclaredView.series[1],
+    ]
     around: ClassVar[float] = 1.5  # from one node to the next, in their diameters
 
     def __init__(self, engine: Engine, history: History) -> None:
         View.__init__(self, engine, history)
         network = networks()[self.plan.kind]
-        self.saves = network.has("event")
+        self.saves = network.writes_events
         self.shown, self.own = shown_by(network)
         self.memory = Memory()
 

@@ -48,7 +48,7 @@ class DeclaredView(View):
         if self.plan.graph.cells > NODES_MAX:
             many = f"{self.plan.graph.cells:,} nodes are too many to be drawn"
             raise WatchError(f"{many}; at most {NODES_MAX:,}")
-        self.saves = network.has("event")
+        self.saves = network.writes_events
         layouts = network.frames.LAYOUTS if network.has("frames") else ()
         self.graph = self.plan.graph
         self.cables = Cables(self.plan, {kind: name for kind, name, _fields in layouts}, "data")

@@ -11,6 +11,7 @@ from innervate.sim import wheel
 from innervate.sim.cables import declared
 from innervate.sim.cables.declared import Unfit, frames_of, functions
 from innervate.sim.cables.world import ALIVE, BROKEN_RANGE, DEAD, OFF
+from innervate.sim.came import Came
 from innervate.sim.recorded import Recorded
 from tests.networks.skin.runs import line, plan_of
 
@@ -36,7 +37,7 @@ def world_of(**run):
         alive=[ALIVE, OFF, DEAD], counters=[0] * 40, deliveries=[Of() for _ in range(3)],
         delays=[Of(high=0, count=0, sum=0)], delay_counts=[0] * 6000, words=[[5], [9]],
         low=[0], high=[8], cells=[None] * 2, params=[None], clocks=[Of(offset=100, rate=0)] * 2,
-        wheel=Of(clock=[MASK30, wheel.NIL]),
+        wheel=Of(clock=[MASK30, wheel.NIL]), watch=Came([60, MASK30 + 6], [0, 0]),
     )  # fmt: skip
 
 
@@ -102,6 +103,7 @@ def test_a_delivery_took_as_long_as_since_it_was_handed_in(fields, made_at, time
     row = {"time": time, "node": 1, "port": 2, "kind": 4, "latency": latency}
     assert vars(world.deliveries[0]) == row
     assert world.delays[0].count == (latency >= 0)
+    assert sum(world.watch.counts) == (latency >= 0 and time - latency >= 60)
 
 
 @pytest.mark.parametrize(("node", "broken", "seen"), [(0, 64, [99]), (1, BROKEN_RANGE, [])])

@@ -6,6 +6,7 @@ import pytest
 import innervate
 from innervate.cli import main
 from innervate.network import NetworkError
+from innervate.plot.lines import summary_lines
 from tests.own import alone, made
 
 __all__ = ["alone"]
@@ -26,7 +27,12 @@ def test_every_frame_is_accounted_for(talk):
     for changes in ({}, {"protocol.wait_us": 100}, {"air.loss": 0.2}, {"hidden": [[0, 1], [2, 5]]}):
         frames = ran(talk, **changes).summary["frames"]
         assert frames["sent"] == frames["arrived"] + frames["lost"] > 100, changes
-    assert ran(talk, **{"air.loss": 0.2}).summary["frames"]["lost_by"]["noise"] > 20
+    lossy = ran(talk, **{"air.loss": 0.2})
+    frames = lossy.summary["frames"]
+    assert frames["lost_by"]["noise"] > 20
+    said = f"Receptions: {frames['sent']} due, {frames['arrived']} arrived, {frames['lost']} lost: "
+    assert summary_lines(lossy)[2].startswith(said)
+    assert said in lossy.report()
 
 
 def test_who_does_not_hear_the_other_speaks_over_it(talk):

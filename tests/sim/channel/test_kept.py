@@ -9,6 +9,7 @@ from innervate.dialect.access import PACKET
 from innervate.dialect.arith import MASK30
 from innervate.sim import taps
 from innervate.sim.cables.declared import Unfit
+from innervate.sim.came import Came
 from innervate.sim.channel import declared, listening
 from innervate.sim.channel.declared import DeclaredChannel
 from innervate.sim.channel.listening import (
@@ -37,7 +38,7 @@ def world_of(**more):
     radio = Of(alive=1, deaf=0, offset=100, next_offer=5, backlog=2)
     return Of(
         run=[Of(**run | more)],
-        above=Of(counters=[0] * listening.COUNTERS, items=None, kinds=None, moments=[], came=[]),
+        above=Of(counters=[0] * listening.COUNTERS, items=None, kinds=None, came=Came([], [])),
         radios=[radio, Of(**vars(radio))], packets=[Of() for _ in range(4)],
         words=[[5, 5], [5, 9]], low=[0, 0], high=[8, 8], degree=[3, 2],
         taps=[Of() for _ in range(4)], tapped=[Of() for _ in range(4)],
@@ -195,7 +196,7 @@ def bare(**run):
     radios = np.zeros(4, [("alive", np.int64), ("leaving", np.int64)])
     radios["alive"], radios["leaving"] = (1, 0, 1, 0), (1, 0, 0, 1)
     counters = np.arange(3, 3 + 7 * listening.COUNTERS, 7)
-    world = Of(run=numbers, radios=radios, above=Of(counters=counters, moments=[], came=[]))
+    world = Of(run=numbers, radios=radios, above=Of(counters=counters, came=Came([], [])))
     return Bare(Of(stations=3, seed=8, kind="talk"), world, None)
 
 
@@ -244,7 +245,7 @@ def test_what_users_give_stands_in_its_order_and_the_mediums_own_fields_behind(m
     assert [int(get(world.above.items, i, "seq")) for i in range(3)] == [8, 9, 0]
     assert [int(kind) for kind in world.above.kinds] == [6, 5, 0]
     assert int(get(world.above.items, 0, "slots")) == 2
-    assert ([int(at_us) for at_us in world.above.moments], len(world.above.came)) == ([70], 1)
+    assert [list(map(int, column)) for column in world.above.came] == [[70], [0]]
     assert (int(get(world.frames, 0, "count")), int(get(world.item, 0, "ago"))) == (0, 0)
     assert int(get(world.stations, 2, "queued")) == 0
     twice = declared.extended((("count", 0, 1, 5, "", "own"),), declared.OF_FRAME)

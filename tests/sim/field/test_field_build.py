@@ -12,6 +12,7 @@ from innervate.scenario.actions.field import CUT, JAM, KILL
 from innervate.scenario.declared.field import AirTable, Fault, FieldPlan, Heard
 from innervate.sim import heap, taps
 from innervate.sim.cables.declared import Unfit
+from innervate.sim.came import Came
 from innervate.sim.counts import Counts
 from innervate.sim.field import access, declared, listening, medium, powers, queue
 from innervate.sim.field.build import build
@@ -119,7 +120,8 @@ def test_nodes_are_switched_on_first_of_all_that_is_done_at_their_moment():
     ]  # fmt: skip
     run = run_of(world)
     assert (run["commands"], run["offers"]) == (5, 1)
-    assert world.offers.tolist() == [(80, 2, 6, 0)]
+    assert world.offers.tolist() == [(80, 2, 6)]
+    assert [column.tolist() for column in world.came] == [[80], [0]]
     assert int(get(world.items, 0, "seq")) == 7
     keys = sorted(world.heap.keys[: int(world.heap.size[0])].tolist())
     assert keys == [queue.key_of(50, queue.COMMAND, 0, 0), queue.key_of(80, queue.OFFER, 0, 0)]
@@ -243,6 +245,7 @@ def kept_world(**run):
         taps=[Of(), Of()], tapped=[Of(), Of()], rssi=[0, -6_000, -9_000, 0],
         offers=[Of(time=70), Of(time=0), Of(time=MASK30 + 1)], items=[Of(seq=k) for k in range(3)],
         item=[Of(seq=0, made_at=9)], ring=[Of() for _ in range(4)], acts=[Of() for _ in range(4)],
+        came=Came([], []),
     )  # fmt: skip
 
 

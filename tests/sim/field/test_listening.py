@@ -203,14 +203,3 @@ def test_what_users_offer_goes_to_nodes_that_are_on(monkeypatch, state, given):
     listening.offer(world, do, 1, 80)
     assert found == ([("item", 1), ("give", 3, 80, 6)] if given else [])
     assert counted(world) == {}
-
-
-@pytest.mark.parametrize(("since", "came"), [
-    (0, [0, 0, 0, 0]), (10, [1, 0, 0, 0]), (19, [1, 0, 0, 0]), (20, [0, 0, 1, 0]),
-    (29, [0, 0, 1, 0]), (30, [0, 0, 0, 1]), (99, [0, 0, 0, 1]),
-])  # fmt: skip
-def test_a_delivery_is_counted_where_what_it_brought_was_given(since, came):
-    """Of several that were given at once, at the last."""
-    offers = [Of(time=at_us, came=0) for at_us in (10, 20, 20, 30)]
-    listening.note_came(Of(run=[Of(offers=4)], offers=offers), since)
-    assert [offer.came for offer in offers] == came

@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.plot.words import sentences
-from innervate.plot.words import ms_words, number_of
+from innervate.plot.words import ms_words
 
 if TYPE_CHECKING:
     from innervate.running import Run

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from innervate.plot.words import ms_words, number_of
+from innervate.kernel.words import number_of
+from innervate.plot.words import ms_words
 
 if TYPE_CHECKING:
     from innervate.running import Run

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from innervate.kernel.words import number_of
 from innervate.networks.radio.plot.words import off_words, slots_words
 from innervate.networks.radio.scenario.rules import outside
 from innervate.networks.radio.scenario.words import warnings
@@ -32,7 +33,7 @@ def _first(run: Run) -> str:
     summary, plan = _summary(run), run.plan
     simulated = words.figure_words(run.result.ended_us / 1e6, 4)
     return (
-        f"{summary['name']}: {words.number_of(plan.stations, 'station')} on one channel, "
+        f"{summary['name']}: {number_of(plan.stations, 'station')} on one channel, "
         f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
         f"{simulated} s simulated in {summary['wall_s']:.2f} s, "
         f"seed {summary['seed']}"
@@ -55,8 +56,8 @@ def result_lines(run: Run) -> list[str]:
         jain = "" if summary["jain"] is None else f"; fairness (Jain) {summary['jain']:.3f}"
         lines.append(f"Packets fill {share} of the channel's time{jain}.")
     lines.append(
-        f"{words.number_of(summary['collisions'], 'collision')}; "
-        f"{words.number_of(summary['lost_silently'], 'packet')} lost without the sender knowing."
+        f"{number_of(summary['collisions'], 'collision')}; "
+        f"{number_of(summary['lost_silently'], 'packet')} lost without the sender knowing."
     )
     if "interrupted_at_s" in summary:
         lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
@@ -70,7 +71,7 @@ def _delivered(run: Run) -> str:
     if slots is not None:
         ms = slots * plan.params["slot_us"] / 1000
         after = f", the last {slots_words(slots)} ({words.ms_words(ms)}) after the first offer"
-    return f"{words.number_of(summary['delivered'], 'packet')} delivered{after}."
+    return f"{number_of(summary['delivered'], 'packet')} delivered{after}."
 
 
 def _noticed(run: Run) -> list[str]:

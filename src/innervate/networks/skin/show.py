@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.plot import words as skin_words
 from innervate.plot import words
 
@@ -30,9 +31,9 @@ def _first(run: Run) -> str:
     if "interrupted_at_s" in summary:
         length = f"{words.figure_words(summary['interrupted_at_s'])} of {length}"
     return (
-        f"{summary['name']}: {words.number_of(graph.cells, 'cell')}, "
-        f"{words.number_of(graph.interfaces, 'interface port')}, "
-        f"at most {words.number_of(summary['depth_max'], 'hop')} deep; "
+        f"{summary['name']}: {number_of(graph.cells, 'cell')}, "
+        f"{number_of(graph.interfaces, 'interface port')}, "
+        f"at most {number_of(summary['depth_max'], 'hop')} deep; "
         f"{length} simulated in {summary['wall_s']:.2f} s, "
         f"seed {summary['seed']}"
     )
@@ -44,7 +45,7 @@ def event_lines(run: Run) -> list[str]:
     pairs = list(zip(plan.faults, summary["recoveries"], strict=False))
     lines = [skin_words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
     if len(pairs) > EVENTS_MAX:
-        lines.append(f"... and {words.number_of(len(pairs) - EVENTS_MAX, 'more event')}.")
+        lines.append(f"... and {number_of(len(pairs) - EVENTS_MAX, 'more event')}.")
     if "interrupted_at_s" in summary:
         lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
     return lines
@@ -70,7 +71,7 @@ def state_lines(summary: SkinSummary) -> list[str]:
     loops = summary["loops"]
     if loops["longest_ms"] is not None:
         longest = words.stood_words(loops["longest_ms"])
-        count = words.number_of(loops["episodes"], "forwarding loop")
+        count = number_of(loops["episodes"], "forwarding loop")
         lines.append(f"{count}, the longest for {longest}.")
     else:
         lines.append("No forwarding loop.")

@@ -18,7 +18,7 @@ from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown
-from innervate.topology import PORTS, TopologyError, free_graph
+from innervate.topology import PORT_NAMES, PORTS, TopologyError, free_graph
 from innervate.topology.graph import Graph
 
 NODES_MAX = 1_000_000
@@ -59,7 +59,7 @@ class EventTable(Table, frozen=True, kw_only=True):
     Attributes:
         at_s: when, s.
         action: cut, restore, loose, lose of a `link`; kill, revive, restart of a `node`.
-        link: a cable, by its nodes: "n0-n1".
+        link: a cable, by its nodes: "n0-n1", or by its ends, where there are two: "n0.E-n1.W".
         node: a node's number.
         loss: of loose: share of frames that is lost, 0 to 1.
         frames: of lose: how many frames are lost.
@@ -143,14 +143,19 @@ def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> 
 
 
 def _end_of(source: Source, key: Key, graph: Graph, text: str) -> int:
-    """The first end of a cable between two nodes."""
-    names = text.split("-")
+    """The first end of a cable between two nodes, or two of their ports."""
+    names = sorted(text.split("-"))
     for end, peer in graph.links():
-        if len(names) == 2 and sorted(names) == sorted(
-            graph.label(graph.node_of(one)) for one in (end, peer)
-        ):
+        nodes = sorted(graph.label(graph.node_of(one)) for one in (end, peer))
+        ports = sorted(_end_name(graph, one) for one in (end, peer)) if "." in text else nodes
+        if names in (nodes, ports):
             return end
     raise source.error(key, f'there is no cable {shown(text)}; write one like "n0-n1"')
+
+
+def _end_name(graph: Graph, end: int) -> str:
+    """An end as scenarios call it: "n0.E"."""
+    return f"{graph.label(graph.node_of(end))}.{PORT_NAMES[graph.port_of(end)]}"
 
 
 def _graph(source: Source, model: CablesScenario) -> Graph:
@@ -222,6 +227,20 @@ def _fault(source: Source, graph: Graph, place: int, event: EventTable) -> Fault
         frames=event.frames if action == LOSE else 0,
         index=place,
     )
+
+
+def event(plan: Any, fault: Any) -> dict[str, Any]:
+    """The [[event]] table of a fault, without its time."""
+    made: dict[str, Any] = {"action": ACTIONS[fault.action]}
+    if fault.end < 0:
+        return {**made, "node": fault.node}
+    graph = plan.graph
+    made["link"] = "-".join(_end_name(graph, end) for end in (fault.end, graph.peer[fault.end]))
+    if fault.action == LOOSE:
+        made["loss"] = fault.loss_q15 / LOSS_ONE
+    if fault.action == LOSE:
+        made["frames"] = fault.frames
+    return made
 
 
 def describe(plan: Any) -> str:

@@ -204,6 +204,11 @@ def fault_words(plan: Any, fault: Any) -> str:
     return f"at {fault.at_us / 1e6:g} s {ACTIONS[fault.action]} node {fault.node}"
 
 
+def event(plan: Any, fault: Any) -> dict[str, Any]:
+    """The [[event]] table of a fault, without its time."""
+    return {"action": ACTIONS[fault.action], "node": fault.node}
+
+
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     settings = ("nodes = 6", "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20")

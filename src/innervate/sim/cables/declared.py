@@ -7,7 +7,6 @@ first sender: latencies are taken from it; 0 is for what no user handed in, whic
 """
 
 import functools
-from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -19,13 +18,14 @@ from innervate.kernel import compilation
 from innervate.kernel.bits import mix
 from innervate.network import Network, layouts_of, networks
 from innervate.scenario.actions.cables import GIVE
-from innervate.sim import clocks, wheel
+from innervate.sim import came, clocks, wheel
 from innervate.sim.cables import loop, recorder
 from innervate.sim.cables.build import Added, Records, build
 from innervate.sim.cables.simulation import Cables
 from innervate.sim.cables.world import ALIVE, SOURCE, World
+from innervate.sim.came import note_came
 from innervate.sim.counts import Counts
-from innervate.sim.own import check_of, message_times, words_of
+from innervate.sim.own import came_of, check_of, message_times, with_messages, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, put
@@ -148,7 +148,9 @@ def _users_side(do: ModuleType, is_timed: bool) -> dict[str, Callable[..., Any]]
     def deliver_timed(world, time, node, port, frame):  # type: ignore[no-untyped-def]
         on_deliver(world, time, node, port, frame)
         if frame.made_at > 0:
-            recorder.keep_latency(world, (time - frame.made_at) & MASK30)
+            latency = (time - frame.made_at) & MASK30
+            recorder.keep_latency(world, latency)
+            note_came(world.watch, time - latency)
 
     return {
         "take_input": take_timed, "sense": sense_timed, "on_deliver": deliver_timed,
@@ -171,8 +173,8 @@ class DeclaredCables(Cables):
 
     def counts(self) -> Counts:
         """Frames of all cables, and what users gave and got."""
-        offered = bisect_right(self.message_times, self.clock_us())
-        return super().counts()._replace(offered=offered)
+        found = super().counts()
+        return with_messages(found, self.message_times, self.clock_us(), self.world.watch)
 
 
 def _functions(network: Network) -> ModuleType:
@@ -190,7 +192,7 @@ def compiled_loop(network: Network) -> Callable[..., None]:
     """The loop of a network over cables, compiled with its protocol."""
     do = _functions(network)
     own = tuple(filter(callable, vars(do).values()))
-    hot = [recorder, *compilation.modules_of(network.protocol)]
+    hot = [recorder, came, *compilation.modules_of(network.protocol)]
     if network.has("invariants"):
         hot += compilation.modules_of(network.invariants)
     advance: Callable[..., None] = loop.compiled(do, tuple(hot), (), own=own)
@@ -208,7 +210,8 @@ def world_of(plan: Any, plain: bool, kept: Recorded) -> World:
     for place, given in enumerate(plan.inputs):
         put(items, place, **given.item)
         rows.append((given.at_us, GIVE, -1, given.node, place, given.kind))
-    return build(plan, of, tables, kept, Added(carrier=items, inputs=tuple(rows), ways=1))
+    added = Added(came_of(plan, tables), items, tuple(rows), ways=1)
+    return build(plan, of, tables, kept, added)
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> Cables:

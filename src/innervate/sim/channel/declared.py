@@ -6,7 +6,6 @@ on_carrier; TIMERS up to 2) and `fields`. A frame says by `slots` how long it is
 """
 
 import functools
-from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -18,15 +17,16 @@ from innervate.dialect import arith, outbox, rng
 from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
 from innervate.network import Network, layouts_of, networks
-from innervate.sim import clocks, delays, heap, rows, taps
+from innervate.sim import came, clocks, delays, heap, rows, taps
 from innervate.sim.cables.declared import Unfit, frames_of
+from innervate.sim.came import Came, note_came
 from innervate.sim.channel import listening, loop, medium, traffic
 from innervate.sim.channel import world as w
 from innervate.sim.channel.build import OUTBOX, Records, build
 from innervate.sim.channel.calls import handlers
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.counts import Counts
-from innervate.sim.own import check_of, message_times, unheard, words_of
+from innervate.sim.own import came_of, check_of, message_times, with_messages, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.tables import Tables, get, put, row_dtype
@@ -47,8 +47,7 @@ class Above(NamedTuple):
     items: Any
     kinds: Any
     counters: Any
-    moments: Any
-    came: Any
+    came: Came
 
 
 def extended(declared: Any, more: Any) -> Any:
@@ -157,7 +156,7 @@ def _noted(copy: Any, kind_of: Any, is_timed: bool) -> dict[str, Callable[..., A
         latency = (time - since) & arith.MASK30 if since > 0 else -1
         listening.keep(world, node, kind_of(frame), time, latency)
         if since > 0:
-            listening.note_came(world, time - latency)
+            note_came(world.above.came, time - latency)
 
     return {"record_sent": record_sent, "record_received": record_received,
             "note_received": note_timed if is_timed else note_received, "kind_of": kind_of,
@@ -182,7 +181,7 @@ def compiled_loop(network: Network) -> Callable[..., None]:
     """The loop of a network on a channel, compiled with its protocol."""
     do = functions(network)
     compilation.register(traffic, taps, rows, hot=False)
-    compilation.register(arith, outbox, rng, heap, medium, clocks, delays, listening)
+    compilation.register(arith, outbox, rng, heap, medium, clocks, delays, listening, came)
     compilation.register_functions(*(one for one in vars(do).values() if callable(one)))
     modules = compilation.modules_of(network.protocol)
     if network.has("invariants"):
@@ -224,22 +223,16 @@ class DeclaredChannel(Channel):
         numbers, radios = self.world.above.counters, self.world.radios
         count = self.plan.stations
         lost = {name: int(numbers[place]) for name, place in listening.LOST.items()}
-        return Counts(
+        found = Counts(
             nodes=count,
             off=tuple(node for node in range(count) if not get(radios, node, "alive")),
             sent=int(numbers[listening.SENT]),
             arrived=int(numbers[listening.ARRIVED]),
             lost_by=lost,
-            offered=bisect_right(self.message_times, self.clock_us()),
             delivered=int(numbers[listening.DELIVERED]),
-            unheard=self._unheard(int(numbers[listening.DELIVERED])),
             is_shared=True,
         )
-
-    def _unheard(self, delivered: int) -> int:
-        above = self.world.above
-        came = zip(above.moments, above.came, strict=True)
-        return unheard(self.message_times, self.clock_us(), came, delivered)
+        return with_messages(found, self.message_times, self.clock_us(), self.world.above.came)
 
 
 def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:
@@ -256,10 +249,7 @@ def world_of(plan: Any, plain: bool, kept: Recorded) -> w.World:
     kinds = made.given([one.kind for one in plan.inputs] + [0])
     world = build(plan, of, plain, kept)
     counters = made.numbers(listening.COUNTERS, 0, np.int64)
-    moments = sorted({one.at_us for one in plan.inputs})
-    times = made.given(moments, np.int64)
-    came = made.numbers(len(times), 0, np.int64)
-    return world._replace(above=Above(items, kinds, counters, times, came))
+    return world._replace(above=Above(items, kinds, counters, came_of(plan, made)))
 
 
 def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> DeclaredChannel:

@@ -66,20 +66,6 @@ def keep(world, node, kind, time, latency):
         row.slots = latency
 
 
-def note_came(world, since):
-    """What users had given at a moment has been delivered."""
-    moments = world.above.moments
-    low, high = 0, len(moments)
-    while low < high:
-        middle = (low + high) // 2
-        if moments[middle] <= since:
-            low = middle + 1
-        else:
-            high = middle
-    if low > 0:
-        world.above.came[low - 1] += 1
-
-
 def note_sent(world, node, frame, time):
     """Frames with packets of the medium's own; there are none."""
 

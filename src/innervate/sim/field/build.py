@@ -12,6 +12,7 @@ from innervate.sim.field import listening, powers, queue
 from innervate.sim.field import world as w
 from innervate.sim.field.loop import BOOT, NEVER
 from innervate.sim.field.medium import NONE
+from innervate.sim.own import came_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import ACTION, TAP, Tables, put, uniform
 
@@ -49,6 +50,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
         **_medium(tables, plan, fields.FRAME),
         **_given(tables, plan, fields.FRAME),
         item=tables.states(fields.FRAME, 1),
+        came=came_of(plan, tables),
         out=tables.outbox(room, fields.FRAME, ACTION),
         counters=tables.numbers(listening.COUNTERS, 0, np.int64),
         # In one event all may be given a frame, and all be told that a carrier has gone.
@@ -128,7 +130,7 @@ def _events(plan: Any) -> list[tuple[int, ...]]:
 
 def _given(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
     """What happens to nodes, and what they are handed, as tables in order of time."""
-    offers = [(one.at_us, one.node, one.kind, 0) for one in plan.inputs]
+    offers = [(one.at_us, one.node, one.kind) for one in plan.inputs]
     items = tables.states(frame, len(offers) + 1)
     for place, one in enumerate(plan.inputs):
         put(items, place, **one.item)

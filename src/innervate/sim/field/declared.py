@@ -8,7 +8,6 @@ it came in, dBm) and `made_at` (when its content was handed in), each where it i
 
 import functools
 import importlib
-from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from types import ModuleType
@@ -21,15 +20,16 @@ from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
 from innervate.network import Network, access_of, layouts_of, networks
 from innervate.scenario.declared.field import sizes_of
-from innervate.sim import clocks, heap, rows, taps
+from innervate.sim import came, clocks, heap, rows, taps
 from innervate.sim.cables.declared import Unfit, frames_of
+from innervate.sim.came import note_came
 from innervate.sim.channel.build import grow_heap
 from innervate.sim.counts import Counts
 from innervate.sim.field import access, build, calls, listening, loop, medium, powers, timers
 from innervate.sim.field import world as w
 from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import DEAD, OFF
-from innervate.sim.own import check_of, message_times, unheard, words_of
+from innervate.sim.own import check_of, message_times, with_messages, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
 from innervate.sim.status import POOL_FULL
@@ -217,7 +217,7 @@ def _noted(copy: Any, kind_of: Any, names: set[str]) -> tuple[Callable[..., Any]
         latency = (time - since) & arith.MASK30 if since > 0 else -1
         listening.keep(world, node, kind_of(frame), time, latency)
         if since > 0:
-            listening.note_came(world, time - latency)
+            note_came(world.came, time - latency)
 
     def take_item(world, index):  # type: ignore[no-untyped-def]
         copy(world.item[0], world.items[index])
@@ -265,7 +265,7 @@ def compiled_loop(network: Network) -> Callable[..., None]:
     """The loop of a network over a field, compiled with its protocol."""
     do = functions(network)
     compilation.register(arith, outbox, rng, heap, clocks)
-    compilation.register(medium, rows, taps, listening, hot=False)
+    compilation.register(medium, rows, taps, listening, came, hot=False)
     compilation.register_functions(powers.strength)
     modules = compilation.modules_of(network.protocol)
     if network.has("invariants"):
@@ -306,24 +306,16 @@ class DeclaredField(Field):
         numbers, radios = self.world.counters, self.world.radios
         lost = {name: int(numbers[place]) for name, place in listening.LOST.items()}
         count = self.plan.nodes
-        return Counts(
+        found = Counts(
             nodes=count,
             off=tuple(node for node in range(count) if self._is_off(radios, node)),
             sent=int(numbers[listening.SENT]),
             arrived=int(numbers[listening.ARRIVED]),
             lost_by={name: many for name, many in lost.items() if many},
-            offered=bisect_right(self.message_times, self.clock_us()),
             delivered=int(numbers[listening.DELIVERED]),
-            unheard=self._unheard(int(numbers[listening.DELIVERED])),
             is_shared=True,
-        )  # fmt: skip
-
-    def _unheard(self, delivered: int) -> int:
-        came = (
-            (one.at_us, int(get(self.world.offers, place, "came")))
-            for place, one in enumerate(self.plan.inputs)
         )
-        return unheard(self.message_times, self.clock_us(), came, delivered)
+        return with_messages(found, self.message_times, self.clock_us(), self.world.came)
 
     def _is_off(self, radios: Any, node: int) -> bool:
         """Switched off, or not there yet; not who is only about to start with the others."""

@@ -106,19 +106,6 @@ def keep(world, node, kind, time, latency):
         row.latency = latency
 
 
-def note_came(world, since):
-    """What was given at a time has been delivered; the last of that moment stands for all."""
-    low, high = 0, world.run[0].offers
-    while low < high:
-        middle = (low + high) // 2
-        if world.offers[middle].time <= since:
-            low = middle + 1
-        else:
-            high = middle
-    if low > 0:
-        world.offers[low - 1].came += 1
-
-
 def put_off(world, do, node, frame, act):
     """A frame has to wait for those before it."""
     run, radio = world.run[0], world.radios[node]

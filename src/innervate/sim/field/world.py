@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+from innervate.sim.came import Came
 from innervate.sim.channel.world import Heap
 from innervate.sim.tables import Out
 
@@ -18,7 +19,7 @@ RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "
          "first", "waiting")  # fmt: skip
 AIR = ("node", "state", "start", "end", "digest", "receivers")
 COMMAND = ("time", "action", "node", "other", "value")
-OFFER = ("time", "node", "kind", "came")  # how often what was given then was delivered
+OFFER = ("time", "node", "kind")
 ROW = ("time", "node", "code", "a", "b")
 DELIVERY = ("time", "node", "port", "kind", "latency")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
@@ -63,6 +64,7 @@ class World(NamedTuple):
     offers: Any  # what nodes are handed, in order of time
     items: Any  # ... the items
     item: Any
+    came: Came  # what of that was delivered
     out: Out
     mac_out: Out
     counters: Any  # frames by what became of them (see listening.py)

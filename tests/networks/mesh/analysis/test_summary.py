@@ -8,7 +8,7 @@ from innervate.networks.mesh.analysis import messages as mesh_messages
 from innervate.networks.mesh.analysis import network as mesh_network
 from innervate.networks.mesh.analysis import summary as mesh
 from innervate.networks.mesh.analysis import way as mesh_way
-from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground, distances
+from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ALARM,
@@ -35,6 +35,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer, Walk
 from innervate.networks.mesh.sim import world as w
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
+from innervate.topology.placement import UNREACHABLE, distances
 
 S = 1_000_000
 

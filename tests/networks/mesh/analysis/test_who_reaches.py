@@ -10,6 +10,7 @@ from innervate.networks.mesh.analysis.reach import Choices, ways
 from innervate.networks.mesh.protocol.constants import PATH_MAX
 
 COUNT = 7
+FAR = 99
 
 
 def network(draw, goes_back):
@@ -26,40 +27,53 @@ def network(draw, goes_back):
 
 
 def first_choices(known, live, leads, node):
-    """(where the chain of first choices that carry leads to, how far): NOWHERE without an end."""
-    at, hops = node, 0
-    while not leads[at]:
-        fits = [to for to in known.named[at].tolist() if to != NOWHERE and live(at, to)]
-        if not fits or hops > COUNT:
-            return NOWHERE, NOWHERE
-        at, hops = fits[0], hops + 1
-    return at, hops
+    """(where the chain of first choices that carry leads to, how far, by whom): or NOWHERE."""
+    path = [node]
+    while not leads[path[-1]]:
+        fits = handed(known, live, path[-1], others=False)
+        if not fits or len(path) > COUNT + 1:
+            return NOWHERE, NOWHERE, NOWHERE
+        path.append(fits[0])
+    return path[-1], len(path) - 1, (*path, NOWHERE)[1]
 
 
-def handed(known, live, node):
+def handed(known, live, node, others=True):
     """Everybody whom a node can hand a packet to, in order."""
-    order = [*known.named[node].tolist(), *np.flatnonzero(known.neighbours[node]).tolist()]
+    order = known.named[node].tolist()
+    if others:
+        order += np.flatnonzero(known.neighbours[node]).tolist()
     return [to for to in order if to != NOWHERE and live(node, to)]
 
 
-def searched(known, live, node):
-    """True if a packet arrives that is given back where it gets stuck."""
+def search(known, live, node, gateway):
+    """Hops to the gateway of a packet that is given back where it gets stuck; FAR = too many."""
     met, edge = {node}, [node]
-    for _ in range(PATH_MAX):
+    for hops in range(PATH_MAX + 1):
+        if gateway in met:
+            return hops
         edge = [to for one in edge for to in handed(known, live, one) if to not in met]
         met |= set(edge)
-    return known.gateway[node] in met
+    return FAR
+
+
+def searched(known, live, node):
+    """To whom such a packet goes that arrives: who is a hop nearer; else NOWHERE."""
+    gateway = known.gateway[node]
+    hops = search(known, live, node, gateway)
+    nearer = [to for to in sorted(handed(known, live, node))
+              if search(known, live, to, gateway) == hops - 1]  # fmt: skip
+    return NOWHERE if hops == FAR else nearer[0]
 
 
 def walked(known, live, node):
-    """True if one arrives that goes on to whom it has not met, until it is stuck."""
+    """To whom one goes that arrives, and goes on to whom it has not met; else NOWHERE."""
     path = [node]
     while path[-1] != known.gateway[node]:
         onward = [to for to in handed(known, live, path[-1]) if to not in path]
         if not onward:
-            return False
+            return NOWHERE
         path.append(onward[0])
-    return True
+    return path[1]
 
 
 def expected(known, carries, on, off, leads):
@@ -75,13 +89,14 @@ def expected(known, carries, on, off, leads):
     rows = []
     for node in range(COUNT):
         gateway, leader = known.gateway[node], node in leading
-        root, depth = first_choices(known, live, [n in leading for n in range(COUNT)], node)
+        root, depth, by = first_choices(known, live, [n in leading for n in range(COUNT)], node)
         there = leader or root == gateway != NOWHERE
         if not there and on[node] and gateway in leading:
-            there = (searched if known.goes_back else walked)(known, live, node)
+            by = (searched if known.goes_back else walked)(known, live, node)
+            there = by != NOWHERE
         cut_off = on[node] and bool(leading) and node not in both
         rows.append({
-            "hop": NOWHERE if leader or not on[node] else known.named[node, 0],
+            "hop": NOWHERE if leader or not on[node] else by if there else known.named[node, 0],
             "depth": depth if there else NOWHERE,
             "on": on[node], "off": off[node], "leads": leader,
             "joined": on[node] and (leader or gateway != NOWHERE),

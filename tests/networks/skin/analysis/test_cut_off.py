@@ -138,7 +138,8 @@ def test_cells_that_never_got_a_way_are_said():
 def test_samples_lost_on_the_way_are_said_and_those_before_the_first_way_are_not():
     quiet = summary(columns=4, rows=4, data={"rate_hz": 100})
     assert quiet["lost_at_start"] == quiet["data"]["lost"] > 0
-    assert quiet["headline"]["text"] == "Every cell has a way to the PC, and no sample was lost."
+    kept = "Every cell has a way to the PC, and no sample was lost after the start."
+    assert quiet["headline"]["text"] == kept
     torn = summary(CUT_0, columns=4, rows=4, roots=((0, 0), (3, 3)), data={"rate_hz": 100})
     lost = torn["data"]["lost"] - torn["lost_at_start"]
     assert torn["headline"]["level"] == DEGRADED
@@ -193,6 +194,10 @@ def test_the_observer_agrees_with_a_search_along_the_cables():
         (SkinFacts(9, sent=100_001, lost=1), DEGRADED,
          "1 of 100,001 samples was lost (less than 0.001 %); every cell has a way to the PC."),
         (SkinFacts(9, sent=7), OK, "Every cell has a way to the PC, and no sample was lost."),
+        (SkinFacts(9, sent=7, lost=2, early=2), OK,
+         "Every cell has a way to the PC, and no sample was lost after the start."),
+        (SkinFacts(9, sent=7, lost=3, early=2), DEGRADED,
+         "1 of 5 samples was lost (20 %); every cell has a way to the PC."),
         (SkinFacts(9, missed=1200), DEGRADED,
          "Commands did not reach cells that had a way, 1,200 times; every cell has a way to the "
          "PC."),

@@ -135,6 +135,7 @@ def test_a_command_of_the_pc_comes_to_its_cell_once_or_to_all():
 
     first, second, at_cell, at_pc = asyncio.run(main())
     assert first.ports == second.ports == 2
+    assert (first.checked, second.checked) == (False, True)  # whose file says no `nodes`; to all
     assert second.number == first.number + 1
     alone, everybody = heard[4]
     assert (alone.number, alone.code, alone.value, alone.to_all) == (first.number, 7, 500, False)

@@ -86,7 +86,7 @@ def test_a_command_goes_to_a_cell_or_to_all_by_the_ports_that_have_some(cell, to
     one = pc(3)
     one.stack.node.size[:] = [2, 0, 1]
     one.stack.node.own[0].command = 41
-    assert one.send_command(255, 65_535, cell) == (41, 2)
+    assert one.send_command(255, 65_535, cell) == (41, 2, cell is None)
     ((_, item),) = one.engine.told
     assert (item.dist, item.proximity, item.cell) == (255, 65_535, to)
     assert one.outcomes == {"commands sent": 1}
@@ -95,8 +95,12 @@ def test_a_command_goes_to_a_cell_or_to_all_by_the_ports_that_have_some(cell, to
     for wrong in ({"code": 1.5}, {"code": 1, "value": "2"}, {"code": 1, "cell": "c3"}):
         with pytest.raises(ValueError, match="are whole numbers"):
             one._asked_for_command(wrong)
-    assert one._asked_for_command({"code": 1, "cell": 7}) == {"number": 41, "ports": 2}
-    one.send_command(3)
+    assert one._asked_for_command({"code": 1, "cell": 7}) == {
+        "number": 41,
+        "ports": 2,
+        "checked": False,
+    }
+    assert one.send_command(3).checked
     assert [item.cell for _, item in one.engine.told] == [to, 7, EVERYBODY]
     assert [item.proximity for _, item in one.engine.told] == [65_535, 0, 0]
     with pytest.raises(ValueError, match="only the PC of a skin sends commands"):

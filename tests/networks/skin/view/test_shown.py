@@ -90,7 +90,9 @@ def test_samples_of_cells_that_never_had_a_way_are_not_counted_as_lost(view, mon
         apart[:] = now
         view.memory.apart_most = most
         view.headline()
-        assert (told[-1].sent, told[-1].lost, told[-1].cut_off_before) == (94, 5, before)
+        found = told[-1]
+        assert (found.sent, found.lost, found.early) == (100, 11, 6)
+        assert found.cut_off_before == before
         assert view.arrays(False)["apart"] == sum(one >= 0 for one in now)
 
 

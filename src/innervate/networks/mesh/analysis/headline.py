@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
 from innervate.networks.mesh.analysis.reach import Ways

@@ -1,12 +1,10 @@
 """Who is there and who is connected, over the good links of a mesh's plan; shortest paths."""
 
 from bisect import bisect_right
-from collections import deque
 from typing import Any
 
 from innervate.scenario.actions.field import CUT, KILL, RESTART, RESTORE, REVIVE
-
-UNREACHABLE = -1
+from innervate.topology.placement import distances, neighbours
 
 
 class Ground:
@@ -52,12 +50,8 @@ class Ground:
             if fault.at_us <= time_us and fault.action in (CUT, RESTORE):
                 pair = (min(fault.node, fault.other), max(fault.node, fault.other))
                 (cut.add if fault.action == CUT else cut.discard)(pair)
-        near: list[list[int]] = [[] for _ in on]
-        for a, b in self.plan.good:
-            if on[a] and on[b] and (a, b) not in cut:
-                near[a].append(b)
-                near[b].append(a)
-        return [sorted(nodes) for nodes in near]
+        links = [(a, b) for a, b in self.plan.good if on[a] and on[b] and (a, b) not in cut]
+        return [sorted(nodes) for nodes in neighbours(len(on), links)]
 
     def hops(self, source: int, dest: int, time_us: int) -> int:
         """Hops of the shortest path at a time; UNREACHABLE if there is none."""
@@ -65,17 +59,3 @@ class Ground:
         if (period, dest) not in self._far:
             self._far[period, dest] = distances(self.near_at(time_us), dest)
         return self._far[period, dest][source]
-
-
-def distances(near: list[list[int]], source: int) -> list[int]:
-    """Hops from a node to every node; UNREACHABLE where there is no path."""
-    found = [UNREACHABLE] * len(near)
-    found[source] = 0
-    queue = deque([source])
-    while queue:
-        here = queue.popleft()
-        for node in near[here]:
-            if found[node] == UNREACHABLE:
-                found[node] = found[here] + 1
-                queue.append(node)
-    return found

@@ -21,6 +21,7 @@ from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.sim.field.powers import CAPTURE_ONE
 from innervate.sim.field.states import ALIVE, DEAD
+from innervate.topology.placement import distances
 
 FAR = 1 << 30
 HALF = 0.5
@@ -42,7 +43,9 @@ class Choices(NamedTuple):
 class Ways(NamedTuple):
     """Who reaches a gateway; one entry per node."""
 
-    hop: Numbers  # whom the node would try first, NOWHERE nobody
+    # by whom its packets get there: the first choice that carries frames, or a neighbour of the
+    # search; of who has no way, whom it would try first; NOWHERE nobody
+    hop: Numbers
     # hops of the way over first choices that carry frames; NOWHERE where that leads nowhere
     # and a packet has to search
     depth: Numbers
@@ -91,12 +94,14 @@ def ways(known: Choices, carries: Flags, on: Flags, off: Flags, leads: Flags) ->
     root, depth = follow(first, leads)
     there = leads | ((root != NOWHERE) & (root == known.gateway) & (depth <= const.PATH_MAX))
     rest = np.flatnonzero(on & ~there & (known.gateway != NOWHERE))
+    hop = first.copy()
     if len(rest):
-        there[rest] = _searched(known, live, leads, over, rest)
+        hop[rest] = _searched(known, live, leads, over, rest)
+        there[rest] = hop[rest] != NOWHERE
     joined = on & (leads | (known.gateway != NOWHERE))
     cut_off = on & ~reach(live & live.T, leads) if leads.any() else np.zeros(count, np.bool_)
     return Ways(
-        hop=np.where(leads | ~on, NOWHERE, named[:, 0]),
+        hop=np.where(leads | ~on, NOWHERE, np.where(there, hop, named[:, 0])),
         depth=np.where(there, depth, NOWHERE),
         on=on,
         off=off,
@@ -107,8 +112,11 @@ def ways(known: Choices, carries: Flags, on: Flags, off: Flags, leads: Flags) ->
     )
 
 
-def _searched(known: Choices, live: Flags, leads: Flags, over: Flags, rest: Numbers) -> Flags:
-    """Per node of `rest`, whether its packets arrive although its first choices lead nowhere."""
+def _searched(known: Choices, live: Flags, leads: Flags, over: Flags, rest: Numbers) -> Numbers:
+    """Per node of `rest`, by whom its packets arrive although its first choices lead nowhere.
+
+    NOWHERE where they do not arrive.
+    """
     if known.goes_back:
         # It comes to everybody whom anybody there can hand it to, if need be.
         count = len(leads)
@@ -116,30 +124,36 @@ def _searched(known: Choices, live: Flags, leads: Flags, over: Flags, rest: Numb
         to = known.named[over]
         hands[np.repeat(np.arange(count), over.sum(axis=1)), to] = True
         hands &= live
-        found = np.zeros(len(rest), np.bool_)
-        for gateway in np.unique(known.gateway[rest]).tolist():
-            if leads[gateway]:
-                start = np.arange(count) == gateway
-                mine = known.gateway[rest] == gateway
-                found |= mine & reach(hands.T, start, const.PATH_MAX)[rest]
-        return found
-    return np.array([_walks(known, live, leads, node) for node in rest.tolist()], np.bool_)
+        back = [np.flatnonzero(column).tolist() for column in hands.T]
+        gateways = np.unique(known.gateway[rest[leads[known.gateway[rest]]]]).tolist()
+        far = {gateway: np.array(distances(back, gateway)) for gateway in gateways}
+        found = [_nearer(hands[node], far.get(known.gateway[node]), node) for node in rest]
+    else:
+        found = [_walked(known, live, leads, node) for node in rest.tolist()]
+    return np.array(found, np.int64)
 
 
-def _walks(known: Choices, live: Flags, leads: Flags, node: int) -> bool:
-    """True if a packet of a node arrives that is never given back, and meets nobody twice."""
+def _nearer(hands: Flags, far: Numbers | None, node: int) -> int:
+    """Whom a node hands to that is a hop nearer to its gateway; NOWHERE if that is too far."""
+    if far is None or not 0 < far[node] <= const.PATH_MAX:
+        return NOWHERE
+    return int(np.argmax(hands & (far == far[node] - 1)))
+
+
+def _walked(known: Choices, live: Flags, leads: Flags, node: int) -> int:
+    """To whom a packet goes first that is never given back, and meets nobody twice; see above."""
     gateway, path = int(known.gateway[node]), [node]
     if not leads[gateway]:
-        return False
+        return NOWHERE
     while path[-1] != gateway and len(path) <= const.PATH_MAX:
         here = path[-1]
         order = [*known.named[here].tolist(), *np.flatnonzero(known.neighbours[here]).tolist()]
         fits = (to for to in order if to != NOWHERE and to not in path and live[here, to])
         onward = next(fits, NOWHERE)
         if onward == NOWHERE:
-            return False
+            return NOWHERE
         path.append(onward)
-    return path[-1] == gateway
+    return path[1] if path[-1] == gateway else NOWHERE
 
 
 def of_simulation(world: Any, plan: Any) -> Ways:

@@ -10,10 +10,11 @@ from innervate.networks.mesh.analysis import network as network
 from innervate.networks.mesh.analysis import summary_keys as keys
 from innervate.networks.mesh.analysis.alarms import alarms, all_crossings
 from innervate.networks.mesh.analysis.headline import headline, traffic
-from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground
+from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.reach import of_simulation
 from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
 from innervate.sim.tables import get
+from innervate.topology.placement import UNREACHABLE
 
 NONE = 255  # no next hop, no alternate
 

@@ -8,8 +8,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from innervate.analysis.words import number_of
 from innervate.export.errors import ExportError
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.export.fit import Mesh
 
 FRAMES = 10_000  # a share stands for so many, as nodes do not say how many there were

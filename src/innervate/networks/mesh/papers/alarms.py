@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
-from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
@@ -19,7 +18,13 @@ from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
 from innervate.sim.status import ON_FRAME
-from innervate.topology.placement import distance_cm, neighbours, path_loss_cdb
+from innervate.topology.placement import (
+    UNREACHABLE,
+    distance_cm,
+    distances,
+    neighbours,
+    path_loss_cdb,
+)
 from innervate.trace.streams import stream
 
 TITLE = "2.1, 2.2: a robot crosses the fence"

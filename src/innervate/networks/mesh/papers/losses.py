@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, HANDLES, counted
-from innervate.networks.mesh.analysis.paths import UNREACHABLE, Ground
+from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.protocol.constants import DATA, PATH_MAX, REPORT_EXPIRED
 from innervate.papers.words import joined
+from innervate.topology.placement import UNREACHABLE
 
 HOW = (
     "at a dead node",

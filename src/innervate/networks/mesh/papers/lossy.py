@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.messages import DELIVERED, messages
-from innervate.networks.mesh.analysis.paths import Ground, distances
+from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.papers.document import RELIABLE, beyond, ours, said
 from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
@@ -18,7 +18,7 @@ from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
 from innervate.sim.tables import get
-from innervate.topology.placement import UNHEARD
+from innervate.topology.placement import UNHEARD, distances
 
 TITLE = "2.2: frames get lost, and nobody dies"
 CAPTION = (

@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.networks.mesh.papers.document import SHORTEST, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
 from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
@@ -14,7 +13,7 @@ from innervate.papers import drawing
 from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
 from innervate.plot import style
-from innervate.topology.placement import good_links, neighbours
+from innervate.topology.placement import UNREACHABLE, distances, good_links, neighbours
 
 TITLE = "2.1: shortest ways, and other ones"
 CAPTION = (

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis import messages as sent
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.plot.words import fault_words
@@ -47,7 +48,7 @@ def over_time(result: Any, bins: int = BINS) -> Steps | None:
     share = 100.0 * came[some] / asked[some]
     x = Axis(low / 1e6, (low + bins * width) / 1e6, "seconds")
     lowest = words.share_words(share.min() / 100)
-    whole = words.number_of(len(found.state), "message")
+    whole = number_of(len(found.state), "message")
     text = f"{lowest} of {whole}."
     if bins > 1:
         each = words.ms_words(width / 1e3)

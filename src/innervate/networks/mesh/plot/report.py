@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.analysis.network import gateways
@@ -102,7 +103,7 @@ def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
         number = crossings.index(shown) + 1
         text += (
             f" The alarm of crossing {number}, the slowest, and who was off then: "
-            f"{words.number_of(len(hops), 'hop')}, {'flooded' if shown.flooded else 'routed'}."
+            f"{number_of(len(hops), 'hop')}, {'flooded' if shown.flooded else 'routed'}."
         )
     led = [gateway["node"] for gateway in gateways(result)]
     if led and result.plan.ranks[led[-1]] != 0:

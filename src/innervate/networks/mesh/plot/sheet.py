@@ -8,9 +8,8 @@ import numpy as np
 
 from innervate.analysis.spread import scaled
 from innervate.networks.mesh.analysis.fence import edges_of
-from innervate.networks.mesh.analysis.paths import UNREACHABLE, distances
 from innervate.plot.svg import Point
-from innervate.topology.placement import neighbours
+from innervate.topology.placement import UNREACHABLE, distances, neighbours
 
 WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
 LONELY_CM = 500.0, 100.0  # around a node that is alone

@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.network import takeovers
 from innervate.networks.mesh.protocol import constants as c
-from innervate.plot.words import figure_words, ms_words, number_of, share_words
+from innervate.plot.words import figure_words, ms_words, share_words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PACKETS = {

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.verify import cases, replay
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.mutants import MUTANTS, hunt

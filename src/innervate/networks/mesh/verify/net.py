@@ -18,6 +18,7 @@ from innervate.networks.mesh.protocol.queue import UNACKED
 from innervate.networks.mesh.verify import local as local
 from innervate.networks.mesh.verify.local import NEVER, NONE
 from innervate.networks.mesh.verify.model import MeshModel
+from innervate.topology.placement import neighbours
 from innervate.verify.values import with_one
 
 # Kinds of moves.
@@ -71,12 +72,7 @@ class Nets:
         self.model = model
         self.locals = locals_ or local.Locals(model)
         self.n = model.nodes
-        self.neighbours: list[list[int]] = [[] for _ in range(self.n)]
-        for a, b in model.links:
-            self.neighbours[a].append(b)
-            self.neighbours[b].append(a)
-        for row in self.neighbours:
-            row.sort()
+        self.neighbours = [sorted(nodes) for nodes in neighbours(self.n, model.links)]
         self.sets: list[frozenset[tuple[int, int, int, int]]] = [frozenset()]
         self.set_numbers = {self.sets[0]: 0}
         self.form = struct.Struct(f"{3 * self.n + 6}i")

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from innervate.analysis.headline import Headline
+from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Ways, of_simulation
 from innervate.networks.mesh.plot.words import fault_words
@@ -14,9 +15,9 @@ from innervate.networks.mesh.scenario.plan import MeshFault
 from innervate.networks.mesh.sim.build import MACS
 from innervate.networks.mesh.view.recorder import TrafficRecorder
 from innervate.networks.mesh.view.scene import Field
-from innervate.plot.words import number_of
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE, TABLE
 from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
+from innervate.topology.placement import neighbours
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
@@ -62,11 +63,7 @@ class MeshView(View):
         self.field = Field(self.plan)
         count = self.plan.nodes
         self.memory = MeshMemory(air_us=np.zeros(count), load=np.zeros(count))
-        near: list[list[int]] = [[] for _ in range(count)]
-        for a, b in self.plan.good:
-            near[a].append(b)
-            near[b].append(a)
-        self.neighbours = near
+        self.neighbours = neighbours(count, self.plan.good)
         self.recorder = TrafficRecorder(engine)
         self._found: tuple[int, Ways] | None = None
         if self.plan.mac not in MACS:  # a channel on which everybody hears everybody

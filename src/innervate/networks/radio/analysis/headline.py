@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
-from innervate.analysis.words import figure_words, number_of
+from innervate.analysis.words import figure_words
+from innervate.kernel.words import number_of
 
 NAMED = 4  # so many robots are named one by one
 ROUNDS = 4  # turns of everybody that may pass before somebody's packet gets through

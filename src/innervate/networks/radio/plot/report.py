@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.kernel.words import number_of
 from innervate.networks.radio.analysis import air
 from innervate.networks.radio.plot import charts as radio_charts
 from innervate.networks.radio.plot import scene as radio_scene
@@ -42,7 +43,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
     params = result.plan.params
     switch = f"in {words.ms_words(params['ta_us'] / 1e3)}" if params["ta_us"] else "at once"
     over = (
-        f"{summary['name']}: {words.number_of(summary['stations'], 'station')} on one radio "
+        f"{summary['name']}: {number_of(summary['stations'], 'station')} on one radio "
         f"channel, {told.protocol_words(summary['protocol'])}, packets of "
         f"{params['packet_slots']} slots of {params['slot_us']} us, radios that switch {switch}; "
         f"seed {summary['seed']}"
@@ -78,7 +79,7 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
         return f"{begin}; every packet was delivered {took} later."
     missing = offered - summary["delivered"]
     came, end = (
-        f"{words.number_of(summary['delivered'], 'packet')} {_was(summary['delivered'])}",
+        f"{number_of(summary['delivered'], 'packet')} {_was(summary['delivered'])}",
         f"{missing:,} {_was(missing)} not by the end of the run",
     )
     return f"{begin}; {came} delivered within {took}, {end}."
@@ -100,7 +101,7 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
     expected = summary["offered"] - summary["abandoned"]
-    begin = f"{told.robots(summary['stations'])} had {words.number_of(expected, 'packet')} to send"
+    begin = f"{told.robots(summary['stations'])} had {number_of(expected, 'packet')} to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
     share = words.share_words(summary["delivered"] / expected)
@@ -127,7 +128,7 @@ def _taken_for_collided(result: Any) -> list[str]:
     count = air.taken_for_collided(result)
     if not count:
         return []
-    which = f"{words.number_of(count, 'transmission')} that met no other robot's {_was(count)}"
+    which = f"{number_of(count, 'transmission')} that met no other robot's {_was(count)}"
     return [
         f"{which} taken for collided: a sender cannot tell a collision from an answer that is "
         "missing."
@@ -139,7 +140,7 @@ def _silence(summary: Mapping[str, Any]) -> str:
     silent = summary["lost_silently"]
     if not silent:
         return "No packet was lost silently."
-    who = words.number_of(silent, "packet")
+    who = number_of(silent, "packet")
     return f"Lost silently: {who} that nobody received, taken for delivered by the sender."
 
 
@@ -251,7 +252,7 @@ def slotted_top(result: Any, summary: Mapping[str, Any]) -> str:
     )
     who = told.robots(summary["stations"])
     if model.traffic.kind == "disaster" and summary["delivered"] < summary["stations"]:
-        count = words.number_of(summary["delivered"], "packet")
+        count = number_of(summary["delivered"], "packet")
         head = f"{who} started at once; {count} came through in the time."
     elif model.traffic.kind == "disaster":
         after = f"{summary['duration_slots']:.4g} slots later"

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from innervate.dialect.access import REPORT_DELIVERED, REPORT_LEFT
+from innervate.kernel.words import number_of
 from innervate.networks.radio.protocol import constants as w
-from innervate.plot.words import ms_words, number_of
+from innervate.plot.words import ms_words
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 
 

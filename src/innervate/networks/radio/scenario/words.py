@@ -1,6 +1,6 @@
 """A radio scenario in a few lines, without running it."""
 
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.networks.radio.verify import grid as grids
 from innervate.networks.radio.verify import tree as trees
 from innervate.networks.radio.verify.grid import MODES, STATIONS, WORDS, Found, Grid, story

@@ -4,7 +4,7 @@ import random
 from collections.abc import Iterator
 from typing import Any
 
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.scenario.shrink import Tables, with_fewer_keys
 
 SHARE = (0.0, 0.25)

@@ -31,8 +31,9 @@ class SkinFacts(NamedTuple):
     # most cells that were cut off at the same time, if that is more than are now; a live
     # page, which shows the moment, leaves it at 0
     cut_off_before: int = 0
-    sent: int = 0  # tactile samples that cells took once they had had a way; 0 without data
+    sent: int = 0  # tactile samples that cells took; 0 without data
     lost: int = 0  # those of them that were lost
+    early: int = 0  # those of the lost that were taken before their cell first had a way
     # cells, over all commands of the PC, that had a way and did not get one for them
     missed: int = 0
 
@@ -40,8 +41,9 @@ class SkinFacts(NamedTuple):
 def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) -> Headline:
     """The state of a skin in a word and a sentence.
 
-    ok: every cell has a way to the PC, and no sample or command was lost. down: no cell has a way.
-    no data: no cell answers. degraded: everything between.
+    ok: every cell has a way to the PC, and no sample or command was lost, but for samples of cells
+    that had not had a way yet. down: no cell has a way. no data: no cell answers. degraded:
+    everything between.
 
     Args:
         facts: what is known; None = nothing, as nobody watched.
@@ -115,11 +117,11 @@ def _before(facts: SkinFacts) -> list[str]:
 
 
 def _samples(facts: SkinFacts) -> list[str]:
-    if not facts.lost:
+    sent, lost = facts.sent - facts.early, facts.lost - facts.early
+    if not lost:
         return []
-    shown = share_words(facts.lost / facts.sent if facts.sent else 1.0)
-    was = verb(facts.lost, "was")
-    return [f"{facts.lost:,} of {facts.sent:,} samples {was} lost ({shown})"]
+    shown = share_words(lost / sent if sent else 1.0)
+    return [f"{lost:,} of {sent:,} samples {verb(lost, 'was')} lost ({shown})"]
 
 
 def _commands(facts: SkinFacts) -> list[str]:
@@ -134,6 +136,7 @@ def _others(facts: SkinFacts, with_way: int, some: bool) -> str:
     if not with_way:
         return ""
     if not some:
-        kept = ", and no sample was lost" if facts.sent and not facts.lost else ""
-        return f"every cell has a way to the PC{kept}"
+        kept = ", and no sample was lost" if facts.sent and facts.lost == facts.early else ""
+        since = " after the start" if kept and facts.early else ""
+        return f"every cell has a way to the PC{kept}{since}"
     return f"{'every' if with_way > 1 else 'the'} other cell has a way to the PC"

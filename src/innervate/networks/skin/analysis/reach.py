@@ -15,18 +15,16 @@ LABELS_MAX = 100
 
 
 def skin_facts(result: Any, data: Data) -> SkinFacts | None:
-    """What a headline is made of; None of a run that nobody observed.
-
-    Samples that cells took before they had a way for the first time do not count.
-    """
+    """What a headline is made of; None of a run that nobody observed."""
     if len(marks(result).row) == 0:
         return None
     most = int(apart_steps(result).cells.max(initial=0))
     facts = world_facts(result.world, result.plan.graph.cells)
     return facts._replace(
         cut_off_before=most if most > len(facts.cut_off) else 0,
-        sent=data["sent"] - lost_at_start(result),
-        lost=data["lost"] - lost_at_start(result),
+        sent=data["sent"],
+        lost=data["lost"],
+        early=lost_at_start(result),
     )
 
 

@@ -23,6 +23,7 @@ def build(loaded: Loaded) -> LiveNode:
         pc = SinkNode(loaded.name, SinkStack(params, paths), links, sealer, state)
         if table.nodes is not None:  # the last number may be its own
             pc.cell_max = table.nodes - 1 - (table.number == table.nodes - 1)
+            pc.knows_cells = True
         return pc
     ports = table.ports or list(range(paths))
     if len(ports) != paths or len(set(ports)) != paths or paths > PORTS:

@@ -62,10 +62,12 @@ class Sent(NamedTuple):
     Attributes:
         number: counts the PC's commands, modulo 65536.
         ports: interface ports it left by; 0 = no cell was there to hand it down.
+        checked: it is for all, or for a number that a cell may have by the PC's file, `nodes`.
     """
 
     number: int
     ports: int
+    checked: bool = True
 
 
 def put(item: Any, name: str, given: tuple[int, ...], called: str = "") -> None:

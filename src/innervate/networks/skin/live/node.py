@@ -104,10 +104,12 @@ class SinkNode(LiveNode):
 
     Attributes:
         cell_max: the greatest number of a cell, as far as its file says it.
+        knows_cells: it says it.
     """
 
     stack: SinkStack
     cell_max = EVERYBODY - 1
+    knows_cells = False
 
     def own_requests(self) -> dict[str, Answerer]:
         """It may be asked to send a command."""
@@ -142,7 +144,8 @@ class SinkNode(LiveNode):
         pc = self.stack.node
         engine.input(GIVE, item)
         self.outcomes["commands sent"] += 1
-        return Sent(pc.own[0].command, sum(size > 0 for size in self._served()))
+        ports = sum(size > 0 for size in self._served())
+        return Sent(pc.own[0].command, ports, cell is None or self.knows_cells)
 
     def _served(self) -> list[int]:
         """How many cells each interface port serves: none behind a broken cable."""

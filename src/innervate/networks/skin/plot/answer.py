@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.plot.words import end_words
-from innervate.plot.words import number_of
 from innervate.sweeping.tables import reasons
 from innervate.topology.weak import Weak
 

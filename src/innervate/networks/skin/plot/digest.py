@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.analysis import touch
 from innervate.networks.skin.analysis.frames import lost_at_start
 from innervate.networks.skin.plot import map as skinmap
@@ -87,7 +88,7 @@ class Digest:
 
     def headline(self, incident: Incident) -> str:
         """An event and what came of it."""
-        who = words.number_of(incident.recovery["without_way"], "cell")
+        who = number_of(incident.recovery["without_way"], "cell")
         still = f"{who} still had no way to the PC {self._then(incident)}"
         return skin_words.headline(self.graph, incident.fault, incident.recovery, still)
 
@@ -129,7 +130,7 @@ class Digest:
         """The cells that a map crosses out, in words."""
         count, gone = self.history.lacking_at(time_us), self.history.cut_off_at(time_us)
         off = len(self.history.at(time_us).dead)
-        who = words.number_of(count, "cell") if count else "no cell"
+        who = number_of(count, "cell") if count else "no cell"
         parts = [f"{who} without a way"]
         if gone:
             them, it = ("all cut off", "cut off") if gone == count else (f"{gone:,} cut off", "")
@@ -226,7 +227,7 @@ class Digest:
         missing = int(np.count_nonzero(~image.known))
         text = "all samples came"
         if missing:
-            text = f"nothing from {missing:,} of {words.number_of(self.graph.cells, 'cell')}"
+            text = f"nothing from {missing:,} of {number_of(self.graph.cells, 'cell')}"
         pressed = self.plan.touch
         most = pressed.force_mn / 1e3 if pressed is not None else 1.0
         label = f"Touch as the PC received it: {head}, {text}"
@@ -246,7 +247,7 @@ class Digest:
         bars = []
         for i, load in enumerate(loads):
             kind = "bar" if alike else f"p{i}"
-            bars.append(charts.Bar(f"port {i}", load, words.number_of(load, "cell"), kind))
+            bars.append(charts.Bar(f"port {i}", load, number_of(load, "cell"), kind))
         even = sum(loads) / len(loads) if len(loads) > 1 else None
         factor = self.summary["balance_factor"]
         text = f"Balance factor {factor:.3f}; 1 is even." if factor is not None else ""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.plot import words as skin_words
 from innervate.networks.skin.plot.digest import Digest
 from innervate.networks.skin.plot.map import CELLS_MAX, shows_depth
@@ -33,9 +34,9 @@ def top(digest: Digest) -> str:
     """What happened, what is broken, and the figures to know."""
     summary, graph = digest.summary, digest.graph
     over = (
-        f"{summary['name']}: a robot skin of {words.number_of(graph.cells, 'cell')}, "
-        f"{words.number_of(graph.interfaces, 'interface port')}, at most "
-        f"{words.number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
+        f"{summary['name']}: a robot skin of {number_of(graph.cells, 'cell')}, "
+        f"{number_of(graph.interfaces, 'interface port')}, at most "
+        f"{number_of(summary['depth_max'], 'hop')} deep; {summary['duration_s']:g} s, "
         f"seed {summary['seed']}"
     )
     warned = page.paragraphs((f"Warning: {text}." for text in summary["warnings"]), "status bad")
@@ -55,7 +56,7 @@ def _sentences(digest: Digest) -> list[str]:
     first = digest.incidents.index(hero) if hero is not None else 0
     others = [line for i, line in enumerate(lines) if i != first]
     more = len(others) - SENTENCES_MAX
-    tail = [f"And {words.number_of(more, 'more event')}, listed below."] if more > 0 else []
+    tail = [f"And {number_of(more, 'more event')}, listed below."] if more > 0 else []
     return [lines[first], *others[:SENTENCES_MAX], *tail]
 
 
@@ -159,7 +160,7 @@ def _commands(commands: Mapping[str, Any]) -> str:
             (f"from PC to cell, {name}", took) for name, took in zip(names, times, strict=True)
         ]
     text = (
-        f"{words.number_of(commands['sent'], 'command')} of the PC, for "
+        f"{number_of(commands['sent'], 'command')} of the PC, for "
         f"{commands['addressed']:,} cells in all; nobody acknowledges one."
     )
     return table(("commands down", "cells"), rows) + element("p", text, "note")

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from innervate.kernel.words import number_of
 from innervate.plot import style
-from innervate.plot.words import number_of
 
 if TYPE_CHECKING:
     from innervate.networks.skin.sizing import Answer

@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.plot.happened import NODES, cable_words
-from innervate.plot.words import ms_words, number_of
+from innervate.plot.words import ms_words
 from innervate.scenario.actions.cables import ACTIONS
 from innervate.scenario.cables import Fault
 from innervate.topology import PORTS, Graph

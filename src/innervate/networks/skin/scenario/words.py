@@ -1,6 +1,6 @@
 """A skin scenario in a few lines, without running it."""
 
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.networks.skin.scenario.foreseen import foreseen
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.warnings import port_rate, warnings

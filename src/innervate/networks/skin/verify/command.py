@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-from innervate.analysis.words import number_of
 from innervate.kernel import compilation
+from innervate.kernel.words import number_of
 from innervate.networks.skin.verify import assumptions, cases
 from innervate.networks.skin.verify.mutants import MUTANTS, hunt
 from innervate.verify import cases as common

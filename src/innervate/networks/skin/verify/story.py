@@ -8,7 +8,7 @@ delivered frame by frame.
 from dataclasses import dataclass, field
 from typing import Any
 
-from innervate.analysis.words import number_of
+from innervate.kernel.words import number_of
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import system as skin_system

@@ -8,6 +8,7 @@ from msgspec import to_builtins
 
 from innervate.analysis.headline import BEFORE_ALL, Headline
 from innervate.analysis.ways import NOWHERE
+from innervate.kernel.words import number_of
 from innervate.networks.skin.analysis.headline import skin_headline
 from innervate.networks.skin.analysis.load import balance_factor
 from innervate.networks.skin.analysis.proved import sentence
@@ -22,7 +23,6 @@ from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import SkinCables
-from innervate.plot.words import number_of
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE, TABLE
 from innervate.scenario.cables import Fault
 from innervate.sim.cables.wires import LOST_BROKEN, LOST_CUT, OFFERED
@@ -217,12 +217,12 @@ class SkinView(View):
             return BEFORE_ALL
         found, most = world_facts(self.engine.world, self.cells), self.memory.apart_most
         sent, lost = self._samples()
-        early = int(self.engine.world.counters[EARLY])
         return skin_headline(
             found._replace(
                 cut_off_before=most if most > len(found.cut_off) else 0,
-                sent=sent - early,
-                lost=lost - early,
+                sent=sent,
+                lost=lost,
+                early=int(self.engine.world.counters[EARLY]),
             ),
             self.plan.graph.label,
         )
