@@ -25,3 +25,34 @@ def record_step(world, node, time, handler, port):
         row.handler = handler
         row.port = port
         row.fingerprint = run.fingerprint
+
+
+def record_delivery(world, time, node, port, kind, latency):
+    """A row of what a node's user got; how long it took, us, -1 = nobody knows."""
+    run = world.run[0]
+    if run.delivery_limit > 0:
+        row = world.deliveries[run.deliveries]
+        run.deliveries += 1
+        row.time = time
+        row.node = node
+        row.port = port
+        row.kind = kind
+        row.latency = latency
+
+
+def note_came(kept, time, latency):
+    """Something given so long (us) before a time was delivered; -1 = nobody knows when it was.
+
+    `kept` has the `moments` (us) at which users gave something, and how much of each `came`.
+    """
+    if latency < 0:
+        return
+    low, high = 0, len(kept.moments)
+    while low < high:
+        middle = (low + high) // 2
+        if kept.moments[middle] <= time - latency:
+            low = middle + 1
+        else:
+            high = middle
+    if low > 0:
+        kept.came[low - 1] += 1

@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from innervate.sim.channel.world import Heap
+from innervate.sim.tables import DELIVERY as DELIVERY
 from innervate.sim.tables import Out
 
 RUN = (
@@ -18,9 +19,8 @@ RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "
          "first", "waiting")  # fmt: skip
 AIR = ("node", "state", "start", "end", "digest", "receivers")
 COMMAND = ("time", "action", "node", "other", "value")
-OFFER = ("time", "node", "kind", "came")  # how often what was given then was delivered
+OFFER = ("time", "node", "kind")
 ROW = ("time", "node", "code", "a", "b")
-DELIVERY = ("time", "node", "port", "kind", "latency")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
 # All fields have 32 bits, these and all of RUN 64.
@@ -65,7 +65,9 @@ class World(NamedTuple):
     item: Any
     out: Out
     mac_out: Out
-    counters: Any  # frames by what became of them (see listening.py)
+    counters: Any  # frames by what became of them (see sim/heard.py)
+    moments: Any  # when nodes are handed something
+    came: Any  # ... how much of that was delivered
     rows: Any
     deliveries: Any
     trail: Any

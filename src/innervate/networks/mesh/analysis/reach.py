@@ -21,6 +21,7 @@ from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.sim.field.powers import CAPTURE_ONE
 from innervate.sim.field.states import ALIVE, DEAD
+from innervate.sim.tables import column
 
 FAR = 1 << 30
 HALF = 0.5
@@ -144,8 +145,8 @@ def _walks(known: Choices, live: Flags, leads: Flags, node: int) -> bool:
 
 def of_simulation(world: Any, plan: Any) -> Ways:
     """Who reaches a gateway in a simulation, as its tables stand; compiled or plain."""
-    states = _column(world.radios, "state", plan.nodes)
-    leading = _column(world.nodes, "leading", plan.nodes) == 1
+    states = column(world.radios, "state", plan.nodes)
+    leading = column(world.nodes, "leading", plan.nodes) == 1
     on = states == ALIVE
     return ways(choices(world, plan), carries(world, plan), on, states == DEAD, leading & on)
 
@@ -161,9 +162,9 @@ def carries(world: Any, plan: Any) -> Flags:
     shape = count, count
     chance = np.asarray(world.prob).reshape(shape) / ONE
     heard = chance * (np.asarray(world.cut).reshape(shape) == 0)
-    noise = _column(world.radios, "noise", count)
+    noise = column(world.radios, "noise", count)
     if noise.any() and plan.radio.collisions:
-        capture = int(_column(world.run, "capture", 1)[0])
+        capture = int(column(world.run, "capture", 1)[0])
         power = np.asarray(world.power).reshape(shape)
         heard = heard * (power * CAPTURE_ONE // capture >= noise[None, :])
     acked = heard * heard.T if params["hop_acks"] else heard
@@ -227,14 +228,6 @@ def _packed(named: Numbers) -> Numbers:
     return found
 
 
-def _column(table: Any, name: str, count: int) -> Numbers:
-    """A field of the first `count` records, compiled or plain."""
-    if isinstance(table, list):
-        return np.array([getattr(record, name) for record in table[:count]], np.int64)
-    found: Numbers = table[name][:count].astype(np.int64)
-    return found
-
-
 class _Columns(dict[str, Numbers]):
     """Fields of a table's records by name, read when they are asked for."""
 
@@ -243,5 +236,5 @@ class _Columns(dict[str, Numbers]):
         self._table, self._count = table, count
 
     def __missing__(self, name: str) -> Numbers:
-        found = self[name] = _column(self._table, name, self._count)
+        found = self[name] = column(self._table, name, self._count)
         return found
