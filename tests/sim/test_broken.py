@@ -221,7 +221,7 @@ CASES = [
      "a receiver changed the frame that station "),
     (RADIO, radio_recorder.BROKEN_TURNS, a_turn_that_lasts,
      "began a turn while another station had its own"),
-    (RADIO, radio_recorder.BROKEN_RANGE, station_out_of_range,
+    (RADIO, channel_medium.BROKEN_RANGE, station_out_of_range,
      "a value of station 1 is out of its declared range"),
     (MESH, field_medium.BROKEN_AIR, no_room_on_the_air, "has too many frames under way"),
     (MESH, field_medium.BROKEN_OUTBOX, outbox_of_one, "outbox of node n"),

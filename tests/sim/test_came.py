@@ -11,11 +11,11 @@ __all__ = ["alone"]
 
 @pytest.mark.parametrize(("since", "counts"), [
     (0, [0, 0, 0]), (10, [1, 0, 0]), (19, [1, 0, 0]), (20, [0, 1, 0]), (29, [0, 1, 0]),
-    (30, [0, 0, 1]), (99, [0, 0, 1]),
+    (30, [0, 0, 1]), (99, [0, 0, 1]), (101, [0, 0, 0]),
 ])  # fmt: skip
 def test_a_delivery_is_counted_where_what_it_brought_was_given(since, counts):
     came = Came([10, 20, 30], [0, 0, 0])
-    note_came(came, since)
+    note_came(came, 100, 100 - since)
     assert came.counts == counts
 
 

@@ -16,6 +16,7 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.sim import checks, observer
 from innervate.sim.cables import recorder as cables
 from innervate.sim.cables.world import BROKEN_RANGE, DEAD
+from innervate.sim.channel import medium
 
 LOW, HIGH = [0, -5, 1], [0, 5, 100]
 WELL = [0, 0, 50]
@@ -37,7 +38,7 @@ def check_radio(world):
     radio.watch(world, 1, 0, 0, 0)
 
 
-CHECKERS = {"cables": (check_cables, BROKEN_RANGE), "radio": (check_radio, radio.BROKEN_RANGE)}
+CHECKERS = {"cables": (check_cables, BROKEN_RANGE), "radio": (check_radio, medium.BROKEN_RANGE)}
 
 
 @pytest.mark.parametrize("name", CHECKERS)
@@ -157,7 +158,7 @@ class Routes:
         also = "broken", "rows", "next_command", "commands"
         numbers = dict.fromkeys((*observer.NUMBERS, *also), 0)
         self.run = SimpleNamespace(cells=3, checks=checked, observe=1, broken_node=-1,
-                                   broken_other=-1, **numbers)  # fmt: skip
+                                   broken_other=-1, row_limit=50, **numbers)  # fmt: skip
         self.watch = SimpleNamespace(port=[NONE] * 3, routed=[0] * 3, had=[0] * 3, joined=[1] * 3,
                                      apart=[NONE] * 3, ring=[NONE] * 3, before=[0] * 3,
                                      stack=[0] * 3)  # fmt: skip

@@ -7,9 +7,9 @@ import pytest
 from innervate.networks.mesh.sim import stacks
 from innervate.sim.cables import declared as cables
 from innervate.sim.channel import declared as channel
-from innervate.sim.channel.calls import handlers
+from innervate.sim.field import access, listening
 from innervate.sim.field import declared as field
-from innervate.sim.field import listening
+from innervate.sim.handlers import access_handlers, handlers
 
 NODE, NOW, FRAME = 1, 500, "a frame"
 CALLED = {  # what each is called with, behind the world and the node
@@ -43,21 +43,17 @@ WORLD = Of(
 )  # fmt: skip
 
 
-def by_name(functions):
-    return {function.__name__: function for function in functions}
-
-
 @pytest.mark.parametrize("name", HANDED)
 def test_over_a_channel(name):
     protocol = Protocol()
-    by_name(handlers(protocol))[name](WORLD, NODE, *CALLED[name])
+    handlers(protocol)[name](WORLD, NODE, *CALLED[name])
     assert protocol.said == [(name, "s1", "params", *HANDED[name], "out")]
 
 
 @pytest.mark.parametrize("name", ["on_start", "on_frame", "on_timer", "on_carrier"])
 def test_over_a_channel_frames_of_a_declared_protocol_are_looked_at(name):
     protocol = Protocol()
-    made = channel._entries(protocol, protocol.look, None, False)
+    made = channel._entries(protocol, protocol.look, copy_frame=None, stamp=None)
     made[name](WORLD, NODE, *CALLED[name])
     assert protocol.said == [(name, "s1", "params", *HANDED[name], "out"), ("look", True, NODE)]
 
@@ -65,7 +61,7 @@ def test_over_a_channel_frames_of_a_declared_protocol_are_looked_at(name):
 @pytest.mark.parametrize("name", HANDED)
 def test_over_a_field(name):
     protocol = Protocol()
-    made = by_name(field._entries(protocol, set(), protocol.look))
+    made = field._entries(protocol, set(), protocol.look)
     made[name](WORLD, NODE, *CALLED[name])
     assert protocol.said == [(name, "s1", "params", *HANDED[name], "out"), ("look", True, NODE)]
 
@@ -84,30 +80,25 @@ def test_over_cables(name):
 @pytest.mark.parametrize("name", ["on_start", "on_timer", "on_frame", "on_input"])
 def test_a_router_has_a_gateways_record_besides(name):
     protocol = Protocol()
-    by_name(stacks._router(protocol))[name](WORLD, NODE, *CALLED[name])
+    handlers(protocol, stacks.ROUTER)[name](WORLD, NODE, *CALLED[name])
     assert protocol.said == [(name, "n1", "g2", "params", *HANDED[name], "out")]
 
 
 @pytest.mark.parametrize("name", HANDED)
-@pytest.mark.parametrize("of", ["a mesh", "a field"])
-def test_a_medium_access_has_records_of_its_own(monkeypatch, name, of):
+def test_a_medium_access_has_records_of_its_own(name):
     protocol = Protocol()
-    if of == "a mesh":
-        monkeypatch.setattr(stacks, "csma", protocol)
-        made = stacks._csma()
-    else:
-        monkeypatch.setattr(field, "access_of", lambda network: Of(entry="csma"))
-        monkeypatch.setattr(field.importlib, "import_module", lambda entry: protocol)
-        made = field._mac(Of(over="csma", protocol=None))
-    by_name(made)[f"mac_{name}"](WORLD, NODE, *CALLED[name])
+    access_handlers(protocol)[f"mac_{name}"](WORLD, NODE, *CALLED[name])
     assert protocol.said == [(name, "m1", "mac params", *HANDED[name], "mac out")]
 
 
 @pytest.mark.parametrize("name", HANDED)
 def test_without_a_medium_access_nothing_is_called(name):
-    protocol = Protocol()
-    by_name(field._mac(Of(over="", protocol=protocol)))[f"mac_{name}"](WORLD, NODE, *CALLED[name])
-    assert protocol.said == []
+    assert access_handlers(None)[f"mac_{name}"](WORLD, NODE, *CALLED[name]) is None
+
+
+@pytest.mark.parametrize("name", HANDED)
+def test_what_a_protocol_has_not_is_not_made(name):
+    assert set(HANDED) - set(handlers(Protocol(name))) == {name}
 
 
 def test_who_hears_carriers_is_told_of_its_own_end_and_of_changes(monkeypatch):
@@ -118,11 +109,11 @@ def test_who_hears_carriers_is_told_of_its_own_end_and_of_changes(monkeypatch):
     monkeypatch.setattr(
         listening, "tell_changes", lambda _w, _do, *what: told.append(("all", *what))
     )
-    made = by_name(field._entries(Protocol(), set(), print))
+    made = field._entries(Protocol(), set(), print)
     made["tell_end"](WORLD, None, NODE, NOW, 1)
     made["note_carriers"](WORLD, None, NOW)
     assert told == [("one", NODE, NOW), ("all", NOW)]
-    deaf = by_name(field._entries(Protocol("on_carrier"), set(), print))
+    deaf = field._entries(Protocol("on_carrier"), set(), print)
     deaf["tell_end"](WORLD, None, NODE, NOW, 1)
     deaf["note_carriers"](WORLD, None, NOW)
     assert len(told) == 2
@@ -133,7 +124,7 @@ def test_who_wants_to_know_is_told_what_became_of_its_frames(monkeypatch):
     monkeypatch.setattr(listening, "tell_gone", lambda _w, _do, *what: told.append(what))
     protocol = Protocol("on_carrier")
     protocol.on_sent = lambda *what: protocol.said.append(what)
-    made = by_name(field._entries(protocol, set(), protocol.look))
+    made = field._entries(protocol, set(), protocol.look)
     made["on_sent"](WORLD, NODE, NOW, 1)
     made["tell_end"](WORLD, None, NODE, NOW, 0)
     made["note_carriers"](WORLD, None, NOW)
@@ -142,11 +133,11 @@ def test_who_wants_to_know_is_told_what_became_of_its_frames(monkeypatch):
 
 
 def test_frames_pass_through_a_function_on_their_way():
-    do = stacks.plain(stacks.mesh(), stacks.Layer(field.access), None)
+    do = stacks.plain(stacks.mesh(), stacks.Layer(access), None)
     assert do.copy_frame is stacks.copy_frame
     seen = []
-    through = stacks.plain(stacks.mesh(), stacks.Layer(field.access, "channel"), seen.append)
+    through = stacks.plain(stacks.mesh(), stacks.Layer(access, "channel"), seen.append)
     with pytest.raises(AttributeError):
         through.copy_frame(Of(), "frame")
     assert (seen, through.channel, do.channel) == (["frame"], "channel", None)
-    assert do.short is field.access.short
+    assert do.short is access.short

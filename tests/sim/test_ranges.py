@@ -88,7 +88,7 @@ def stations(protocol, is_plain):
         radio_recorder.watch(world, node, 0, 0, 0)
 
     fields = radio_fields.STATION + PROTOCOLS[protocol].fields
-    return of_run(world, fields, world.stations, check, radio_recorder.BROKEN_RANGE)
+    return of_run(world, fields, world.stations, check, listening.BROKEN_RANGE)
 
 
 def routers(is_plain):
@@ -200,17 +200,17 @@ WATCHES = {
             ("any nodes", cables_recorder.check),
         )
     ],
-    "networks.radio.sim.recorder": [
-        (f"{protocol}, {form}", stations, (protocol, is_plain))
-        for form, is_plain in FORMS.items()
-        for protocol in ("csma-cd-r/practical", "csma-cd-r/paper", "token-ring")
-    ],
     "sim.field.calls": [
         (f"routers, {form}", routers, (is_plain,)) for form, is_plain in FORMS.items()
     ],
     "sim.channel.listening": [
         (f"nodes on a channel, {form}", channel_nodes, (is_plain,))
         for form, is_plain in FORMS.items()
+    ]
+    + [
+        (f"{protocol}, {form}", stations, (protocol, is_plain))
+        for form, is_plain in FORMS.items()
+        for protocol in ("csma-cd-r/practical", "csma-cd-r/paper", "token-ring")
     ],
     "sim.ranges": [
         (f"{name}, {form}", make, (which, is_plain))

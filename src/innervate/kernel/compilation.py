@@ -80,6 +80,8 @@ def register_functions(*functions: Callable[..., Any], hot: bool = True) -> None
 def _note(function: Callable[..., Any]) -> None:
     """A function of a network elsewhere makes its file part of what is compiled next."""
     path = Path(function.__code__.co_filename)
+    if not path.is_absolute():
+        return  # written out as the program runs: `told` says what it is
     if not path.is_relative_to(ROOT):
         _foreign.add(path)
     elif not _is_hashed(path):

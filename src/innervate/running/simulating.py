@@ -14,7 +14,7 @@ from innervate.network import networks
 from innervate.running import blaming, playing
 from innervate.scenario.declared.shared import refuse_script, script_of
 from innervate.sim.counts import Counts
-from innervate.sim.driver import Ended, InvariantBroken, Simulation
+from innervate.sim.driver import Ended, InvariantBroken, Left, Simulation
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.tables import get
 from innervate.trace.tables import Column, Table, taken
@@ -50,20 +50,14 @@ DELIVERIES = Table(
 TABLES = (REPORTS, DELIVERIES)
 
 
-@dataclass(slots=True)
-class Result:
+@dataclass(slots=True, kw_only=True)
+class Result(Left):
     """What a simulation leaves when it ends."""
 
-    plan: Any  # what ran
-    world: Any  # its tables at the end
     # All rows of the loop's tables by their names, arrays of records, times in us.
     rows: dict[str, Any]
     counts: Counts  # of the medium
-    ended_us: int  # up to where it ran
-    wall_s: float  # how long that took
-    fingerprint: str  # of everything that happened
     handled: int  # handler calls
-    interrupted: bool  # it was ended early
 
 
 def simulation(plan: Any, **kept: bool) -> Simulation:

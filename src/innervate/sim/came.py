@@ -10,9 +10,14 @@ class Came(NamedTuple):
     counts: Any
 
 
-def note_came(came, since):
-    """Something that was given at a time has been delivered: it counts for the moment before."""
-    moments = came.moments
+def note_came(came, time, latency):
+    """Something that was given so long (us) before a time was delivered; -1 = nobody knows when.
+
+    It counts for the moment before.
+    """
+    if latency < 0:
+        return
+    moments, since = came.moments, time - latency
     low, high = 0, len(moments)
     while low < high:
         middle = (low + high) // 2

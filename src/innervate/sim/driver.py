@@ -7,6 +7,7 @@ on from there, for a whole run (`finish`), for a page that holds the network at 
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -47,6 +48,27 @@ class Ended(NamedTuple):
     wall_s: float
     interrupted: bool
     rows: dict[str, Any]
+
+
+@dataclass(slots=True, kw_only=True)
+class Left:
+    """What every simulation leaves; its network's class has its rows, too.
+
+    Attributes:
+        plan: what ran.
+        world: its tables at the end.
+        ended_us: up to where it ran.
+        wall_s: how long that took.
+        fingerprint: of everything that happened.
+        interrupted: it was ended early.
+    """
+
+    plan: Any
+    world: Any
+    ended_us: int
+    wall_s: float
+    fingerprint: str
+    interrupted: bool
 
 
 class Simulation(ABC):
@@ -124,7 +146,7 @@ class Simulation(ABC):
         return Ended(ended_us, wall_s() - started, status != DONE, self.take())
 
     def left(self, ended: Ended) -> dict[str, Any]:
-        """What every result has, by name."""
+        """What `Left` has, by name."""
         return {
             "plan": self.plan, "world": self.world, "ended_us": ended.ended_us,
             "wall_s": ended.wall_s, "fingerprint": self.fingerprint,
@@ -193,9 +215,13 @@ class Simulation(ABC):
 
     def broken_line(self) -> str:
         """The broken invariant, in one line."""
-        what = self.broken_words[int(get(self.world.run, 0, "broken"))].format(**self.whom())
+        what = self.said(int(get(self.world.run, 0, "broken"))).format(**self.whom())
         at = self.broken_us() / 1e6
         return f"invariant broken at {at:.6f} s (seed {self.plan.seed}): {what}"
+
+    def said(self, code: int) -> str:
+        """What is broken, by its number."""
+        return self.broken_words[code]
 
     def broken_us(self) -> int:
         """When it broke, us; `run.broken_at` on media that note it."""

@@ -25,3 +25,16 @@ def record_step(world, node, time, handler, port):
         row.handler = handler
         row.port = port
         row.fingerprint = run.fingerprint
+
+
+def record_delivery(world, time, node, port, kind, latency):
+    """A row of what a node's user got; how long it took, us, -1 = nobody knows."""
+    run = world.run[0]
+    if run.delivery_limit > 0:
+        row = world.deliveries[run.deliveries]
+        run.deliveries += 1
+        row.time = time
+        row.node = node
+        row.port = port
+        row.kind = kind
+        row.latency = latency

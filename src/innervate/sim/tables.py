@@ -23,6 +23,7 @@ WIDE = frozenset(
 # station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
+DELIVERY = ("time", "node", "port", "kind", "latency")  # of what a node's user got
 ROWS = 1 << 16  # that a table holds before the loop stops for them to be moved out
 PLAIN_ROWS = 1 << 11  # objects: dear to make
 
@@ -215,6 +216,14 @@ def move_rows(
         else:
             kept.append(table[:count].copy())
         put(world.run, 0, **{name: 0})
+
+
+def column(table: Any, name: str, count: int | None = None) -> Numbers:
+    """A field of the first `count` records, or of all, compiled or plain."""
+    if isinstance(table, list):
+        return np.array([getattr(record, name) for record in table[:count]], np.int64)
+    found: Numbers = table[name][:count].astype(np.int64)
+    return found
 
 
 def get(table: Any, place: int, name: str) -> Any:

@@ -9,9 +9,10 @@ from innervate.dialect.arith import MASK30
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim import wheel
 from innervate.sim.cables import declared
-from innervate.sim.cables.declared import Unfit, frames_of, functions
+from innervate.sim.cables.declared import functions
 from innervate.sim.cables.world import ALIVE, BROKEN_RANGE, DEAD, OFF
 from innervate.sim.came import Came
+from innervate.sim.own import Unfit, frames_of
 from innervate.sim.recorded import Recorded
 from tests.networks.skin.runs import line, plan_of
 

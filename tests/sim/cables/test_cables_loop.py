@@ -158,17 +158,15 @@ def world_of(**run):
 
 def test_a_delivery_has_a_row_and_its_own_latency():
     world = world_of()
-    recorder.keep_delivered(world, 70, 1, 3, 6)
-    recorder.keep_delivered(world, 80, 0, 2, 5)
-    recorder.keep_latency(world, 44)
+    recorder.keep_delivered(world, 70, 1, 3, 6, -1)
+    recorder.keep_delivered(world, 80, 0, 2, 5, 44)
     assert [vars(row) for row in world.deliveries[2:4]] == [
         {"time": 70, "node": 1, "port": 3, "kind": 6, "latency": -1},
         {"time": 80, "node": 0, "port": 2, "kind": 5, "latency": 44},
     ]  # fmt: skip
     assert (world.counters[DELIVERED], world.run[0].deliveries) == (2, 4)
     world.run[0].delivery_limit = 0
-    recorder.keep_delivered(world, 90, 1, 3, 6)
-    recorder.keep_latency(world, 45)
+    recorder.keep_delivered(world, 90, 1, 3, 6, 45)
     assert (world.counters[DELIVERED], world.run[0].deliveries) == (3, 4)
     assert (world.deliveries[3].latency, vars(world.delays[0])) == (
         44, {"high": 45, "count": 2, "sum": 89})  # fmt: skip

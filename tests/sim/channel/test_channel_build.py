@@ -65,7 +65,7 @@ def test_packets_come_station_by_station():
 def test_commands_and_first_offers_are_queued_and_who_is_away_stays_away():
     world = built()
     assert [tuple(row) for row in world.commands.tolist()] == [
-        (BEGIN, 0, 0, 0, 0), (JOIN, 1, 4, 0, 7), (KILL, 2, 0, 0, 8)]  # fmt: skip
+        (BEGIN, 0, 0, 0), (JOIN, 1, 4, 7), (KILL, 2, 0, 8)]  # fmt: skip
     keys = sorted(world.heap.keys[: int(world.heap.size[0])].tolist())
     assert keys == sorted([
         key_of(0, COMMAND, 0, 0), key_of(60, COMMAND, 0, 1), key_of(20, COMMAND, 0, 2),

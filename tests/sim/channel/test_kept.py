@@ -8,24 +8,25 @@ import pytest
 from innervate.dialect.access import PACKET
 from innervate.dialect.arith import MASK30
 from innervate.sim import taps
-from innervate.sim.cables.declared import Unfit
 from innervate.sim.came import Came
 from innervate.sim.channel import declared, listening
 from innervate.sim.channel.declared import DeclaredChannel
-from innervate.sim.channel.listening import (
+from innervate.sim.counts import Counts
+from innervate.sim.heap import AIR_BITS
+from innervate.sim.heard import (
     ARRIVED,
     BROKEN_OFF,
     COLLIDED,
+    COUNTERS,
     DELIVERED,
     NOISY,
     OFF,
     SENDING,
     SENT,
 )
-from innervate.sim.counts import Counts
-from innervate.sim.heap import AIR_BITS
+from innervate.sim.own import Unfit, frames_of
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import get
+from innervate.sim.tables import DELIVERY, get, row_dtype
 from tests.networks.radio.runs import radio_plan
 
 HANDLERS = ("on_start", "on_frame", "on_timer", "on_input", "on_carrier")
@@ -38,7 +39,7 @@ def world_of(**more):
     radio = Of(alive=1, deaf=0, offset=100, next_offer=5, backlog=2)
     return Of(
         run=[Of(**run | more)],
-        above=Of(counters=[0] * listening.COUNTERS, items=None, kinds=None, came=Came([], [])),
+        above=Of(counters=[0] * COUNTERS, items=None, kinds=None, came=Came([], [])),
         radios=[radio, Of(**vars(radio))], packets=[Of() for _ in range(4)],
         words=[[5, 5], [5, 9]], low=[0, 0], high=[8, 8], degree=[3, 2],
         taps=[Of() for _ in range(4)], tapped=[Of() for _ in range(4)],
@@ -65,7 +66,8 @@ def test_what_became_of_a_frame_is_counted_once_by_what_comes_first(state, word,
 def test_a_delivery_has_its_row_if_rows_are_kept():
     world = world_of()
     listening.keep(world, 1, 5, 900, 70)
-    assert vars(world.packets[1]) == {"time": 900, "node": 1, "handle": 5, "slots": 70}
+    row = {"time": 900, "node": 1, "port": 0, "kind": 5, "latency": 70}
+    assert vars(world.packets[1]) == row
     world.run[0].packet_limit = 0
     listening.keep(world, 1, 5, 900, 70)
     assert (world.run[0].packets, world.above.counters[DELIVERED]) == (2, 2)
@@ -92,9 +94,14 @@ def kind_of(frame):
     return 40 + frame.seq
 
 
+def made_of(is_timed):
+    fields = (("seq", 0, 0, 255, "", ""), ("made_at", 0, 0, MASK30, "us", ""))
+    return frames_of(fields[: 1 + is_timed]) | {"copy_frame": copy, "kind_of": kind_of}
+
+
 @pytest.mark.parametrize("limit", [0, 9])
 def test_a_frame_counts_for_all_who_could_hear_it_and_is_kept_with_its_start(limit):
-    do, world = Of(**declared._noted(copy, kind_of, False)), world_of(tap_limit=limit)
+    do, world = Of(**declared._noted(**made_of(False))), world_of(tap_limit=limit)
     do.record_sent(world, 0, Of(seq=7), 1_000)
     do.record_received(world, 1, (1 << AIR_BITS) | 2, 1_200, True, False)
     world.radios[1].alive = 0
@@ -114,9 +121,9 @@ def test_a_frame_counts_for_all_who_could_hear_it_and_is_kept_with_its_start(lim
     (True, 1, 1, 0),
 ])  # fmt: skip
 def test_a_delivery_took_as_long_as_since_it_was_handed_in(is_timed, made_at, time, latency):
-    do, world = Of(**declared._noted(copy, kind_of, is_timed)), world_of()
+    do, world = Of(**declared._noted(**made_of(is_timed))), world_of()
     do.note_received(world, 1, Of(seq=2, made_at=made_at), time)
-    assert (world.packets[1].handle, world.packets[1].slots) == (42, latency)
+    assert (world.packets[1].kind, world.packets[1].latency) == (42, latency)
 
 
 @pytest.mark.parametrize(("is_timed", "at", "made_at"), [
@@ -127,16 +134,16 @@ def test_what_a_node_is_handed_is_the_oldest_that_waits(is_timed, at, made_at):
     protocol = Of(**dict.fromkeys(HANDLERS, print))
     protocol.on_input = lambda _node, _params, now, kind, item, _out: given.append(
         (now, kind, item.seq))  # fmt: skip
-    made_of = Of(**declared._entries(protocol, print, copy, is_timed))
+    do = Of(**declared._entries(protocol, lambda world, node: None, **made_of(is_timed)))
     world = world_of()
     world.above.items = [Of(seq=10 + k) for k in range(6)]
     world.above.kinds = [20 + k for k in range(6)]
     world.arrivals, world.item = [0, 0, 0, at, 99, 99], [Of(seq=0, made_at=9)]
     world.stations, world.params, world.out = [None, None], [None], None
-    made_of.on_input(world, 1, 500, PACKET)
+    do.on_input(world, 1, 500, PACKET)
     assert given == [(500, 23, 13)]  # five have come, two of them wait: the fourth
     assert (world.radios[1].backlog, world.item[0].made_at) == (1, made_at)
-    made_of.on_input(world, 1, 600, 77)
+    do.on_input(world, 1, 600, 77)
     assert given[1:] == []  # what a channel's devices tell is nothing for a network of one's own
     assert world.radios[1].backlog == 1
 
@@ -181,12 +188,6 @@ def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_cloc
 # From outside.
 
 
-class Bare(DeclaredChannel):
-    """Without a folder's words."""
-
-    broken_words = listening.WORDS
-
-
 def bare(**run):
     numbers = np.zeros(1, [(name, np.int64) for name in (
         "rows", "packets", "trail", "status", "checks", "broken", "broken_node", "broken_at", "now",
@@ -195,9 +196,9 @@ def bare(**run):
         numbers[name] = value
     radios = np.zeros(4, [("alive", np.int64), ("leaving", np.int64)])
     radios["alive"], radios["leaving"] = (1, 0, 1, 0), (1, 0, 0, 1)
-    counters = np.arange(3, 3 + 7 * listening.COUNTERS, 7)
+    counters = np.arange(3, 3 + 7 * COUNTERS, 7)
     world = Of(run=numbers, radios=radios, above=Of(counters=counters, came=Came([], [])))
-    return Bare(Of(stations=3, seed=8, kind="talk"), world, None)
+    return DeclaredChannel(Of(stations=3, seed=8, kind="talk"), world, None)
 
 
 def test_frames_and_messages_are_counted_by_name():
@@ -219,8 +220,7 @@ def test_what_broke_is_told_with_when_and_by_whom(at, words):
 
 def test_packets_that_were_handed_up_are_deliveries():
     running = bare()
-    kinds = [(name, np.int64) for name in ("time", "node", "handle", "slots", "offered")]
-    packets = np.array([(900, 1, 5, 70, 3), (950, 2, 6, -1, 4)], kinds)
+    packets = np.array([(900, 1, 0, 5, 70), (950, 2, 0, 6, -1)], row_dtype(DELIVERY))
     running.world.rows = running.world.trail = running.world.packets = packets[:0]
     running._kept["packets"].append(packets)
     found = running.take()

@@ -35,7 +35,7 @@ def world_of(one=None, **run):
     given |= {"stations": 3, "ta_us": TA_US, "slot_us": SLOT_US, "broken_node": -1}
     return Of(
         run=[Of(**given | run)], radios=[one or radio(), radio(), radio(), radio()],
-        air=[Of(start=0, end=0, spoilt=9, at_start=9, at_end=9, fade=9) for _ in range(3 * AIRS)],
+        air=[Of(start=0, end=0, spoilt=9, at_start=9, at_end=9) for _ in range(3 * AIRS)],
         frames=[Of() for _ in range(3 * AIRS)], heap=Heap([0] * 4096, [0]), told=[0] * 5,
         out=Of(limit=[0]), degree=[2, 2, 2],
         order=[1, 2, 0, 2, 0, 1, 0, 1, 2], delay=[NEAR, FAR, 0] * 3,
@@ -66,8 +66,7 @@ def test_who_sends_is_deaf_until_a_turnaround_after_its_frame():
     one, air = world.radios[0], world.air[2]
     assert (one.deaf, one.candidate, one.ready_at, one.air) == (
         medium.SENDING, medium.NOBODY, OFF + TA_US, 3)  # fmt: skip
-    assert vars(air) == {"start": ON, "end": OFF, "spoilt": 0, "at_start": 0, "at_end": 0,
-                         "fade": medium.NOBODY}  # fmt: skip
+    assert vars(air) == {"start": ON, "end": OFF, "spoilt": 0, "at_start": 0, "at_end": 0}
     assert (world.frames[2].kind, world.run[0].broken) == (7, 0)
 
 
@@ -309,7 +308,7 @@ def test_what_is_done_to_a_channel_is_put_behind_what_was_planned():
     running.schedule(Of(at_us=70, action=JOIN, node=2, value=6, index=4))
     running.schedule(Of(at_us=60, action=GARBLE, node=1, value=3, index=5))
     assert running.world.commands.tolist() == [
-        *before, (JOIN, 2, 6, 0, 4), (GARBLE, 1, 3, 0, 5)]  # fmt: skip
+        *before, (JOIN, 2, 6, 4), (GARBLE, 1, 3, 5)]  # fmt: skip
     keys = running.world.heap.keys[: int(running.world.heap.size[0])].tolist()
     count = len(before)
     assert {key_of(70, heap.COMMAND, 0, count), key_of(60, heap.COMMAND, 0, count + 1)} <= set(keys)

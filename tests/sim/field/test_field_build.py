@@ -10,17 +10,16 @@ from innervate.dialect.outbox import URGENT
 from innervate.dialect.rng import FIXED_POINT, seeded
 from innervate.scenario.actions.field import CUT, JAM, KILL
 from innervate.scenario.declared.field import AirTable, Fault, FieldPlan, Heard
-from innervate.sim import heap, taps
-from innervate.sim.cables.declared import Unfit
+from innervate.sim import heap, heard, taps
 from innervate.sim.came import Came
 from innervate.sim.counts import Counts
-from innervate.sim.field import access, declared, listening, medium, powers, queue
+from innervate.sim.field import access, declared, medium, powers, queue
 from innervate.sim.field.build import build
 from innervate.sim.field.declared import DeclaredField
 from innervate.sim.field.loop import BOOT
 from innervate.sim.field.medium import NONE
-from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import ALIVE, DEAD, OFF
+from innervate.sim.own import Unfit, frames_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.status import POOL_FULL, ROWS_FULL
 from innervate.sim.tables import get, uniform
@@ -145,14 +144,10 @@ def test_what_is_kept_has_room_for_one_event_more(kept, limits):
 # From outside.
 
 
-class Bare(DeclaredField):
-    broken_words = Field.broken_words
-
-
 @pytest.fixture
 def running():
     plan = plan_of()
-    return Bare(plan, build(plan, network_of(), False, Recorded()), None)
+    return DeclaredField(plan, build(plan, network_of(), False, Recorded()), None)
 
 
 def keys_of(running):
@@ -203,7 +198,7 @@ def test_who_is_about_to_start_is_not_off_and_who_is_not_there_yet_is(running):
 
 
 def test_frames_and_messages_are_counted_by_name(running):
-    running.world.counters[:] = [3, 10, 17, 24, 31, 38, 45, 0, 59, 66, 80]
+    running.world.counters[:] = [3, 10, 17, 24, 31, 38, 45, 80, 0, 59, 66]
     running.world.radios["state"], running.plan.absent = (ALIVE, DEAD, OFF), [1, 1, 1]
     running.world.run["now"], running.message_times = 70, [0, 70, 70, 71]
     assert running.counts() == Counts(
@@ -232,20 +227,22 @@ def kind_of(frame):
 
 
 def noted(*names):
-    return Of(**{one.__name__: one for one in declared._noted(copy, kind_of, set(names))})
+    fields = tuple((name, 0, 0, 9, "", "") for name in ("seq", *names))
+    made = frames_of(fields) | {"copy_frame": copy, "kind_of": kind_of}
+    return Of(**declared._noted("rssi" in names, **made))
 
 
 def kept_world(**run):
     given = {"taps": 0, "tap_limit": 9, "deliveries": 0, "delivery_limit": 9, "nodes": 2, "room": 2,
              "blocked": 0, "offers": 0}  # fmt: skip
     return Of(
-        run=[Of(**given | run)], counters=[0] * listening.COUNTERS, prob=[0, 9, 9, 0],
+        run=[Of(**given | run)], counters=[0] * heard.COUNTERS, prob=[0, 9, 9, 0],
         radios=[Of(held=NONE, waiting=0, first=1) for _ in range(2)], deliveries=[Of()],
         air=[Of(node=1, start=60, state=3, receivers=0)], frames=[Of(seq=8, rssi=0)],
         taps=[Of(), Of()], tapped=[Of(), Of()], rssi=[0, -6_000, -9_000, 0],
         offers=[Of(time=70), Of(time=0), Of(time=MASK30 + 1)], items=[Of(seq=k) for k in range(3)],
         item=[Of(seq=0, made_at=9)], ring=[Of() for _ in range(4)], acts=[Of() for _ in range(4)],
-        came=Came([], []),
+        came=Came([0, 70], [0, 0]),
     )  # fmt: skip
 
 
@@ -253,7 +250,7 @@ def kept_world(**run):
 def test_a_frame_is_counted_and_kept_with_its_sender_and_its_start(limit):
     world = kept_world(tap_limit=limit)
     noted().tap(world, 0, 1, 90, 1, taps.FINE)
-    assert (world.counters[listening.SENT], world.air[0].receivers) == (1, 1)
+    assert (world.counters[heard.SENT], world.air[0].receivers) == (1, 1)
     row = {"time": 90, "start": 60, "at": 1, "sender": 1, "out": 1, "why": taps.FINE}
     assert vars(world.taps[0]) == (row if limit else {})
     assert vars(world.tapped[0]) == ({"seq": 8} if limit else {})
@@ -310,7 +307,7 @@ def test_a_frame_for_another_node_is_not_handed_up(to, taken):
     said = []
     protocol = Of(**dict.fromkeys(("on_start", "on_timer", "on_input"), print))
     protocol.on_frame = lambda *what: said.append(what[2:5])
-    entries = {one.__name__: one for one in declared._entries(protocol, {"to"}, print)}
+    entries = declared._entries(protocol, {"to"}, lambda world, node: None)
     world = Of(stations=[None] * 2, params=[None], out=None)
     frame = Of(to=to)
     entries["on_frame"](world, 1, 90, frame)
@@ -325,7 +322,7 @@ def test_a_frame_is_as_long_as_the_layout_of_its_kind(monkeypatch):
 
 def test_who_loses_its_memory_has_an_empty_queue():
     """Its record is for `on_start` to set anew, as over cables, and where it is explored."""
-    checks = {one.__name__: one for one in declared._checks([])}
+    checks = declared._checks([])
     world = kept_world()
     world.radios[1].waiting, world.words = 2, [[9], [1], [-1]]
     checks["wipe"](world, 1)
@@ -341,7 +338,7 @@ def test_after_a_call_ranges_are_checked_before_own_invariants_by_the_nodes_cloc
         seen.append(now)
         return False
 
-    check = declared._checks([holds])[0]
+    check = declared._checks([holds])["check"]
     run = Of(broken=0, broken_node=-1, checks=1)
     world = Of(run=[run], words=[[value]], low=[0], high=[8], spans=[], radios=[Of(offset=100)],
                stations=[None], params=[None])  # fmt: skip

@@ -7,8 +7,7 @@ import pytest
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.sim.field import calls, queue
-from innervate.sim.field.medium import BROKEN_OUTBOX
-from innervate.sim.field.timers import set_timer
+from innervate.sim.field.medium import BROKEN_OUTBOX, set_timer
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_TIMER
 
 NOW, OFFSET = 1_000, 500

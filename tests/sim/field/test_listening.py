@@ -5,7 +5,7 @@ from types import SimpleNamespace as Of
 import pytest
 
 from innervate.dialect.arith import MASK30
-from innervate.sim import taps
+from innervate.sim import heard, taps
 from innervate.sim.field import access, calls, listening, medium
 from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, OFF, ON_AIR
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
@@ -21,7 +21,7 @@ def world_of():
            "sense": 50}  # fmt: skip
     places = NODES * ROOM
     return Of(
-        run=[Of(**run)], counters=[0] * listening.COUNTERS, prob=prob,
+        run=[Of(**run)], counters=[0] * heard.COUNTERS, prob=prob,
         power=[0, 5, 0, 0, 5, 0, 5, 5, *[0] * 8],
         radios=[Of(state=ALIVE, first=0, waiting=0, held=medium.NONE, deaf=0, told=0, offset=100)
                 for _ in range(NODES)],
@@ -34,8 +34,8 @@ def world_of():
 
 
 def counted(world):
-    names = {"sent": listening.SENT, "arrived": listening.ARRIVED,
-             "delivered": listening.DELIVERED, **listening.LOST}  # fmt: skip
+    names = {"sent": heard.SENT, "arrived": heard.ARRIVED, "delivered": heard.DELIVERED,
+             **listening.LOST}  # fmt: skip
     return {name: world.counters[word] for name, word in names.items() if world.counters[word]}
 
 
@@ -94,16 +94,6 @@ def test_who_was_off_or_cut_off_when_a_frame_ended(time, state, off, found):
         world.radios[node].state = DEAD
     listening.record_sent(world, 0, time, 20, None)
     assert counted(world) == found
-
-
-def test_a_delivery_has_its_row_if_rows_are_kept():
-    world = world_of()
-    listening.keep(world, 2, 5, 900, 70)
-    row = {"time": 900, "node": 2, "port": 0, "kind": 5, "latency": 70}
-    assert (vars(world.deliveries[0]), world.run[0].deliveries) == (row, 1)
-    world.run[0].delivery_limit = 0
-    listening.keep(world, 2, 5, 900, 70)
-    assert (counted(world), world.run[0].deliveries) == ({"delivered": 2}, 1)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from innervate.kernel.records import within
 from innervate.sim import delays
 from innervate.sim.cables.wires import DELIVERED, is_cut
 from innervate.sim.cables.world import BROKEN_RANGE
-from innervate.sim.rows import record_row
+from innervate.sim.rows import record_delivery, record_row
 
 
 def on_report(world, time, node, code, a, b):
@@ -16,26 +16,12 @@ def on_report(world, time, node, code, a, b):
         record_row(world, time, node, code, a, b)
 
 
-def keep_delivered(world, time, node, port, kind):
-    """A node's user got a frame; the row, its latency not yet known."""
-    run = world.run[0]
+def keep_delivered(world, time, node, port, kind, latency):
+    """A node's user got a frame; how long it took, us, -1 = nobody knows."""
     world.counters[DELIVERED] += 1
-    if run.delivery_limit > 0:
-        row = world.deliveries[run.deliveries]
-        run.deliveries += 1
-        row.time = time
-        row.node = node
-        row.port = port
-        row.kind = kind
-        row.latency = -1
-
-
-def keep_latency(world, latency_us):
-    """How long what was just delivered took."""
-    run = world.run[0]
-    delays.note(world, 0, latency_us)
-    if run.delivery_limit > 0:
-        world.deliveries[run.deliveries - 1].latency = latency_us
+    if latency >= 0:
+        delays.note(world, 0, latency)
+    record_delivery(world, time, node, port, kind, latency)
 
 
 def is_off(world, end):

@@ -11,34 +11,28 @@ from innervate.sim.cables import world as w
 from innervate.sim.cables.wires import ARRIVED, BLOCKS
 from innervate.sim.cables.world import ALIVE
 from innervate.sim.counts import Counts
-from innervate.sim.driver import Ended, Simulation
+from innervate.sim.driver import Ended, Left, Simulation
 from innervate.sim.queue import with_command
 from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import Names, get, put
 
 
-@dataclass(slots=True)
-class Result:
-    """What a simulation leaves: the world at its end and all rows.
+@dataclass(slots=True, kw_only=True)
+class Result(Left):
+    """What a simulation of cables leaves: all rows.
 
     `rows` are what nodes and the recorder reported, `deliveries` what users received, `trail` all
     handler calls; structured arrays with the fields of the simulation's `tables`, times in us.
     `has_deliveries`: `deliveries` holds all of it, rather than nothing.
     """
 
-    plan: Any
-    world: w.World
     rows: Any
     deliveries: Any
     trail: Any
     counters: list[int]
-    ended_us: int
-    wall_s: float
-    fingerprint: str
     handled: int
     arrived: int
-    interrupted: bool
     has_deliveries: bool = False
 
 

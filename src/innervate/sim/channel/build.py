@@ -12,7 +12,7 @@ from innervate.sim.channel.loop import BATCH, ROWS_PER_EVENT
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import TAP, Tables, put, uniform
+from innervate.sim.tables import TAP, Names, Tables, put, uniform
 
 OUTBOX = 16
 
@@ -24,6 +24,7 @@ class Records(NamedTuple):
         station: state of a station; `number`, `rng` and `choice`, where declared, are set here.
         params, frame, packet: parameters, frames, and what a station is handed to send.
         outbox: actions of one call of a handler at most.
+        delivered: names of the fields of a row of what was delivered.
     """
 
     station: Any
@@ -31,6 +32,7 @@ class Records(NamedTuple):
     frame: Any
     packet: Any
     outbox: int = OUTBOX
+    delivered: Names = r.PACKET
 
 
 def build(
@@ -79,7 +81,7 @@ def build(
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
         rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
-        packets=tables.records(r.PACKET, rows, fresh=True, wide=r.WIDE),
+        packets=tables.records(of.delivered, rows, fresh=True, wide=r.WIDE),
         trail=tables.records(r.TRAIL, trail, fresh=True, wide=r.WIDE),
         taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
         tapped=tables.states(of.frame, tapped),
@@ -186,6 +188,11 @@ def _set_events(world: r.World, plan: Any) -> None:
     put(world.commands, 0, action=BEGIN)  # before whatever else is done at time 0
     push(world.heap, key_of(0, COMMAND, 0, 0))
     for place, fault in enumerate(plan.faults, 1):
-        put(world.commands, place, action=fault.action, node=fault.node, value=fault.value)
-        put(world.commands, place, index=fault.index)
-        push(world.heap, key_of(fault.at_us, COMMAND, 0, place))
+        put_command(world, place, fault)
+
+
+def put_command(world: r.World, place: int, fault: Any) -> None:
+    """Something that is to be done to stations, in its place among the commands; and queue it."""
+    put(world.commands, place, action=fault.action, node=fault.node, value=fault.value)
+    put(world.commands, place, index=fault.index)
+    push(world.heap, key_of(fault.at_us, COMMAND, 0, place))

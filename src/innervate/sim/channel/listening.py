@@ -6,10 +6,11 @@ The counters stand in `world.above.counters`.
 from innervate.dialect.access import PACKET as PACKET
 from innervate.kernel.records import within
 from innervate.sim import taps
+from innervate.sim.came import note_came
 from innervate.sim.channel.loop import BROKEN_FRAME, BROKEN_OUTBOX
-from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF, BROKEN_EMPTY
+from innervate.sim.channel.medium import BROKEN_AIR, BROKEN_DEAF, BROKEN_EMPTY, BROKEN_RANGE
+from innervate.sim.heard import ARRIVED, BROKEN_OFF, COLLIDED, DELIVERED, NOISY, OFF, SENDING
 
-BROKEN_RANGE = 4
 WORDS = {
     BROKEN_DEAF: "{node} sent while it was sending, or before its radio heard again",
     BROKEN_AIR: "{node} has too many transmissions under way",
@@ -18,17 +19,6 @@ WORDS = {
     BROKEN_RANGE: "a value of {node} is out of its declared range",
     BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
 }
-SENT = 0
-ARRIVED = 1
-COLLIDED = 2
-SENDING = 3
-NOISY = 4
-OFF = 5
-BROKEN_OFF = 6
-DELIVERED = 7
-COUNTERS = 8
-LOST = {"collision": COLLIDED, "sending": SENDING, "noise": NOISY, "off": OFF,
-        "broken_off": BROKEN_OFF}  # fmt: skip
 
 
 def why(world, node, what, clear, received):
@@ -62,8 +52,10 @@ def keep(world, node, kind, time, latency):
         run.packets += 1
         row.time = time
         row.node = node
-        row.handle = kind
-        row.slots = latency
+        row.port = 0
+        row.kind = kind
+        row.latency = latency
+    note_came(world.above.came, time, latency)
 
 
 def note_sent(world, node, frame, time):

@@ -26,6 +26,7 @@ NOBODY = -1
 NEVER = -1
 BROKEN_DEAF = 1  # a station sent while its radio could not
 BROKEN_AIR = 2  # too many transmissions of one station under way
+BROKEN_RANGE = 4  # a value out of its declared range
 BROKEN_EMPTY = 9  # a frame of no slots
 
 # What is wrong with a transmission: `spoilt`.
@@ -56,7 +57,7 @@ def transmit(world, node, frame, time, copy_frame):
         run.broken, run.broken_node = BROKEN_AIR, node
     on, off = time + run.ta_us, time + run.ta_us + frame.slots * run.slot_us
     air.start, air.end, air.spoilt = on, off, 0
-    air.at_start, air.at_end, air.fade = 0, 0, NOBODY
+    air.at_start, air.at_end = 0, 0
     copy_frame(world.frames[place], frame)
     if frame.kind == CRR:
         impair(world, radio, air)

@@ -1,21 +1,20 @@
 """A shared channel under way (see sim/driver.py)."""
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-import numpy as np
-
-from innervate.sim import heap
-from innervate.sim.channel import build, world
+from innervate.sim.channel import build, listening, world
 from innervate.sim.driver import Simulation
 from innervate.sim.queue import first_of
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import get, put
+from innervate.sim.tables import _longer, get
 
 
 class Channel(Simulation):
     """Stations that all hear each other; its network says which rows it keeps, and what broke."""
 
     wide = world.WIDE
+    broken_words: ClassVar[Mapping[int, str]] = listening.WORDS
 
     def is_complete(self) -> bool:
         """Stations that had so many packets to deliver end with the last of them."""
@@ -38,9 +37,6 @@ class Channel(Simulation):
     def schedule(self, fault: Any) -> None:
         """Something is to be done to the network."""
         place = len(self.world.commands)
-        longer = np.zeros(place + 1, self.world.commands.dtype)
-        longer[:place] = self.world.commands
+        longer = _longer(self.world.commands, place + 1)
         self.world = self.world._replace(commands=longer)
-        put(self.world.commands, place, action=fault.action, node=fault.node, value=fault.value)
-        put(self.world.commands, place, index=fault.index)
-        heap.push(self.world.heap, heap.key_of(fault.at_us, heap.COMMAND, 0, place))
+        build.put_command(self.world, place, fault)

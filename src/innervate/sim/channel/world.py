@@ -6,7 +6,7 @@ from innervate.sim.tables import Out
 
 RUN = (
     "stations", "slot_us", "ta_us", "loss", "rng", "saturated", "forced", "per_turn", "wanted",
-    "completed", "checks", "keep", "watchful", "status", "fingerprint", "handled", "decoded",
+    "completed", "checks", "watchful", "status", "fingerprint", "handled", "decoded",
     "garbled", "now", "rows", "row_limit", "sent", "sent_limit", "packets", "packet_limit", "trail",
     "trail_limit", "taps", "tap_limit",
     "offers", "dropped", "silent", "partial", "again",
@@ -19,8 +19,8 @@ RADIO = (
     "first_offer", "next_offer", "backlog", "fresh", "data_end", "garble", "fade", "leaving",
     "ready_at", "told_at", "told",
 )  # fmt: skip
-AIR = ("start", "end", "spoilt", "at_start", "at_end", "fade")
-COMMAND = ("action", "node", "value", "other", "index")
+AIR = ("start", "end", "spoilt", "at_start", "at_end")
+COMMAND = ("action", "node", "value", "index")
 ROW = ("time", "node", "code", "a", "b")
 SENT = ("time", "end", "node", "kind", "slots", "pos", "next", "handle", "count", "more")
 PACKET = ("offered", "end", "time", "node", "handle", "slots", "receivers", "listeners", "tries")

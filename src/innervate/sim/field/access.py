@@ -12,9 +12,9 @@ from innervate.sim.field.medium import (
     BROKEN_OUTBOX,
     NONE,
     breaks,
+    set_timer,
 )
 from innervate.sim.field.states import COMMITTED, FREE, HELD, ON_AIR
-from innervate.sim.field.timers import set_timer
 from innervate.sim.status import DONE, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 
 NEVER = -1

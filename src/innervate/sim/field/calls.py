@@ -5,8 +5,7 @@ from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.kernel.bits import mix
 from innervate.kernel.records import within_spans
 from innervate.sim import rows
-from innervate.sim.field.medium import BROKEN_OUTBOX, breaks
-from innervate.sim.field.timers import set_timer
+from innervate.sim.field.medium import BROKEN_OUTBOX, breaks, set_timer
 from innervate.sim.status import ON_FRAME, ON_INPUT
 
 

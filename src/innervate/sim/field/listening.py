@@ -4,28 +4,27 @@ Frames are counted once for every node that could hear them, in `world.counters`
 """
 
 from innervate.dialect.arith import MASK30
-from innervate.sim import taps
+from innervate.sim import heard, taps
 from innervate.sim.field import access, calls, medium
 from innervate.sim.field.medium import NONE
 from innervate.sim.field.states import ALIVE, ON_AIR
+from innervate.sim.heard import (
+    ARRIVED,
+    BROKEN_OFF,
+    BUSY,
+    COLLIDED,
+    CUT,
+    FULL,
+    NOISY,
+    OFF,
+    SENDING,
+    SENT,
+)
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
 
 ON_CARRIER = 4  # in trails
 ON_SENT = 5
-SENT = 0
-ARRIVED = 1
-COLLIDED = 2
-SENDING = 3
-NOISY = 4
-OFF = 5
-BROKEN_OFF = 6
-CUT = 7
-BUSY = 8
-FULL = 9
-DELIVERED = 10
-COUNTERS = 11
-LOST = {"collision": COLLIDED, "sending": SENDING, "noise": NOISY, "off": OFF,
-        "broken_off": BROKEN_OFF, "cut": CUT, "busy": BUSY, "queue": FULL}  # fmt: skip
+LOST = {**heard.LOST, "cut": CUT, "busy": BUSY, "queue": FULL}
 
 
 def pressing(world):
@@ -92,20 +91,6 @@ def count_frame(world, place, out, why):
         world.counters[NOISY] += 1
 
 
-def keep(world, node, kind, time, latency):
-    """A node's user got a frame; how long it took, us, -1 = nobody knows."""
-    run = world.run[0]
-    world.counters[DELIVERED] += 1
-    if run.delivery_limit > 0:
-        row = world.deliveries[run.deliveries]
-        run.deliveries += 1
-        row.time = time
-        row.node = node
-        row.port = 0
-        row.kind = kind
-        row.latency = latency
-
-
 def put_off(world, do, node, frame, act):
     """A frame has to wait for those before it."""
     run, radio = world.run[0], world.radios[node]
@@ -160,6 +145,19 @@ def tell_carrier(world, do, node, time):
     radio.told = cd
     do.on_carrier(world, node, (time + radio.offset) & MASK30, cd, 0)
     calls.finish(world, do, node, time, ON_CARRIER, cd)
+
+
+def tell_own_end(world, do, node, time, _ok):
+    """Tell a node whose frame has left the air what its radio hears now."""
+    tell_carrier(world, do, node, time)
+
+
+def tell_nothing(_world, _do, _node, _time, _ok):
+    """A protocol that does not want to know is not told what became of its frames."""
+
+
+def tell_nobody(_world, _do, _time):
+    """... nor are nodes that carriers have come or gone."""
 
 
 def tell_gone(world, do, node, time, ok):

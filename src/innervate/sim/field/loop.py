@@ -11,16 +11,10 @@ from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RES
 from innervate.sim.field import calls, medium, powers, queue
 from innervate.sim.field.queue import RANK_SHIFT, STATION_SHIFT, STATIONS_MAX, TIME_SHIFT, WHAT_MASK
 from innervate.sim.field.states import ALIVE, DEAD, OFF
-from innervate.sim.status import (
-    BUDGET,
-    DONE,
-    ON_START,
-    ON_TIMER,
-)
+from innervate.sim.status import BUDGET, COLD, DONE, MEMORY_LOST, ON_START, ON_TIMER
 
 NEVER = -1
 BOOT = 7  # a command besides those of `scenario/actions`
-COLD, MEMORY_LOST = 0, 1
 
 
 def switch_on(world, do, node, time, cause):

@@ -9,10 +9,11 @@ Without `collisions` the medium is ideal: only the chance counts, nobody is deaf
 have several frames on the air.
 """
 
+from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import LOW15, step
 from innervate.sim import taps
 from innervate.sim.field import powers
-from innervate.sim.field.queue import ENDS, STARTS, key_of, push
+from innervate.sim.field.queue import ENDS, STARTS, TIMER, key_of, push
 from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, FREE, HELD, ON_AIR, VOID
 
 NONE = -1
@@ -33,6 +34,15 @@ def breaks(world, what, node):
     run = world.run[0]
     if run.broken == 0:
         run.broken, run.broken_node = what, node
+
+
+def set_timer(world, node, timer, at, time, now):
+    """A timer of a node, its protocol's or one below, fires at the node's clock reading `at`."""
+    when = time + max(0, ((at - now + (1 << 29)) & MASK30) - (1 << 29))
+    place = node * world.run[0].timers + timer
+    if world.due[place] != when:
+        world.due[place] = when
+        push(world.heap, key_of(when, TIMER, node, timer))
 
 
 def reserve(world, node, state):

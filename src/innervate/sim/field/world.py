@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 from innervate.sim.came import Came
 from innervate.sim.channel.world import Heap
+from innervate.sim.tables import DELIVERY as DELIVERY
 from innervate.sim.tables import Out
 
 RUN = (
@@ -21,7 +22,6 @@ AIR = ("node", "state", "start", "end", "digest", "receivers")
 COMMAND = ("time", "action", "node", "other", "value")
 OFFER = ("time", "node", "kind")
 ROW = ("time", "node", "code", "a", "b")
-DELIVERY = ("time", "node", "port", "kind", "latency")
 TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
 # All fields have 32 bits, these and all of RUN 64.
@@ -67,7 +67,7 @@ class World(NamedTuple):
     came: Came  # what of that was delivered
     out: Out
     mac_out: Out
-    counters: Any  # frames by what became of them (see listening.py)
+    counters: Any  # frames by what became of them (see sim/heard.py)
     rows: Any
     deliveries: Any
     trail: Any

@@ -9,6 +9,7 @@ from innervate.networks.radio.scenario.plan import RadioFault
 from innervate.networks.radio.sim import build, recorder, simulate, stacks
 from innervate.scenario.actions.channel import FADE, JOIN, KILL, LEAVE
 from innervate.sim import taps
+from innervate.sim.channel import medium
 from innervate.sim.heap import AIR_BITS
 from tests.networks.radio.baseline_runs import baseline_plan
 from tests.networks.radio.runs import radio_plan
@@ -108,7 +109,7 @@ def test_a_value_out_of_its_range_is_told_of_the_first_and_every_call_is_in_the_
     for node in (2, 1):
         world.stations[node].number = 1 << 20
         recorder.watch(world, node, 50, 3, 1)
-    assert (run.broken, run.broken_node) == (recorder.BROKEN_RANGE, 2)
+    assert (run.broken, run.broken_node) == (medium.BROKEN_RANGE, 2)
     rows = [(row.time, row.node, row.handler, row.port) for row in world.trail[: run.trail]]
     assert rows == [(40, 1, 3, 0), (50, 2, 3, 1), (50, 1, 3, 1)]
     unchecked = world_of(checks=False)
@@ -188,7 +189,7 @@ def test_what_can_be_broken_is_known_in_words():
     words = simulate.RadioSimulation.broken_words
     assert len(set(words.values())) == len(words) == 7
     assert "began a turn while another" in words[recorder.BROKEN_TURNS]
-    assert "declared range" in words[recorder.BROKEN_RANGE]
+    assert "declared range" in words[medium.BROKEN_RANGE]
 
 
 FRAME = ("kind", "slots", "source", "handle", "pos", "next", "more", "ok", "window", "span", "wide")

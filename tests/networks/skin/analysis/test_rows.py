@@ -84,5 +84,5 @@ def test_unrouted_ends_as_the_world_says(looping):
 
 
 def test_values_after_rows():
-    steps = rows.UnroutedSteps(*(np.array(x) for x in ([2, 5], [10, 20], [7, 3])))
+    steps = rows.Steps(*(np.array(x) for x in ([2, 5], [10, 20], [7, 3], [0, 0])))
     assert rows.values_at(steps, np.array([0, 2, 4, 5, 9])).tolist() == [0, 7, 7, 3, 3]

@@ -32,8 +32,8 @@ def cell():
 
 
 def world_of(rule=RULE_FEASIBLE, **run):
-    own = {"cells": CELLS, "pool_slots": POOL, "rows": 0, "outside": 0, "counted": NONE,
-           "latency_per_frame": 0, "latency_high": 900}  # fmt: skip
+    own = {"cells": CELLS, "pool_slots": POOL, "rows": 0, "row_limit": 9, "outside": 0,
+           "counted": NONE, "latency_per_frame": 0, "latency_high": 900}  # fmt: skip
     made = Of(
         params=[Of(rule=rule)], run=[Of(**own | run)], rows=[Of() for _ in range(9)],
         cells=[cell() for _ in range(CELLS)], alive=[ALIVE] * (CELLS + 1),

@@ -42,7 +42,8 @@ def world_of(ports=(W, W, W), rule=RULE_STATIC, **run):
     names = ("rows", "broken", "loops", "loops_open", "unrouted", "noted", "apart", "next_command",
              "commands", "broken_node", "broken_other")  # fmt: skip
     world = Of(
-        run=[Of(**dict.fromkeys(names, 0) | {"cells": CELLS, "observe": 1, "checks": 1, "joined": 3}
+        run=[Of(**dict.fromkeys(names, 0) | {"cells": CELLS, "observe": 1, "checks": 1, "joined": 3,
+                                          "row_limit": 20}
                 | run)],
         ends=[Of(peer=PEERS.get(end, -1)) for end in range(13)], epoch=[0] * 13,
         watch=Of(port=list(ports), routed=[1] * 3, had=[1] * 3, joined=[1] * 3, ring=[NONE] * 3,

@@ -56,7 +56,7 @@ CELLS, SINK = 3, 3
 
 def world_of(rule=RULE_FEASIBLE, checks=1, **run):
     given = {"cells": CELLS, "checks": checks, "observe": 1, "delivery_limit": 9, "deliveries": 1,
-             "rows": 0, "broken": 0}  # fmt: skip
+             "rows": 0, "row_limit": 4, "broken": 0}  # fmt: skip
     return Of(
         run=[Of(**given | run)], cells=["c0", "c1", "c2"], pc=Of(own=[Of(command=0)]), out="out",
         params=[Of(rule=rule)], clocks=[Of(offset=100, rate=0)] * 4, wheel=Of(clock=[70, -1]),

@@ -99,7 +99,7 @@ def test_it_knows_at_any_time_who_has_a_way_and_who_could_have_one(seed):
 
 
 def test_a_port_without_a_cable_is_not_found_broken():
-    run = SimpleNamespace(observe=1, rows=0)
+    run = SimpleNamespace(observe=1, rows=0, row_limit=1)
     world = SimpleNamespace(run=[run], rows=[SimpleNamespace()], ends=[
         SimpleNamespace(peer=peer) for peer in (-1, 5)])  # fmt: skip
     observer.on_report(world, 9, 0, REPORT_BROKEN, 0, 1)

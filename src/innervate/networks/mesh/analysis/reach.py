@@ -21,6 +21,7 @@ from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.sim.field.powers import CAPTURE_ONE
 from innervate.sim.field.states import ALIVE, DEAD
+from innervate.sim.tables import column
 from innervate.topology.placement import distances
 
 FAR = 1 << 30
@@ -124,7 +125,7 @@ def _searched(known: Choices, live: Flags, leads: Flags, over: Flags, rest: Numb
         to = known.named[over]
         hands[np.repeat(np.arange(count), over.sum(axis=1)), to] = True
         hands &= live
-        back = [np.flatnonzero(column).tolist() for column in hands.T]
+        back = [np.flatnonzero(row).tolist() for row in hands.T]
         gateways = np.unique(known.gateway[rest[leads[known.gateway[rest]]]]).tolist()
         far = {gateway: np.array(distances(back, gateway)) for gateway in gateways}
         found = [_nearer(hands[node], far.get(known.gateway[node]), node) for node in rest]
@@ -158,8 +159,8 @@ def _walked(known: Choices, live: Flags, leads: Flags, node: int) -> int:
 
 def of_simulation(world: Any, plan: Any) -> Ways:
     """Who reaches a gateway in a simulation, as its tables stand; compiled or plain."""
-    states = _column(world.radios, "state", plan.nodes)
-    leading = _column(world.nodes, "leading", plan.nodes) == 1
+    states = column(world.radios, "state", plan.nodes)
+    leading = column(world.nodes, "leading", plan.nodes) == 1
     on = states == ALIVE
     return ways(choices(world, plan), carries(world, plan), on, states == DEAD, leading & on)
 
@@ -175,9 +176,9 @@ def carries(world: Any, plan: Any) -> Flags:
     shape = count, count
     chance = np.asarray(world.prob).reshape(shape) / ONE
     heard = chance * (np.asarray(world.cut).reshape(shape) == 0)
-    noise = _column(world.radios, "noise", count)
+    noise = column(world.radios, "noise", count)
     if noise.any() and plan.radio.collisions:
-        capture = int(_column(world.run, "capture", 1)[0])
+        capture = int(column(world.run, "capture", 1)[0])
         power = np.asarray(world.power).reshape(shape)
         heard = heard * (power * CAPTURE_ONE // capture >= noise[None, :])
     acked = heard * heard.T if params["hop_acks"] else heard
@@ -241,14 +242,6 @@ def _packed(named: Numbers) -> Numbers:
     return found
 
 
-def _column(table: Any, name: str, count: int) -> Numbers:
-    """A field of the first `count` records, compiled or plain."""
-    if isinstance(table, list):
-        return np.array([getattr(record, name) for record in table[:count]], np.int64)
-    found: Numbers = table[name][:count].astype(np.int64)
-    return found
-
-
 class _Columns(dict[str, Numbers]):
     """Fields of a table's records by name, read when they are asked for."""
 
@@ -257,5 +250,5 @@ class _Columns(dict[str, Numbers]):
         self._table, self._count = table, count
 
     def __missing__(self, name: str) -> Numbers:
-        found = self[name] = _column(self._table, name, self._count)
+        found = self[name] = column(self._table, name, self._count)
         return found

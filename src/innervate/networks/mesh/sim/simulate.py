@@ -23,11 +23,10 @@ from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim import simulate as radio_simulate
 from innervate.networks.radio.sim import stacks as radio_stacks
 from innervate.sim import heap, rows, taps
-from innervate.sim.driver import Progress
+from innervate.sim.driver import Left, Progress
 from innervate.sim.field import access as over_medium
 from innervate.sim.field import calls, loop, medium, motion, powers
 from innervate.sim.field.simulation import Field
-from innervate.sim.field.timers import set_timer
 from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import get
@@ -36,8 +35,8 @@ SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
 
 
-@dataclass(slots=True)
-class MeshResult:
+@dataclass(slots=True, kw_only=True)
+class MeshResult(Left):
     """What a mesh simulation leaves.
 
     Structured arrays with the fields of `world.ROW`, `SENT`, `DELIVERED`, `ROUND` and `TRAIL`;
@@ -52,21 +51,14 @@ class MeshResult:
         trail: all handler calls, if asked for; those of the medium access are numbered from
             `access.MAC`.
         counts: the numbers of the run by name, see COUNTS.
-        ended_us: up to where it ran.
     """
 
-    plan: Any
-    world: w.World
     rows: Any
     sent: Any
     delivered: Any
     rounds: Any
     trail: Any
     counts: dict[str, int]
-    ended_us: int
-    wall_s: float
-    fingerprint: str
-    interrupted: bool
 
 
 COUNTS = (
@@ -102,7 +94,6 @@ def _jitted(entry: ModuleType, access: radio_stacks.Protocol | None) -> Any:
         *compilation.modules_of(entry), csma, medium, motion, recorder, rows, taps, hot=False
     )
     compilation.register_functions(powers.strength, powers.chance, powers.loss)
-    compilation.register_functions(set_timer, hot=False)
     layer = stacks.Layer(over_medium)
     if access is not None:
         layer = stacks.Layer(over_channel, radio_simulate.registered(access, over_channel))

@@ -11,6 +11,9 @@ from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
 from innervate.networks.mesh.sim import orders, recorder
+from innervate.sim.handlers import Given, access_handlers, handlers
+
+ROUTER = Given("world.nodes[node], world.gates[world.radios[node].gate], world.params[0]")
 
 # What the loop asks of the layer below.
 BELOW = (
@@ -68,58 +71,11 @@ def bind(entry: ModuleType, layer: Layer) -> ModuleType:
     below = (getattr(layer.part, name) for name in BELOW)
     made = compilation.bound(
         f"{entry.on_start.__module__} {layer.part.__name__}",
-        _router(entry), _csma(), (digest, copy_frame, frame_bytes), ORDERS, below,
+        handlers(entry, ROUTER).values(), access_handlers(csma).values(),
+        (digest, copy_frame, frame_bytes), ORDERS, below,
     )  # fmt: skip
     vars(made)["channel"] = layer.channel
     return made
-
-
-def _router(entry: ModuleType) -> tuple[Callable[..., Any], ...]:
-    """A router's functions with the world as their first argument."""
-    start, frame_in, timer_due = entry.on_start, entry.on_frame, entry.on_timer
-    given = entry.on_input
-
-    def on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
-        gate = world.gates[world.radios[node].gate]
-        start(world.nodes[node], gate, world.params[0], now, cause, world.out)
-
-    def on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
-        gate = world.gates[world.radios[node].gate]
-        frame_in(world.nodes[node], gate, world.params[0], now, 0, frame, world.out)
-
-    def on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
-        gate = world.gates[world.radios[node].gate]
-        timer_due(world.nodes[node], gate, world.params[0], now, timer, world.out)
-
-    def on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
-        gate, item = world.gates[world.radios[node].gate], world.item[0]
-        given(world.nodes[node], gate, world.params[0], now, kind, item, world.out)
-
-    return on_start, on_frame, on_timer, on_input
-
-
-def _csma() -> tuple[Callable[..., Any], ...]:
-    """The handlers of CSMA, over the world's tables of radios."""
-    start, frame_in, timer_due = csma.on_start, csma.on_frame, csma.on_timer
-    given, carrier = csma.on_input, csma.on_carrier
-
-    def mac_on_start(world, node, now, cause):  # type: ignore[no-untyped-def]
-        start(world.macs[node], world.mac_params[0], now, cause, world.mac_out)
-
-    def mac_on_frame(world, node, now, frame):  # type: ignore[no-untyped-def]
-        frame_in(world.macs[node], world.mac_params[0], now, 0, frame, world.mac_out)
-
-    def mac_on_timer(world, node, now, timer):  # type: ignore[no-untyped-def]
-        timer_due(world.macs[node], world.mac_params[0], now, timer, world.mac_out)
-
-    def mac_on_input(world, node, now, kind):  # type: ignore[no-untyped-def]
-        params, item = world.mac_params[0], world.mac_item[0]
-        given(world.macs[node], params, now, kind, item, world.mac_out)
-
-    def mac_on_carrier(world, node, now, cd, voc):  # type: ignore[no-untyped-def]
-        carrier(world.macs[node], world.mac_params[0], now, cd, voc, world.mac_out)
-
-    return mac_on_start, mac_on_frame, mac_on_timer, mac_on_input, mac_on_carrier
 
 
 def plain(entry: ModuleType, layer: Layer, through: Callable[[Any], Any] | None) -> ModuleType:

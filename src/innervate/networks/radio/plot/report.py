@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.headline import verb
 from innervate.kernel.words import number_of
 from innervate.networks.radio.analysis import air
 from innervate.networks.radio.plot import charts as radio_charts
@@ -79,14 +80,10 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
         return f"{begin}; every packet was delivered {took} later."
     missing = offered - summary["delivered"]
     came, end = (
-        f"{number_of(summary['delivered'], 'packet')} {_was(summary['delivered'])}",
-        f"{missing:,} {_was(missing)} not by the end of the run",
+        f"{number_of(summary['delivered'], 'packet')} {verb(summary['delivered'], 'was')}",
+        f"{missing:,} {verb(missing, 'was')} not by the end of the run",
     )
     return f"{begin}; {came} delivered within {took}, {end}."
-
-
-def _was(count: int) -> str:
-    return "was" if count == 1 else "were"
 
 
 def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
@@ -128,7 +125,7 @@ def _taken_for_collided(result: Any) -> list[str]:
     count = air.taken_for_collided(result)
     if not count:
         return []
-    which = f"{number_of(count, 'transmission')} that met no other robot's {_was(count)}"
+    which = f"{number_of(count, 'transmission')} that met no other robot's {verb(count, 'was')}"
     return [
         f"{which} taken for collided: a sender cannot tell a collision from an answer that is "
         "missing."

@@ -1,13 +1,12 @@
 """What a run of a radio channel leaves behind: rows, and what is checked on the way."""
 
-from innervate.kernel.records import within
 from innervate.networks.radio.protocol.constants import DATA
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.sim import taps
+from innervate.sim.channel.listening import check_range
 from innervate.sim.heap import AIR_BITS
 from innervate.sim.rows import record_step
 
-BROKEN_RANGE = 4
 BROKEN_TURNS = 5
 
 
@@ -57,7 +56,5 @@ def record_received(world, node, what, time, clear, received):
 
 def watch(world, node, time, handler, port):
     """Checkers, and the trail of all handler calls."""
-    run = world.run[0]
-    if run.checks and run.broken == 0 and not within(world.words[node], world.low, world.high):
-        run.broken, run.broken_node = BROKEN_RANGE, node
+    check_range(world, node)
     record_step(world, node, time, handler, port)

@@ -11,15 +11,15 @@ from innervate.networks.radio.sim import build as builder
 from innervate.networks.radio.sim import recorder, stacks
 from innervate.scenario.actions.channel import KILL, LEAVE
 from innervate.sim import heap, rows, taps
-from innervate.sim.channel import loop, medium, traffic
+from innervate.sim.channel import listening, loop, medium, traffic
 from innervate.sim.channel import world as w
 from innervate.sim.channel.simulation import Channel
-from innervate.sim.driver import Progress
+from innervate.sim.driver import Left, Progress
 from innervate.sim.tables import get, put
 
 
-@dataclass(slots=True)
-class RadioResult:
+@dataclass(slots=True, kw_only=True)
+class RadioResult(Left):
     """What a radio simulation leaves.
 
     `rows` are what stations reported, `sent` all transmissions, `packets` all packets that their
@@ -28,17 +28,11 @@ class RadioResult:
     `counts` holds the numbers of the run by name.
     """
 
-    plan: Any
-    world: w.World
     rows: Any
     sent: Any
     packets: Any
     trail: Any
     counts: dict[str, int]
-    ended_us: int
-    wall_s: float
-    fingerprint: str
-    interrupted: bool
 
 
 COUNTS = ("handled", "decoded", "garbled", "offers", "dropped", "completed", "silent", "partial",
@@ -66,8 +60,7 @@ def registered(protocol: stacks.Protocol, packets: ModuleType) -> ModuleType:
     compilation.register(traffic, rows, taps, hot=False)
     compilation.register(arith, outbox, rng, heap, medium)
     compilation.register(*protocol.modules, hot=False)
-    compilation.register(recorder, hot=False)
-    compilation.register(packets, hot=False)
+    compilation.register(recorder, listening, packets, hot=False)
     compilation.register_functions(loop.pressing, *loop.FUNCTIONS, hot=False)
     do = stacks.bind(protocol.entry, recorder, packets)
     compilation.register_functions(*(one for one in vars(do).values() if callable(one)))
@@ -105,13 +98,9 @@ class RadioSimulation(Channel):
     }  # fmt: skip
 
     broken_words: ClassVar[Mapping[int, str]] = {
+        **Channel.broken_words,
         medium.BROKEN_DEAF: "{node} sent while its radio could not",
-        medium.BROKEN_AIR: "{node} has too many transmissions under way",
-        medium.BROKEN_EMPTY: "{node} sent a frame of no slots",
-        loop.BROKEN_OUTBOX: "outbox of {node} overflowed",
-        loop.BROKEN_FRAME: "a receiver changed the frame that {node} had sent",
         recorder.BROKEN_TURNS: "{node} began a turn while another station had its own",
-        recorder.BROKEN_RANGE: "a value of {node} is out of its declared range",
     }
 
     def prepare(self) -> None:

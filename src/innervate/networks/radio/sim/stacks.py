@@ -25,7 +25,7 @@ from innervate.networks.radio.protocol import window as radio_window
 from innervate.networks.radio.protocol.station import copy_frame
 from innervate.networks.radio.scenario.baselines import NUMBERS
 from innervate.sim.channel import traffic
-from innervate.sim.channel.calls import handlers
+from innervate.sim.handlers import handlers
 
 
 class Protocol(NamedTuple):
@@ -89,7 +89,7 @@ def bind(entry: ModuleType, recorder: Any, packets: Any = traffic) -> ModuleType
     """
     return compilation.bound(
         f"{entry.__name__} on a channel",
-        (*handlers(entry), digest, copy_frame),
+        (*handlers(entry).values(), digest, copy_frame),
         (recorder.record_sent, recorder.record_received, recorder.watch),
         (packets.note_sent, packets.note_received, packets.note_delivered),
     )

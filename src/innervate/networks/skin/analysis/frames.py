@@ -12,7 +12,7 @@ from innervate.networks.skin.protocol.constants import COMMAND
 from innervate.networks.skin.sim import counters as words
 from innervate.sim.cables import wires
 from innervate.sim.driver import InvariantBroken
-from innervate.sim.tables import get
+from innervate.sim.tables import column, get
 from innervate.sim.wheel import FRESH, NIL
 
 
@@ -131,11 +131,7 @@ def queued(world: Any) -> Iterator[Any]:
     """The frames that wait at ports at the end."""
     room = int(get(world.run, 0, "queue_frames"))
     buffers = world.buffers
-    if isinstance(buffers, list):
-        ends = [end for end, buffer in enumerate(buffers) if buffer.queued]
-    else:
-        ends = np.flatnonzero(buffers["queued"]).tolist()
-    for end in ends:
+    for end in np.flatnonzero(column(buffers, "queued")).tolist():
         first = int(get(buffers, end, "first"))
         for i in range(int(get(buffers, end, "queued"))):
             yield world.queue[end * room + (first + i) % room]
@@ -154,11 +150,8 @@ def _queued(world: Any, block: int) -> int:
 
 def _live(world: Any, block: int) -> list[int]:
     """Numbers of a block's frames on a wire: slots of the pool that arrive somewhere."""
-    events = world.wheel.events
     first, behind = int(get(world.run, 0, "pool_slots")), int(world.wheel.pool[FRESH])
-    if isinstance(events, list):
-        part = enumerate(events[first:behind])
-        return [i for i, e in part if e.bucket != NIL and e.kind == block]
-    there = events[first:behind]
-    found: list[int] = np.flatnonzero((there["bucket"] != NIL) & (there["kind"] == block)).tolist()
+    events = world.wheel.events[first:behind]
+    live = (column(events, "bucket") != NIL) & (column(events, "kind") == block)
+    found: list[int] = np.flatnonzero(live).tolist()
     return found

@@ -9,6 +9,7 @@ from innervate.analysis.ways import NOWHERE, Numbers, follow
 from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.sim.cables.world import ALIVE
+from innervate.sim.tables import column
 
 NO_PORT = -1
 
@@ -19,21 +20,13 @@ def interface_of(result: Any) -> Numbers:
     Follows the chain of parents over live cables; NO_PORT (-1) where it does not reach the PC.
     """
     graph = result.plan.graph
-    parent = _parents(result.world)
+    parent = column(result.world.cells, "parent")
     alive = np.array(result.world.alive[: graph.cells]) == ALIVE
     parent = np.where(alive, parent, NONE)  # before a cell starts its record says port 0
     epoch = np.array(result.world.epoch, np.int64)
     ends = PORTS * np.arange(graph.cells) + np.maximum(parent, 0)
     parent = np.where(epoch[ends] & 1, NONE, parent)
     return interfaces_along(graph, parent)
-
-
-def _parents(world: Any) -> Numbers:
-    """Parent port of every cell at the end of the run; -1 none."""
-    if isinstance(world.cells, list):
-        return np.array([cell.parent for cell in world.cells], np.int64)
-    parents: Numbers = world.cells["parent"].astype(np.int64)
-    return parents
 
 
 def interfaces_along(graph: Any, parent: Numbers) -> Numbers:

@@ -74,15 +74,13 @@ def _window(result: Any, at: rows.Marks, place: int) -> tuple[int, int]:
     return int(at.row[min(first, place)]) + 1, behind
 
 
-def _at(
-    steps: rows.ApartSteps | rows.JoinedSteps | rows.UnroutedSteps, row: int, otherwise: int
-) -> int:
+def _at(steps: rows.Steps, row: int, otherwise: int) -> int:
     """What a step function is just before a row."""
     after = int(np.searchsorted(steps.row, row))
     return int(steps.cells[after - 1]) if after else otherwise
 
 
-def _cut_off(steps: rows.ApartSteps, window: tuple[int, int]) -> tuple[int, int]:
+def _cut_off(steps: rows.Steps, window: tuple[int, int]) -> tuple[int, int]:
     """Cells cut off inside a window, and all that are so at its end."""
     first, behind = np.searchsorted(steps.row, window).tolist()
     return int(steps.fresh[first:behind].sum()), _at(steps, window[1], 0)
@@ -100,7 +98,7 @@ def _last(times: rows.Numbers, places: rows.Numbers, window: tuple[int, int]) ->
     return int(times[places[after - 1]])
 
 
-def _routed(steps: rows.UnroutedSteps, window: tuple[int, int], start: int) -> int | None:
+def _routed(steps: rows.Steps, window: tuple[int, int], start: int) -> int | None:
     """When the last cell had a route for good; `start` if none ever lacked one."""
     first, behind = np.searchsorted(steps.row, window).tolist()
     if first == behind:

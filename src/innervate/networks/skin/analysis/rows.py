@@ -32,32 +32,13 @@ class ParentChanges(NamedTuple):
     balancing: np.ndarray[Any, np.dtype[np.bool_]]
 
 
-class UnroutedSteps(NamedTuple):
-    """How many connected cells have no route: `cells[i]` from `time_us[i]` on (a step function)."""
-
-    row: Numbers
-    time_us: Numbers
-    cells: Numbers
-
-
-class ApartSteps(NamedTuple):
-    """How many cells are cut off, from `time_us[i]` on (a step function).
-
-    A cell is cut off if it is on and no live cable joins it with the PC, over whatever way.
-    """
+class Steps(NamedTuple):
+    """How many cells something is true of, from `time_us[i]` on (a step function)."""
 
     row: Numbers  # place in the run's rows
     time_us: Numbers  # when
-    cells: Numbers  # cut off from then on
-    fresh: Numbers  # those of them that were not so before
-
-
-class JoinedSteps(NamedTuple):
-    """How many cells live cables join with the PC: `cells[i]` from `time_us[i]` on."""
-
-    row: Numbers
-    time_us: Numbers
-    cells: Numbers
+    cells: Numbers  # how many from then on
+    fresh: Numbers  # of those cut off, how many were not so before
 
 
 class LoopEpisodes(NamedTuple):
@@ -98,25 +79,27 @@ def parent_changes(result: Any) -> ParentChanges:
     )
 
 
-def unrouted_steps(result: Any) -> UnroutedSteps:
+def unrouted_steps(result: Any) -> Steps:
     """How many cells that are physically connected to the PC had no route, over time."""
-    at, part = _coded(result, observer.UNROUTED)
-    return UnroutedSteps(at, part["time"], part["a"])
+    return _steps(result, observer.UNROUTED)
 
 
-def apart_steps(result: Any) -> ApartSteps:
-    """How many cells were cut off, over time."""
-    at, part = _coded(result, observer.APART)
-    return ApartSteps(at, part["time"], part["a"], part["b"])
+def apart_steps(result: Any) -> Steps:
+    """How many cells were cut off: on, and no live cable joined them with the PC, any way."""
+    return _steps(result, observer.APART)
 
 
-def joined_steps(result: Any) -> JoinedSteps:
+def joined_steps(result: Any) -> Steps:
     """How many cells live cables joined with the PC, over time."""
-    at, part = _coded(result, observer.JOINED)
-    return JoinedSteps(at, part["time"], part["a"])
+    return _steps(result, observer.JOINED)
 
 
-def values_at(steps: UnroutedSteps | ApartSteps | JoinedSteps, at: Numbers) -> Numbers:
+def _steps(result: Any, code: int) -> Steps:
+    at, part = _coded(result, code)
+    return Steps(at, part["time"], part["a"], part["b"])
+
+
+def values_at(steps: Steps, at: Numbers) -> Numbers:
     """What a step function is after each of these rows; 0 before its first step."""
     after = np.searchsorted(steps.row, at, "right")
     return np.append(steps.cells, 0)[after - 1]

@@ -17,6 +17,7 @@ from innervate.networks.skin.analysis.summary_keys import BrokenPort, Loops, Ski
 from innervate.networks.skin.protocol.constants import ONE, PORTS
 from innervate.networks.skin.scenario.warnings import warnings
 from innervate.sim.cables.world import ALIVE
+from innervate.sim.tables import column
 from innervate.topology import PORT_NAMES
 
 
@@ -62,7 +63,7 @@ def loops(result: Any) -> Loops:
 def broken_ports(result: Any) -> list[BrokenPort]:
     """Ports that carry a cable and are broken at the end, at cells that are on."""
     graph = result.plan.graph
-    penalty = _penalties(result.world)
+    penalty = column(result.world.cells, "pf").reshape(-1)
     peer = np.frombuffer(graph.peer, np.int32)[: PORTS * graph.cells]
     alive = np.array(result.world.alive[: graph.cells]) == ALIVE
     ends = np.flatnonzero((penalty >= ONE) & (peer >= 0) & np.repeat(alive, PORTS))
@@ -78,10 +79,3 @@ def broken_ports(result: Any) -> list[BrokenPort]:
         }
         for end in ends.tolist()
     ]
-
-
-def _penalties(world: Any) -> Any:
-    """Failure penalty of every end of a cell."""
-    if isinstance(world.cells, list):
-        return np.array([cell.pf for cell in world.cells]).reshape(-1)
-    return world.cells["pf"].reshape(-1)

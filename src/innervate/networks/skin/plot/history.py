@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.ways import follow
 from innervate.networks.skin.analysis import load, recovery, rows
 from innervate.networks.skin.analysis.rows import Numbers
 from innervate.networks.skin.protocol.constants import NONE, PORTS
@@ -140,7 +141,7 @@ class History:
         reasons[cable] = max(0, reasons.get(cable, 0) + by)
 
 
-def _step_at(steps: rows.UnroutedSteps | rows.ApartSteps, time_us: int) -> int:
+def _step_at(steps: rows.Steps, time_us: int) -> int:
     """What a step function is after all that happened up to a time."""
     behind = int(np.searchsorted(steps.time_us, time_us, "right"))
     return int(steps.cells[behind - 1]) if behind else 0
@@ -148,12 +149,5 @@ def _step_at(steps: rows.UnroutedSteps | rows.ApartSteps, time_us: int) -> int:
 
 def hops_of(moment: Moment, sink: int) -> Numbers:
     """Hops of every cell along its chain of parents; 0 where the chain does not reach the PC."""
-    cells = len(moment.hop)
-    nowhere = cells + 1
-    jump = np.concatenate([moment.hop, [sink, nowhere]])
-    jump[jump < 0] = nowhere
-    steps = np.concatenate([np.ones(cells, np.int64), [0, 0]])
-    for _ in range(max(1, cells.bit_length())):
-        steps = steps + steps[jump]
-        jump = jump[jump]
-    return np.where(moment.server >= 0, steps[:cells], 0)
+    _, hops = follow(moment.hop, moment.hop == sink)
+    return np.where(moment.server >= 0, hops + 1, 0)

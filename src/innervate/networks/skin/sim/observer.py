@@ -19,6 +19,7 @@ from innervate.networks.skin.protocol.constants import (
 from innervate.networks.skin.sim.counters import EARLY, NO_ROUTE
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim.cables.world import DEAD
+from innervate.sim.rows import record_row as note
 
 DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
 
@@ -37,18 +38,6 @@ NUMBERS = ("unrouted", "noted", "apart", "joined", "loops", "loops_open", "outsi
 
 BROKEN_LOOP = 1
 BROKEN_FEASIBLE = 2
-
-
-def note(world, time, node, code, a, b):
-    """Add a row to the run's table; the loop makes room beforehand."""
-    run = world.run[0]
-    row = world.rows[run.rows]
-    row.time = time
-    row.node = node
-    row.code = code
-    row.a = a
-    row.b = b
-    run.rows += 1
 
 
 def on_report(world, time, node, code, a, b):

@@ -8,9 +8,9 @@ first.
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.networks.skin.protocol.constants import EVERYBODY, GIVE, NONE
 from innervate.networks.skin.sim.counters import ADDRESSED, GIVEN, MISSED, REACHED, REPEATED, STRAY
-from innervate.networks.skin.sim.observer import note
 from innervate.sim import delays
 from innervate.sim.cables.world import ALIVE
+from innervate.sim.rows import record_row as note
 
 SLOTS = 64
 

@@ -16,9 +16,9 @@ from innervate.networks.skin.protocol.constants import (
     RULE_FEASIBLE,
     RULE_STRICT,
 )
-from innervate.networks.skin.sim.observer import note
 from innervate.sim.cables.wires import URGENT_BLOCK
 from innervate.sim.cables.world import ALIVE
+from innervate.sim.rows import record_row as note
 from innervate.sim.status import COLD
 from innervate.sim.wheel import FRESH, NIL, NOW
 
