@@ -26,21 +26,19 @@ PLACES_PER_NODE = 8
 ACCESS = field.Access(csma_fields.STATION, csma_fields.PARAMS, csma_fields.ITEM, 4, csma.TIMERS)
 CSMA = {"backoff_us": 320, "exponent_min": 3, "exponent_max": 6, "busy_max": 8}
 MACS = {"none": 0, "csma": 1}
+LIMITS = ("row_limit", "sent_limit", "delivered_limit", "round_limit")
 
 
 def build(plan: Any, plain: bool, **kept: bool) -> m.World:
     """The world of a plan, before its first event; `kept` as in `sim.recorded`."""
     tables, asked = Tables(plain, np.int64), Recorded(**kept)
-    n = plan.nodes
-    mtu = plan.params["mtu"]
+    n, mtu = plan.nodes, plan.params["mtu"]
     fields = mesh_fields.node(plan.capacity, mtu=mtu)
     frame = mesh_fields.frame(mtu)
     nodes = tables.states(fields, n + 1)
     low, high = records.bounds(fields)
     heap = field.heap_of(tables, n)
-    below: Any = ()
-    if plan.mac not in MACS:
-        below = channel.world_of(plan, plain, asked.checks, heap)
+    below = () if plan.mac in MACS else channel.world_of(plan, plain, asked.checks, heap)
     world = m.World(
         run=tables.records(m.RUN, 1, wide=m.WIDE),
         heap=heap,
@@ -66,8 +64,7 @@ def build(plan: Any, plain: bool, **kept: bool) -> m.World:
             rows=m.ROW, sent=m.SENT, delivered=m.DELIVERED, rounds=m.ROUND,
         ),
     )  # fmt: skip
-    limits = ("row_limit", "sent_limit", "delivered_limit", "round_limit")
-    field.set_limits(world, tables.rows, asked, *limits)
+    field.set_limits(world, tables.rows, asked, *LIMITS)
     _set_run(world, plan)
     _set_nodes(world, plan, len(world.gates) - 1)
     _set_events(world, plan)
