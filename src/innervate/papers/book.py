@@ -17,9 +17,10 @@ from innervate.network import networks
 from innervate.papers import output
 from innervate.papers.errors import PapersError
 from innervate.papers.experiment import Claim, Experiment, Measured, Point, Sheet
-from innervate.papers.store import Store, stamp
+from innervate.papers.store import Store
 from innervate.plot import style
 from innervate.sweeping.engines import cores
+from innervate.trace.sources import stamp
 
 RESULTS = "results.jsonl"
 COMPARE = "compare"  # the book of comparisons, which is no network's
