@@ -41,13 +41,12 @@ def check(world):
             rows.load_cell(world, hop, 1)
             if not is_worse(world.cells[0], world.cells[1]):
                 return w.BROKEN_ORDER
-        if world.at[w.MAY_LOOP] == 0:
-            steps = 0
-            while hop != NONE and hop != cells and steps < cells:
-                hop = next_hop(world, hop)
-                steps = steps + 1
-            if steps == cells:
-                return w.BROKEN_LOOP
+        steps = 0
+        while hop != NONE and hop != cells and steps < cells:
+            hop = next_hop(world, hop)
+            steps = steps + 1
+        if steps == cells:
+            return w.BROKEN_LOOP
     return w.FINE
 
 

@@ -10,10 +10,9 @@ from typing import Any, NamedTuple
 from innervate.sim.tables import Out
 
 # Places in `SkinWorld.at`.
-CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
-MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, UNREDUCED, IMAGES, WIDTH, LEAN = range(7, 17)
-HELD, RISING, STEADY = range(17, 20)
-SETTINGS = 20
+CELLS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT, MERGE, PROMPT, FAIR = range(9)
+FEASIBLE, KEEP, UNREDUCED, LEAN, HELD, RISING, STEADY = range(9, 16)
+SETTINGS = 16
 DRAWS = 16  # most draws of a fair round that are tried in every way; others give the first
 
 # A cell's head; then PORT_BYTES for each cabled port.
