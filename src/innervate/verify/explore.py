@@ -50,16 +50,12 @@ def compiled_engine(parts: Callable[[], Any]) -> s.Engine:
     compilation.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
     engine = s.build(system)
     compilation.register_functions(*engine.parts, system.variants, hot=False)
-    expand = compilation.compiled_as_one(engine.expand)
-    wander = compilation.compiled_as_one(engine.wander)
-    return s.Engine(engine.parts, compilation.compiled(s.insert), expand, wander)
-
-
-@functools.cache
-def compiled_refill(parts: Callable[[], Any]) -> Callable[..., None]:
-    """The function that enters all rows into a new table."""
-    compiled_engine(parts)
-    return compilation.compiled(s.refill)
+    return engine._replace(
+        insert=compilation.compiled(s.insert),
+        refill=compilation.compiled(s.refill),
+        expand=compilation.compiled_as_one(engine.expand),
+        wander=compilation.compiled_as_one(engine.wander),
+    )
 
 
 def explore(
@@ -147,8 +143,7 @@ class _Driver:
         if plain:
             limit = min(limit, max(states, 1 << 18) + 2 * s.MARGIN)
         self.engine = s.build(system) if plain else compiled_engine(model.compiled_parts)
-        refill = s.refill if plain else compiled_refill(model.compiled_parts)
-        self.known = Table(self.lay, plain, limit, self.lay.body(), refill)
+        self.known = Table(self.lay, plain, limit, self.lay.body(), self.engine.refill)
         self.run = self.known.search.run
         self.run[s.MOVES] = len(self.lay.moves())
         self.world = model.world(plain)

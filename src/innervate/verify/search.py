@@ -45,10 +45,11 @@ class Search(NamedTuple):
 
 
 class Engine(NamedTuple):
-    """The search, bound to a system."""
+    """The search, bound to a system; `refill` enters all rows into a new table."""
 
     parts: tuple[Callable[..., Any], ...]
     insert: Callable[..., int]
+    refill: Callable[..., None]
     expand: Callable[..., None]
     wander: Callable[..., None]
 
@@ -305,4 +306,4 @@ def build(system):
                 append(world, search)
             run[NEXT] += 1
 
-    return Engine((note, follow, choose, stride), insert, expand, wander)
+    return Engine((note, follow, choose, stride), insert, refill, expand, wander)

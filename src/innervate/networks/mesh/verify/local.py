@@ -146,10 +146,6 @@ class Locals:
         """A field of a node's record."""
         return self.states[number].node[self.shape.place[name]]
 
-    def handed(self, number: int) -> int:
-        """The frame that a node has handed down, -1 none."""
-        return self.states[number].handed
-
     # Calls.
 
     def start(self, who: int, boots: int) -> Outcome:
