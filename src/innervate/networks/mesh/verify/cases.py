@@ -40,41 +40,41 @@ def text_of(links: Any) -> str:
 
 def models(wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
     """Everything that is asked for, in order."""
+    line = wanted.links or mesh_model.parse("line")
     for failover in wanted.failovers:
         if failover == "random":
-            links = wanted.links or mesh_model.parse("line")
+            how: dict[str, Any] = {"settings": SHORT, "reliable": False}
             budget = budget_of(wanted.budget, LOST_ACK)
-            two = ((1, 0), (1, 0))
-            yield (
-                "two messages",
-                MeshModel(links, failover, two, budget=budget, settings=SHORT, reliable=False),
-            )
+            yield "two messages", MeshModel(line, failover, ((1, 0),) * 2, budget=budget, **how)
         else:
-            yield from _own(failover, wanted)
+            yield from _messages(failover, wanted)
+        if failover == "search":
+            yield from _leaders(line, wanted)
 
 
-def _own(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
-    """What is asked of a failover that keeps its promises."""
+def _messages(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
+    """A message to the gateway, by a failover that keeps its promises."""
     shapes = ("line", "triangle", "square")
     for links in (wanted.links,) if wanted.links else map(mesh_model.parse, shapes):
         budget = budget_of(wanted.budget, DEATH_AND_ACK)
         far = ((max(b for _, b in links), 0),)
         yield "a message", MeshModel(links, failover, far, budget=budget, settings=SHORT)
-    if failover == "search":
-        links = wanted.links or mesh_model.parse("line")
-        budget = budget_of(wanted.budget, MeshBudget(0, 0, 0, 0))
-        last = max(b for _, b in links)
-        yield "an alarm", MeshModel(links, failover, (), last, budget=budget, settings=SHORT)
-        budget = budget_of(wanted.budget, MeshBudget(1, 1, 0, 0))
-        yield (
-            "gateways",
-            MeshModel(links, failover, (), standby=(last,), budget=budget, settings=QUICK, beats=6),
-        )
-        budget = budget_of(wanted.budget, MeshBudget(1, 0, 0, 0))
-        yield (
-            "gateways that are asked",
-            MeshModel(links, failover, (), standby=(last,), budget=budget, settings=ASKED, beats=3),
-        )
+
+
+def _leaders(
+    links: tuple[tuple[int, int], ...], wanted: MeshWanted
+) -> Iterator[tuple[str, MeshModel]]:
+    """An alarm of the last node, and gateways that it stands by for."""
+    last = max(b for _, b in links)
+    asked: list[tuple[str, MeshBudget, dict[str, Any]]] = [
+        ("an alarm", MeshBudget(0, 0, 0, 0), {"robot": last, "settings": SHORT}),
+        ("gateways", MeshBudget(1, 1, 0, 0),
+         {"standby": (last,), "settings": QUICK, "beats": 6}),
+        ("gateways that are asked", MeshBudget(1, 0, 0, 0),
+         {"standby": (last,), "settings": ASKED, "beats": 3}),
+    ]  # fmt: skip
+    for name, budget, how in asked:
+        yield name, MeshModel(links, budget=budget_of(wanted.budget, budget), **how)
 
 
 def run(model: MeshModel, wanted: MeshWanted, progress: mesh_search.Progress) -> mesh_search.Found:
