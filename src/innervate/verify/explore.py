@@ -33,7 +33,6 @@ class Result:
     broken: int = 0  # what is broken, a number of the model's; 0 nothing
     # the states from the start to the last one before it broke, as rows of bytes
     path: list[bytes] = field(default_factory=list)
-    last: tuple[int, int, int] = (0, 0, 0)  # the move that broke it: (move, variant, choice)
     rows: Any = None  # all states as rows of 64-bit words
 
 
@@ -181,17 +180,9 @@ class _Driver:
         kept = known.search.rows[: known.count * known.words]
         done = Result(self.model, tally, int(run[s.BROKEN]), rows=kept)
         if done.broken:
-            index, word = int(run[s.BROKEN_AT]), int(run[s.BROKEN_MOVE])
-            done.last = unpacked(word)
+            index = int(run[s.BROKEN_AT])
             while index >= 0:
                 done.path.append(known.row(index))
                 index = int(known.search.before[index])
             done.path.reverse()
         return done
-
-
-def unpacked(word: int) -> tuple[int, int, int]:
-    """(move, variant, choice) of a kept move."""
-    rest, choice = divmod(word, s.CHOICE)
-    move, variant = divmod(rest, s.VARIANT)
-    return move, variant, choice

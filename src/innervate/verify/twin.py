@@ -68,8 +68,6 @@ def find(twin: Twin, target: bytes | None, broken: int) -> Event:
         else:
             is_it = twin.image() == target
         if is_it:
-            there = twin.row()
-            twin.put(there)
             kind, arg = twin.moves[move]
             return Event(kind, arg, variant, choice, asked)
     raise AssertionError("a kept state has no way to it")

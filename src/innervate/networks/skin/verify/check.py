@@ -24,7 +24,7 @@ def next_hop(world, c):
     if p == NONE:
         return NONE
     way = world.out_way[PORTS * c + p]
-    if not rows.is_up(world, world.way_link[way]):
+    if not rows.is_up(world, way // 2):
         return NONE
     return min(world.way_end[way] // PORTS, world.at[w.CELLS])
 
@@ -58,7 +58,7 @@ def measure_depths(world):
     world.depth[cells] = 0
     for _ in range(cells):
         for way in range(world.at[w.DIRECTIONS]):
-            if rows.is_up(world, world.way_link[way]):
+            if rows.is_up(world, way // 2):
                 here = min(world.way_end[way] // PORTS, cells)
                 there = min(world.way_end[way ^ 1] // PORTS, cells)
                 if world.depth[there] + 1 < world.depth[here]:
@@ -85,7 +85,7 @@ def is_cell_settled(world, c):
         return False
     for q in range(PORTS):
         way = world.in_way[PORTS * c + q]
-        if way != NONE and rows.is_up(world, world.way_link[way]):
+        if way != NONE and rows.is_up(world, way // 2):
             there = min(world.way_end[way ^ 1] // PORTS, world.at[w.CELLS])
             if world.work[world.port_at[PORTS * c + q] + w.DIST] != world.depth[there]:
                 return False

@@ -56,10 +56,8 @@ class SkinWorld(NamedTuple):
     port_at: Any  # [4 * cell + port] where a cabled port lies, -1 none
     out_way: Any  # [end] the direction that frames sent there take, -1 no cable
     in_way: Any  # [end] the direction that ends there
-    way_end: Any  # [direction] the end it leads to
-    way_link: Any
-    queue_at: Any
-    link_way: Any  # [link] its first direction; the other is the next
+    way_end: Any  # [direction] the end it leads to; cable `link` has directions 2 link and the next
+    queue_at: Any  # [direction] where its frames lie
     depth: Any  # scratch of a search for shortest routes
     orders: Any  # in which nodes tick in a fair round, one after the other; none in a search
     move_kind: Any
