@@ -58,7 +58,7 @@ PARTS = {
     "live_words": "module: lines, ports, heard: what its running nodes say, for people",
     "live_view": "class: web.live_view.LiveView, its running nodes on the page",
     "recovery": "module: recoveries, line, NOTHING: how it healed, from a capture",
-    "verify": "module: explorations; notice, MUTANTS, hunt if it has any (verify/cases.py)",
+    "verify": "module: explorations, notice, MUTANTS, hunt: what `verify` does (verify/cases.py)",
     "prove": "module: theories, MUTANTS, EXPLORERS: what `prove` does (prove/declared.py)",
     "counterexample": "(story, path): the picture of how something breaks",
     "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",

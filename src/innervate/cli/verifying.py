@@ -56,7 +56,7 @@ def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path 
     done: list[Case] = []
     wanted = iter(network.verify.explorations(network, options))
     with Display(as_json) as display, Stop() as stop:
-        if hasattr(network.verify, "notice") and (notice := network.verify.notice(options)):
+        if notice := network.verify.notice(options):
             display.begin(notice, line=True)
 
         def tell(what: str, part: int, of: int) -> bool:
@@ -105,7 +105,7 @@ def _hunts(system: str) -> list[tuple[Any, Any]]:
     known = networks()
     wanted = known if system == next(iter(known)) else [system]
     rooms = [known[name].verify for name in wanted]
-    return [(mutant, room.hunt) for room in rooms for mutant in getattr(room, "MUTANTS", ())]
+    return [(mutant, room.hunt) for room in rooms for mutant in room.MUTANTS]
 
 
 def _mutants(system: str, as_json: bool, count: int = 0) -> int:

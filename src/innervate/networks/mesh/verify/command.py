@@ -20,6 +20,11 @@ from innervate.verify.tally import Tally
 __all__ = ["MUTANTS", "hunt"]
 
 
+def notice(options: Any) -> str:
+    """What to say before the first: nothing is compiled."""
+    return ""
+
+
 def wanted_of(options: Any) -> cases.MeshWanted:
     """What the options of the command line ask for."""
     common.only("mesh", options, "rule", "graph", "budget", "walks")
