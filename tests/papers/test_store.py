@@ -4,7 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from innervate.papers.errors import PapersError
-from innervate.papers.store import Store, stamp
+from innervate.papers.store import Store
+from innervate.trace.sources import stamp
 
 
 def test_results_come_back(tmp_path):

@@ -113,6 +113,16 @@ def test_lines_in_charts_are_said_to_be_events(faults):
     assert ('class="mark"' in drawn) == ("dashed: the events below" in drawn) == bool(faults)
 
 
+def test_what_an_interrupted_run_did_not_come_to_is_not_among_its_events():
+    kills = [{"at_s": at_s, "action": "kill", "node": 2} for at_s in (0.02, 0.04)]
+    made = {"kind": "babel", "nodes": 4, "duration_s": 0.05, "event": kills}
+    run = innervate.run(made, plain=True)
+    run.result.ended_us = 30_000
+    shown = body.body(run.result, run.summary)
+    assert re.findall(r"<td>(0\.0\d+ s)</td>", shown) == ["0.020 s"]
+    assert shown.count('class="mark"') == shown.count('class="series"') > 0
+
+
 def test_so_many_charts_are_shown():
     made = result([(at, 0, code) for code in range(20) for at in range(code + 1)])
     text = body._over_time(made)

@@ -22,8 +22,9 @@ import innervate
 from innervate import scenario as scenarios
 from innervate.papers import book
 from innervate.papers.experiment import Point, columns
-from innervate.papers.store import Store, stamp
+from innervate.papers.store import Store
 from innervate.sweeping.planfile import is_plan
+from innervate.trace.sources import stamp
 
 HERE = Path(__file__).resolve().parent
 RUNS, TABLES = HERE / "runs.json", HERE / "papers"

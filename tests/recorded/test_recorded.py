@@ -8,7 +8,8 @@ import random
 import pytest
 
 from innervate.papers import book
-from innervate.papers.store import Store, stamp
+from innervate.papers.store import Store
+from innervate.trace.sources import stamp
 from tests.recorded import record
 
 SOURCES = record.sources()

@@ -16,10 +16,11 @@ from typing import Any
 from innervate.network import networks
 from innervate.papers import output
 from innervate.papers.errors import PapersError
-from innervate.papers.experiment import Claim, Experiment, Measured, Point, Sheet
-from innervate.papers.store import Store, stamp
+from innervate.papers.experiment import Experiment, Measured, Point
+from innervate.papers.store import Store
 from innervate.plot import style
 from innervate.sweeping.engines import cores
+from innervate.trace.sources import stamp
 
 RESULTS = "results.jsonl"
 COMPARE = "compare"  # the book of comparisons, which is no network's
@@ -83,8 +84,7 @@ def main(
         system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
     )
     wall_s = time.perf_counter() - started
-    made = output.Made(book.claims, book.sheets)
-    return output.write(folder, heading, experiments, made, wall_s)
+    return output.write(folder, heading, experiments, book.made, wall_s)
 
 
 def into_page(page: Path, system: str, folder: Path, only: Iterable[str] = ()) -> None:
@@ -179,8 +179,7 @@ class _Book:
     quick: bool
     progress: Progress
     warm_up: Callable[[], None]
-    claims: dict[str, list[Claim]] = field(default_factory=dict)
-    sheets: dict[str, list[Sheet]] = field(default_factory=dict)
+    made: output.Made = field(default_factory=output.Made)
     _started: float = field(default_factory=time.perf_counter)
     _spent: float = 0.0
     _whole: float = 0.0
@@ -236,8 +235,8 @@ class _Book:
             self._say(f"drawing {experiment.name}")
             got = Measured(self.store.values, self.quick)
             style.save(experiment.draw(got), self.folder, experiment.name)
-            self.claims[experiment.name] = list(experiment.judge(got))
-            self.sheets[experiment.name] = list(experiment.sheets(got))
+            self.made.claims[experiment.name] = list(experiment.judge(got))
+            self.made.sheets[experiment.name] = list(experiment.sheets(got))
 
     def _say(self, what: str) -> None:
         left = None

@@ -44,8 +44,8 @@ class Heading:
 class Made:
     """What came of experiments, by their names."""
 
-    claims: Mapping[str, Sequence[Claim]]
-    sheets: Mapping[str, Sequence[Sheet]] = field(default_factory=dict)
+    claims: dict[str, list[Claim]] = field(default_factory=dict)
+    sheets: dict[str, list[Sheet]] = field(default_factory=dict)
 
     def tables(self, name: str) -> Sequence[Sheet]:
         """The tables of one experiment."""

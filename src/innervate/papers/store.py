@@ -6,9 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from innervate.papers.errors import PapersError
-from innervate.trace.sources import stamp
-
-__all__ = ["Store", "stamp"]
 
 
 class Store:

@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Collection, Mapping
+from functools import partial
 from html import escape
 from typing import Any
 
@@ -30,7 +31,7 @@ def body(result: Any, summary: Mapping[str, Any]) -> str:
     """All of it, as HTML."""
     return page.joined(
         top(result, summary), graph(result.plan, result.counts.off), _over_time(result),
-        _nodes(result), _events(result.plan),
+        _nodes(result), page.events(result, partial(event_words, result.plan)),
     )  # fmt: skip
 
 
@@ -106,7 +107,8 @@ def _places(nodes: list[tuple[str, dict[str, Any]]], edges: Any) -> Places:
 def _over_time(result: Any) -> str:
     """How often what was reported and delivered, added up over time."""
     end_s = max(result.ended_us / 1e6, 1e-6)
-    marks = [charts.Mark(fault.at_us / 1e6, "") for fault in result.plan.faults]
+    marks = [charts.Mark(fault.at_us / 1e6, "") for fault in result.plan.faults
+             if fault.at_us <= result.ended_us]  # fmt: skip
     text = "So many so far; dashed: the events below." if marks else "So many so far."
     figures = []
     for name, times in _series(result)[:CHARTS_MAX]:
@@ -160,9 +162,3 @@ def _nodes(result: Any) -> str:
     ]
     head = ("node", *(f'<span title="{escape(f[5])}">{f[0]}</span>, {escape(f[4])}' for f in shown))
     return section("Nodes at the end", table(head, rows))
-
-
-def _events(plan: Any) -> str:
-    """What the scenario did to it."""
-    rows = [(f"{f.at_us / 1e6:.3f} s", escape(event_words(plan, f))) for f in plan.faults]
-    return section("Events", table(("at", "what"), rows)) if rows else ""

@@ -178,15 +178,17 @@ def _luminance(colour: Sequence[float]) -> float:
 
 def _values(columns: Columns, name: str) -> list[Any]:
     """The values of a column, smallest first; texts in the order in which they come."""
-    if not name:
-        return [None]
-    found = list(dict.fromkeys(value for value in columns[name] if value is not None))
+    return _in_order(columns[name]) if name else [None]
+
+
+def _in_order(values: Sequence[Any]) -> list[Any]:
+    found = list(dict.fromkeys(value for value in values if value is not None))
     return sorted(found) if all(isinstance(v, int | float) for v in found) else found
 
 
 def _scale(values: Sequence[Any]) -> tuple[list[Any], dict[Any, float]]:
     """(values in order, where each stands): numbers at themselves, texts one after another."""
-    found = _values({"": values, "x": values}, "x")
+    found = _in_order(values)
     if all(isinstance(v, int | float) and not isinstance(v, bool) for v in found):
         return found, {value: float(value) for value in found}
     return found, {value: float(i) for i, value in enumerate(found)}

@@ -23,10 +23,6 @@ def _variables(look: str) -> str:
     return ";".join(words)
 
 
-def _fills() -> str:
-    return "".join(f".{x}{i}{{fill:var(--{x}{i})}}" for x in "pdh" for i in range(SHADES))
-
-
 def variables() -> str:
     """The colours as CSS variables: light, dark where the reader prefers it, light on paper."""
     light, dark = _variables("light"), _variables("dark")
@@ -39,7 +35,8 @@ def variables() -> str:
 
 def drawing_style() -> str:
     """The style sheet of drawings, as a page or a drawing alone needs it."""
-    return variables() + _SHAPES + _fills()
+    fills = (f".{x}{i}{{fill:var(--{x}{i})}}" for x in "pdh" for i in range(SHADES))
+    return variables() + _SHAPES + "".join(fills)
 
 
 def shade(value: float, most: float) -> int:

@@ -1,8 +1,8 @@
 """What `innervate verify` is handed by a network, case by case, and what all cases have in common.
 
 A network's part `verify` is a module with `explorations(network, options)`: all that is asked for,
-each a function that explores it and returns a `Case`; `notice(options)`: what to say before the
-first, if it takes long to compile; MUTANTS and `hunt(mutant)`, if there are any.
+each a function that explores it and returns a `Case`; if it takes long to compile,
+`notice(options)`: what to say before the first; MUTANTS and `hunt(mutant)`, if there are any.
 """
 
 from collections import Counter

@@ -28,6 +28,18 @@ def tried(count: int) -> tuple[int, ...]:
     return tuple(range(count)) if count <= FEW else (0, 1, count // 2, count - 1)
 
 
+def branches(script: tuple[int, ...], sizes: list[int]) -> list[tuple[int, ...]]:
+    """The scripts that differ from one that was played in one draw behind it.
+
+    `sizes` is in how many ways each draw can turn out; a draw behind a script gives the first.
+    """
+    found = []
+    for at in range(len(script), len(sizes)):
+        zeros = script + (0,) * (at - len(script))
+        found += [(*zeros, value) for value in range(1, sizes[at])]
+    return found
+
+
 class Draws:
     """Answers what nodes draw while they are explored."""
 

@@ -33,7 +33,6 @@ class Result:
     broken: int = 0  # what is broken, a number of the model's; 0 nothing
     # the states from the start to the last one before it broke, as rows of bytes
     path: list[bytes] = field(default_factory=list)
-    last: tuple[int, int, int] = (0, 0, 0)  # the move that broke it: (move, variant, choice)
     rows: Any = None  # all states as rows of 64-bit words
 
 
@@ -50,16 +49,12 @@ def compiled_engine(parts: Callable[[], Any]) -> s.Engine:
     compilation.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
     engine = s.build(system)
     compilation.register_functions(*engine.parts, system.variants, hot=False)
-    expand = compilation.compiled_as_one(engine.expand)
-    wander = compilation.compiled_as_one(engine.wander)
-    return s.Engine(engine.parts, compilation.compiled(s.insert), expand, wander)
-
-
-@functools.cache
-def compiled_refill(parts: Callable[[], Any]) -> Callable[..., None]:
-    """The function that enters all rows into a new table."""
-    compiled_engine(parts)
-    return compilation.compiled(s.refill)
+    return engine._replace(
+        insert=compilation.compiled(s.insert),
+        refill=compilation.compiled(s.refill),
+        expand=compilation.compiled_as_one(engine.expand),
+        wander=compilation.compiled_as_one(engine.wander),
+    )
 
 
 def explore(
@@ -147,8 +142,7 @@ class _Driver:
         if plain:
             limit = min(limit, max(states, 1 << 18) + 2 * s.MARGIN)
         self.engine = s.build(system) if plain else compiled_engine(model.compiled_parts)
-        refill = s.refill if plain else compiled_refill(model.compiled_parts)
-        self.known = Table(self.lay, plain, limit, self.lay.body(), refill)
+        self.known = Table(self.lay, plain, limit, self.lay.body(), self.engine.refill)
         self.run = self.known.search.run
         self.run[s.MOVES] = len(self.lay.moves())
         self.world = model.world(plain)
@@ -186,17 +180,9 @@ class _Driver:
         kept = known.search.rows[: known.count * known.words]
         done = Result(self.model, tally, int(run[s.BROKEN]), rows=kept)
         if done.broken:
-            index, word = int(run[s.BROKEN_AT]), int(run[s.BROKEN_MOVE])
-            done.last = unpacked(word)
+            index = int(run[s.BROKEN_AT])
             while index >= 0:
                 done.path.append(known.row(index))
                 index = int(known.search.before[index])
             done.path.reverse()
         return done
-
-
-def unpacked(word: int) -> tuple[int, int, int]:
-    """(move, variant, choice) of a kept move."""
-    rest, choice = divmod(word, s.CHOICE)
-    move, variant = divmod(rest, s.VARIANT)
-    return move, variant, choice

@@ -13,8 +13,8 @@ from innervate.kernel.bits import mix
 
 # Places in `Search.run`.
 COUNT, NEXT, LIMIT, SLOTS, GENERATED, STATUS, MOVES, WORDS, IMAGES, WIDTH = range(10)
-BROKEN, BROKEN_AT, BROKEN_MOVE, LEFT_OUT, RANDOM = range(10, 15)
-NUMBERS = 16
+BROKEN, BROKEN_AT, LEFT_OUT, RANDOM = range(10, 14)
+NUMBERS = 14
 
 # Why `expand` stopped.
 GOING, DONE, GROW, FULL, FOUND = range(5)
@@ -30,9 +30,6 @@ HIGH_BITS = 0x8080808080808080 - (1 << 64)
 # Streams of a walk beside the one that chooses moves: another move, and what a draw gives.
 OTHER_WAY, DRAWN = 7, 11
 
-# A move as it is kept: move, variant and choice of its draw in one number.
-VARIANT, CHOICE = 1 << 12, 1 << 4
-
 
 class Search(NamedTuple):
     """The states found so far."""
@@ -45,10 +42,11 @@ class Search(NamedTuple):
 
 
 class Engine(NamedTuple):
-    """The search, bound to a system."""
+    """The search, bound to a system; `refill` enters all rows into a new table."""
 
     parts: tuple[Callable[..., Any], ...]
     insert: Callable[..., int]
+    refill: Callable[..., None]
     expand: Callable[..., None]
     wander: Callable[..., None]
 
@@ -205,7 +203,7 @@ def build(system):
     """The search for a system."""
     variants, step, check = system.variants, system.step, system.check
 
-    def note(world, search, index, word, is_new):
+    def note(world, search, index, is_new):
         """Remember the first thing that is broken."""
         run = search.run
         broken = world.found[0]
@@ -214,7 +212,6 @@ def build(system):
         if broken != 0 and run[BROKEN] == 0:
             run[BROKEN] = broken
             run[BROKEN_AT] = index
-            run[BROKEN_MOVE] = word
             run[STATUS] = FOUND
 
     def follow(world, search, index, move, variant):
@@ -228,9 +225,8 @@ def build(system):
                 run[LEFT_OUT] += 1
             elif asked > 0:
                 run[GENERATED] += 1
-                word = (move * VARIANT + variant) * CHOICE + choice
                 is_new = insert(world, search, index)
-                note(world, search, index, word, is_new)
+                note(world, search, index, is_new)
             choice += 1
 
     def expand(world, search, budget):
@@ -305,4 +301,4 @@ def build(system):
                 append(world, search)
             run[NEXT] += 1
 
-    return Engine((note, follow, choose, stride), insert, expand, wander)
+    return Engine((note, follow, choose, stride), insert, refill, expand, wander)

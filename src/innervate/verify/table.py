@@ -24,12 +24,6 @@ def row(width: int, plain: bool) -> tuple[Any, Any]:
     return (memory.data, words.data) if plain else (memory, words)
 
 
-def body_words(mask: list[int], plain: bool) -> Any:
-    """A mask of bytes as words, in the form that a search works on."""
-    made = np.array(mask, np.uint8).view(np.int64)
-    return made.data if plain else made
-
-
 class Table:
     """States, each kept once as a row of words.
 
@@ -56,12 +50,13 @@ class Table:
         rows: Any = None,
     ) -> None:
         self.plain, self.words, self._refill = plain, lay.width // 8, refill
+        mask = np.array(body, np.uint8).view(np.int64)
         search = s.Search(
             run=zeros(s.NUMBERS, plain),
             rows=zeros(limit * self.words, plain) if rows is None else rows,
             table=zeros(SLOTS, plain),
             before=zeros(limit, plain, np.int32),
-            body=body_words(body, plain),
+            body=mask.data if plain else mask,
         )
         run = search.run
         run[s.COUNT] = 0 if rows is None else len(rows) // self.words

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from innervate.verify import search as s
-from innervate.verify.table import body_words, zeros
+from innervate.verify.table import Table
 
 
 @dataclass(slots=True)
@@ -27,10 +27,7 @@ class Twin:
         self.lay = model.layout()
         self.moves = self.lay.moves()
         self.world = model.world(True)
-        run = zeros(s.NUMBERS, True)
-        run[s.WORDS], run[s.WIDTH] = self.lay.width // 8, self.lay.width
-        run[s.IMAGES] = len(self.lay.images()) // self.lay.width
-        self.search = s.Search(run, None, None, None, body_words(self.lay.body(), True))
+        self.search = Table(self.lay, True, 1, self.lay.body(), s.refill).search
         self.put(bytes(model.first_row(system)))
 
     def put(self, row: bytes) -> None:
@@ -71,8 +68,6 @@ def find(twin: Twin, target: bytes | None, broken: int) -> Event:
         else:
             is_it = twin.image() == target
         if is_it:
-            there = twin.row()
-            twin.put(there)
             kind, arg = twin.moves[move]
             return Event(kind, arg, variant, choice, asked)
     raise AssertionError("a kept state has no way to it")

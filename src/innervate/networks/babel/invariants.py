@@ -1,8 +1,7 @@
 """What must hold of Babel [RFC 8966, 2.4 and 3.6]."""
 
 from innervate.dialect.arith import later
-
-INFINITY = 65535
+from innervate.networks.babel.protocol.constants import INFINITY
 
 
 def is_better(seq, metric, other_seq, other_metric):

@@ -2,16 +2,16 @@
 
 from typing import Any
 
-REPORT_ROUTE, REPORT_DROP, REPORT_LINK = 1, 2, 3
+from innervate.networks.babel.protocol.constants import REPORT_DROP, REPORT_LINK, REPORT_ROUTE
 
 
 def measures(nodes: Any, reports: Any, deliveries: Any, plan: Any) -> dict[str, float]:
     """Nodes that are on and have a route, route changes, links found down, data without a route."""
-    found = {"routed_nodes": sum(node.parent >= 0 for node in nodes)}
     codes = [int(row["code"]) for row in reports]
-    found["route_changes"] = codes.count(REPORT_ROUTE)
-    found["lost_links"] = sum(
-        int(row["code"]) == REPORT_LINK and int(row["b"]) == 0 for row in reports
-    )
-    found["dropped_data"] = codes.count(REPORT_DROP)
-    return found
+    lost = [row for row in reports if row["code"] == REPORT_LINK and row["b"] == 0]
+    return {
+        "routed_nodes": sum(node.parent >= 0 for node in nodes),
+        "route_changes": codes.count(REPORT_ROUTE),
+        "lost_links": len(lost),
+        "dropped_data": codes.count(REPORT_DROP),
+    }

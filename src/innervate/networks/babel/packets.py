@@ -10,39 +10,9 @@ from collections.abc import Iterator
 from struct import pack
 from typing import Any
 
+from innervate.networks.babel import tlvs as tlv
+from innervate.networks.babel.protocol import constants as const
 from innervate.networks.babel.protocol import fields
-from innervate.networks.babel.protocol.constants import (
-    ACK,
-    ACK_REQUEST,
-    DATA,
-    HELLO,
-    IHU,
-    ROUTE_REQUEST,
-    SEQNO_REQUEST,
-    UPDATE,
-)
-from innervate.networks.babel.tlvs import (
-    ACK_REQUEST_TLV,
-    ACK_TLV,
-    DATA_TLV,
-    HELLO_TLV,
-    IHU_TLV,
-    INTERVAL_MAX,
-    IPV6,
-    LOCAL,
-    NEXT_HOP_TLV,
-    ROUTE_REQUEST_TLV,
-    ROUTER_ID_TLV,
-    SEQNO_REQUEST_TLV,
-    TENTHS_MS,
-    UPDATE_TLV,
-    WILDCARD,
-    Message,
-    Parser,
-    address,
-    router_id,
-    tlvs,
-)
 
 MAGIC, VERSION, HEAD_BYTES = 42, 2, 4
 NOT_BABEL, NOTHING = 1, 2
@@ -53,7 +23,7 @@ FIELDS = tuple(field[0] for field in fields.FRAME)
 
 def centiseconds(tenths_ms: int) -> int:
     """An interval as packets have it: never 0, which would promise nothing."""
-    return max(1, -(-tenths_ms // TENTHS_MS))
+    return max(1, -(-tenths_ms // tlv.TENTHS_MS))
 
 
 class Packets:
@@ -69,12 +39,12 @@ class Packets:
 
     def __init__(self, number: int, params: Any) -> None:
         self.number, self.pc = number, params.pc
-        self.source, self.prefix = router_id(self.pc), address(self.pc)
-        self.sender = pack(">BBBx8s", NEXT_HOP_TLV, 10, LOCAL, router_id(number))
+        self.source, self.prefix = tlv.router_id(self.pc), tlv.address(self.pc)
+        self.sender = pack(">BBBx8s", tlv.NEXT_HOP_TLV, 10, tlv.LOCAL, tlv.router_id(number))
 
     def encode(self, frame: Any) -> bytes:
         """The packet of a frame."""
-        body = self._data(frame) if frame.kind == DATA else self.sender + self._tlvs(frame)
+        body = self._data(frame) if frame.kind == const.DATA else self.sender + self._tlvs(frame)
         return pack(">BBH", MAGIC, VERSION, len(body)) + body
 
     def read(self, data: bytes, frame: Any) -> Iterator[int]:
@@ -86,8 +56,8 @@ class Packets:
         if not HEAD_BYTES <= end <= len(data) or data[:2] != bytes((MAGIC, VERSION)):
             yield NOT_BABEL
             return
-        parser = Parser(self.number, self.pc)
-        for kind, value in tlvs(data[HEAD_BYTES:end]):
+        parser = tlv.Parser(self.number, self.pc)
+        for kind, value in tlv.tlvs(data[HEAD_BYTES:end]):
             parser.take(kind, value)
         if not parser.messages:
             yield NOTHING
@@ -98,59 +68,59 @@ class Packets:
 
     def _tlvs(self, frame: Any) -> bytes:
         kind = frame.kind
-        if kind == HELLO:
+        if kind == const.HELLO:
             return self._hello(frame)
-        if kind == UPDATE:
+        if kind == const.UPDATE:
             return self._update(frame)
-        if kind == IHU:
+        if kind == const.IHU:
             return self._ihu(frame.rxcost, centiseconds(frame.hello))
-        if kind == ROUTE_REQUEST:
-            return pack(">BBBB16s", ROUTE_REQUEST_TLV, 18, IPV6, 128, self.prefix)
-        if kind == SEQNO_REQUEST:
-            asked = (IPV6, 128, frame.seq, frame.hops, self.source, self.prefix)
-            return pack(">BBBBHBx8s16s", SEQNO_REQUEST_TLV, 30, *asked)
-        if kind == ACK_REQUEST:
-            return pack(">BBxxHH", ACK_REQUEST_TLV, 6, frame.value, centiseconds(frame.hello))
-        assert kind == ACK, "a frame of no kind"
-        return pack(">BBH", ACK_TLV, 2, frame.value)
+        if kind == const.ROUTE_REQUEST:
+            return pack(">BBBB16s", tlv.ROUTE_REQUEST_TLV, 18, tlv.IPV6, 128, self.prefix)
+        if kind == const.SEQNO_REQUEST:
+            asked = (tlv.IPV6, 128, frame.seq, frame.hops, self.source, self.prefix)
+            return pack(">BBBBHBx8s16s", tlv.SEQNO_REQUEST_TLV, 30, *asked)
+        if kind == const.ACK_REQUEST:
+            return pack(">BBxxHH", tlv.ACK_REQUEST_TLV, 6, frame.value, centiseconds(frame.hello))
+        assert kind == const.ACK, "a frame of no kind"
+        return pack(">BBH", tlv.ACK_TLV, 2, frame.value)
 
     def _hello(self, frame: Any) -> bytes:
         """A Hello, and what comes with it."""
         until = centiseconds(frame.hello) if frame.hello else 0
-        found = pack(">BBHHH", HELLO_TLV, 6, 0, frame.hello_no, until)
+        found = pack(">BBHHH", tlv.HELLO_TLV, 6, 0, frame.hello_no, until)
         if frame.rxcost:
             found += self._ihu(frame.rxcost, IHU_HELLOS * until)
         return found + self._update(frame) if frame.has_update else found
 
     def _ihu(self, rxcost: int, until: int) -> bytes:
-        return pack(">BBBxHH", IHU_TLV, 6, WILDCARD, rxcost, until)
+        return pack(">BBBxHH", tlv.IHU_TLV, 6, tlv.WILDCARD, rxcost, until)
 
     def _update(self, frame: Any) -> bytes:
         """The way to the source, and whose it is."""
-        found = pack(">BBxx8s", ROUTER_ID_TLV, 10, self.source)
+        found = pack(">BBxx8s", tlv.ROUTER_ID_TLV, 10, self.source)
         told = (centiseconds(frame.update), frame.seq, frame.metric, self.prefix)
-        return found + pack(">BBBBBBHHH16s", UPDATE_TLV, 26, IPV6, 0, 128, 0, *told)
+        return found + pack(">BBBBBBHHH16s", tlv.UPDATE_TLV, 26, tlv.IPV6, 0, 128, 0, *told)
 
     def _data(self, frame: Any) -> bytes:
-        return pack(">BBHHB", DATA_TLV, 5, frame.source, frame.value, frame.hops)
+        return pack(">BBHHB", tlv.DATA_TLV, 5, frame.source, frame.value, frame.hops)
 
 
-def joined(messages: list[Message]) -> list[Message]:
+def joined(messages: list[tlv.Message]) -> list[tlv.Message]:
     """Messages, with an IHU and an update put into the Hello right before them."""
-    found: list[Message] = []
+    found: list[tlv.Message] = []
     for one in messages:
-        last = found[-1] if found and found[-1]["kind"] == HELLO else {}
+        last = found[-1] if found and found[-1]["kind"] == const.HELLO else {}
         if not last or "metric" in last or last["source"] != one["source"]:
             found.append(one)
-        elif one["kind"] == IHU and "rxcost" not in last and is_of(one, last):
+        elif one["kind"] == const.IHU and "rxcost" not in last and is_of(one, last):
             last["rxcost"] = one["rxcost"]
-        elif one["kind"] == UPDATE:
+        elif one["kind"] == const.UPDATE:
             last |= {"has_update": 1} | {name: one[name] for name in ("seq", "metric", "update")}
         else:
             found.append(one)
     return found
 
 
-def is_of(ihu: Message, hello: Message) -> bool:
+def is_of(ihu: tlv.Message, hello: tlv.Message) -> bool:
     """True if an IHU lasts as long as that of a frame with a Hello does."""
-    return ihu["hello"] == min(IHU_HELLOS * hello["hello"], INTERVAL_MAX)
+    return ihu["hello"] == min(IHU_HELLOS * hello["hello"], tlv.INTERVAL_MAX)

@@ -8,17 +8,7 @@ one prefix that is spoken of is the address of the node `pc`, of 128 bits; other
 from collections.abc import Callable, Iterator
 from struct import pack, unpack_from
 
-from innervate.networks.babel.protocol.constants import (
-    ACK,
-    ACK_REQUEST,
-    DATA,
-    HELLO,
-    IHU,
-    INFINITY,
-    ROUTE_REQUEST,
-    SEQNO_REQUEST,
-    UPDATE,
-)
+from innervate.networks.babel.protocol import constants as const
 
 Message = dict[str, int]  # fields of a frame
 PAD1 = 0
@@ -105,17 +95,17 @@ class Parser:
         if is_whole(value, 6):
             opaque, until = unpack_from(">HH", value, 2)
             if until:
-                self._say(ACK_REQUEST, value=opaque, hello=interval(until))
+                self._say(const.ACK_REQUEST, value=opaque, hello=interval(until))
 
     def _ack(self, value: bytes) -> None:
         if is_whole(value, 2):
-            self._say(ACK, value=unpack_from(">H", value)[0])
+            self._say(const.ACK, value=unpack_from(">H", value)[0])
 
     def _hello(self, value: bytes) -> None:
         if is_whole(value, 6):
             flags, seqno, until = unpack_from(">HHH", value)
             if not flags & UNICAST_FLAG:
-                self._say(HELLO, hello_no=seqno, hello=interval(until))
+                self._say(const.HELLO, hello_no=seqno, hello=interval(until))
 
     def _ihu(self, value: bytes) -> None:
         size = 6 + OCTETS.get(value[0], 0) if value else 6
@@ -123,7 +113,7 @@ class Parser:
             rxcost, until = unpack_from(">HH", value, 2)
             is_ours = value[6:size] in (b"", self.own, LINK + self.own)
             if is_ours and rxcost and until:
-                self._say(IHU, rxcost=rxcost, hello=interval(until))
+                self._say(const.IHU, rxcost=rxcost, hello=interval(until))
 
     def _router(self, value: bytes) -> None:
         if len(value) >= 10:
@@ -159,23 +149,23 @@ class Parser:
             self._prefixes[encoding] = prefix
         if flags & ROUTER_ID_FLAG and prefix:
             self._router_id = prefix[-8:].rjust(8, b"\0")
-        is_all = encoding == WILDCARD and metric == INFINITY
+        is_all = encoding == WILDCARD and metric == const.INFINITY
         is_ours = bits == 128 and prefix == self.prefix
         size = 10 + (bits + 7) // 8 - omitted
         if not until or not (is_all or is_ours) or not is_whole(value, size):
             return
-        if metric < INFINITY:
+        if metric < const.INFINITY:
             if self._router_id in (b"", *NO_ROUTER):
                 return
             if self._router_id != self.source:  # the neighbour goes to another source now
-                metric = INFINITY
-        self._say(UPDATE, seq=seqno, metric=metric, update=interval(until))
+                metric = const.INFINITY
+        self._say(const.UPDATE, seq=seqno, metric=metric, update=interval(until))
 
     def _route_request(self, value: bytes) -> None:
         if len(value) >= 2 and is_whole(value, 2 + (value[1] + 7) // 8):
             is_all = value[0] == WILDCARD and not value[1]
             if is_all or self._is_ours(value[0], value[1], value[2:]):
-                self._say(ROUTE_REQUEST)
+                self._say(const.ROUTE_REQUEST)
 
     def _seqno_request(self, value: bytes) -> None:
         if len(value) < 14 or not is_whole(value, 14 + (value[1] + 7) // 8):
@@ -183,14 +173,14 @@ class Parser:
         encoding, bits, seqno, hops, router = unpack_from(">BBHBx8s", value)
         if hops and router not in NO_ROUTER and self._is_ours(encoding, bits, value[14:]):
             if router == self.source:
-                self._say(SEQNO_REQUEST, seq=seqno, hops=hops)
+                self._say(const.SEQNO_REQUEST, seq=seqno, hops=hops)
             else:  # any update from our source satisfies it
-                self._say(ROUTE_REQUEST)
+                self._say(const.ROUTE_REQUEST)
 
     def _data(self, value: bytes) -> None:
         if is_whole(value, 5):
             source, number, hops = unpack_from(">HHB", value)
-            self._say(DATA, value=number, hops=hops)
+            self._say(const.DATA, value=number, hops=hops)
             self.messages[-1]["source"] = source
 
 

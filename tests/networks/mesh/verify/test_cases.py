@@ -4,8 +4,8 @@ from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.networks.mesh.verify import cases, fuzz
-from innervate.networks.mesh.verify.cases import MeshCase, MeshWanted
+from innervate.networks.mesh.verify import cases, command, fuzz
+from innervate.networks.mesh.verify.cases import MeshWanted
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel, parse
 from tests.networks.draws import Draw
 
@@ -46,7 +46,7 @@ def test_a_case_is_recorded_with_what_came_of_it(story):
     tally = Of(states=5, expanded=4, generated=9, depth=3, wall_s=1.23456, ended="complete")
     found = Of(model=MeshModel(LINE, budget=budget(1)), tally=tally, calls=7, fair=2, longest=6,
                nets=Of(locals=Of(states=[1, 2])), wide=[9, 256])  # fmt: skip
-    assert MeshCase("a message", found, story).as_dict() == {
+    assert command._record("a message", found, story) == {
         "name": "a message", "links": "0-1 1-2", "failover": "search",
         "budget": {"deaths": 1, "revivals": 0, "frames": 0, "acks": 0, "ticks": 0},
         "states": 5, "expanded": 4, "generated": 9, "calls": 7, "node_states": 2, "depth": 3,

@@ -27,7 +27,7 @@ def test_how_far_it_came_and_from_where_it_settles(fair, beats, said):
     tally.states, tally.ended = 9, "complete"
     model = SimpleNamespace(beats=beats)
     found = SimpleNamespace(fair=fair, longest=7, model=model, tally=tally, wide=[])
-    assert _extent(SimpleNamespace(found=found)) == said
+    assert _extent(found) == said
 
 
 LINE = ((0, 1), (1, 2))
@@ -65,15 +65,17 @@ def test_what_cannot_be_asked_is_refused_at_once(keys):
 def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, rest, monkeypatch):
     tally = Tally(states=1234, generated=5678, depth=9, wall_s=2.34, ended=ended)
     model = SimpleNamespace(beats=0, links=LINE, failover="search")
-    found = SimpleNamespace(fair=0, longest=7, model=model, tally=tally, wide=[])
-    case = SimpleNamespace(found=found, name="a message", story=told, as_dict=lambda: {"it": 1})
+    found = SimpleNamespace(fair=0, longest=7, model=model, tally=tally, wide=[],
+                            broken=told is not None)  # fmt: skip
     seen = []
 
-    def run(name, model, wanted, progress):
-        seen.append(progress("0-1", tally))
-        return case
+    def run(model, wanted, progress):
+        seen.append(progress(tally))
+        return found
 
     monkeypatch.setattr(command.cases, "run", run)
+    monkeypatch.setattr(command, "story_of", lambda one: told)
+    monkeypatch.setattr(command, "_record", lambda *_: {"it": 1})
     said = []
     made = command._explore("a message", model, None, lambda *told: said.append(told) or True)
     head, *lines = made.lines
@@ -88,7 +90,8 @@ def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, 
     assert (made.is_broken, made.is_complete) == (told is not None, ended == "complete")
     assert (made.play is None) == (told is None)
     assert seen == [True]
-    assert said == [(f"0-1: 1,234 states, 9 events deep, {tally.per_s / 1e3:.0f} k/s", 0, 0)]
+    rate = f"{tally.per_s / 1e3:.0f} k/s"
+    assert said == [(f"0-1 1-2, search, a message: 1,234 states, 9 events deep, {rate}", 0, 0)]
 
 
 ONE_VALUE = "with one value for each node's draws out of more than 8"

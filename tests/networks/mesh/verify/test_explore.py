@@ -75,7 +75,7 @@ def test_the_random_failover_closes_a_loop_of_two_for_good(made, ring, events):
 @pytest.mark.parametrize("failover", ["search", "graph"])
 @pytest.mark.parametrize(("made", "ring", "events"), LOOPS)
 def test_the_others_do_not(made, ring, events, failover):
-    found = mesh_search.explore(made.changed(failover=failover))
+    found = mesh_search.explore(replace(made, failover=failover))
     assert (found.broken, found.tally.ended) == (0, "complete")
     assert found.tally.depth > events
 
@@ -173,7 +173,7 @@ def test_what_is_tidied_away_is_looked_at_by_nobody():
 def test_walks_find_the_loop_too_and_stay_within_their_number():
     made = LOOPS[0][0]
     assert mesh_search.wander(made, 400, length=60).broken == mesh_local.BROKEN_ROUND
-    calm = mesh_search.wander(made.changed(budget=NOTHING), 5)
+    calm = mesh_search.wander(replace(made, budget=NOTHING), 5)
     assert (calm.broken, calm.tally.ended, calm.tally.states) == (0, "walked", 5)
 
 

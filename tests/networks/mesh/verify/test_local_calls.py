@@ -55,7 +55,7 @@ def test_a_node_that_is_switched_on_is_who_it_is_and_knows_nobody():
         assert list(nodes.field(number, "neighbour")) == [const.ALL] * 3
         state = nodes.states[number]
         assert (state.gate is None) == (rank < 0)
-        assert (state.timers, nodes.handed(number)) == ((NEVER,) * const.TIMERS, NONE)
+        assert (state.timers, nodes.states[number].handed) == ((NEVER,) * const.TIMERS, NONE)
     assert nodes.told == [("on_start", 0, 0)] * 3
     nodes.start(0, 2)
     assert nodes.told[3:] == [("on_start", 0, 1)]
@@ -144,7 +144,7 @@ def test_timers_go_on_and_the_one_that_fires_is_over():
                         ((local.TIMER, 4), (NEVER, NEVER, 85, NEVER, NEVER, NEVER))):  # fmt: skip
         (out,) = nodes.call(number, event, 5)
         assert nodes.states[out.state].timers == left
-        assert (out.broken, out.acks, out.delivered, out.reports) == (0, (), (), ())
+        assert (out.broken, out.acks, out.delivered) == (0, (), ())
     nodes, number = acting((SET_TIMER, 0, DUE, 0))
     (out,) = nodes.call(number, (local.TIMER, 4), 5)
     assert nodes.states[out.state].timers == (120, NEVER, 85, NEVER, NEVER, NEVER)
@@ -163,16 +163,17 @@ def test_what_was_called_before_is_not_called_again():
     assert nodes.calls == 3
 
 
-def test_what_is_put_out_is_handed_down_acked_delivered_and_reported():
+def test_what_is_put_out_is_handed_down_acked_or_delivered():
     nodes, number = acting((SEND, 0, 0, URGENT), (DELIVER, 1, 0, 0), (REPORT, 4, 5, 6),
                            (SEND, 0, 0, 0), frames=[(k, vars(frame(seq=20 + k, path=[0] * 24,
                            path_len=0, body=[0] * 114))) for k in (0, 1, 3)])  # fmt: skip
     (out,) = nodes.call(number, (local.TIMER, 4), 5)
     acked, delivered, handed = (
-        nodes.packets[one].seq for one in (*out.acks, *out.delivered, nodes.handed(out.state))
+        nodes.packets[one].seq
+        for one in (*out.acks, *out.delivered, nodes.states[out.state].handed)
     )
     assert (acked, delivered, handed) == (20, 21, 23)
-    assert (out.reports, out.broken) == (((4, 5, 6),), 0)
+    assert out.broken == 0
     (still,) = nodes.call(out.state, (local.TIMER, 2), 90)
     assert still.broken == local.BROKEN_HELD, "another was handed down"
     (left,) = nodes.call(out.state, (local.SENT,), 0)
@@ -184,9 +185,9 @@ def test_a_frame_stays_handed_down_until_it_has_left():
     (out,) = nodes.call(number, (local.TIMER, 4), 5)
     nodes.entry.on_timer = nodes.entry.on_input = lambda *_: None
     (still,) = nodes.call(out.state, (local.TIMER, 2), 90)
-    assert nodes.handed(still.state) == nodes.handed(out.state) != NONE
+    assert nodes.states[still.state].handed == nodes.states[out.state].handed != NONE
     (left,) = nodes.call(out.state, (local.SENT,), 0)
-    assert nodes.handed(left.state) == NONE
+    assert nodes.states[left.state].handed == NONE
 
 
 def raising(error):

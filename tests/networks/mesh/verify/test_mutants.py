@@ -1,7 +1,10 @@
 """The mesh's explorer can fail: it finds small mistakes, and nothing in the protocol as it is."""
 
+from pathlib import Path
+
 import pytest
 
+from innervate.networks.mesh import protocol
 from innervate.networks.mesh.verify import mutants as mesh_mutants
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.skin.verify import mutants
@@ -40,3 +43,9 @@ def test_names_differ_and_a_text_that_is_not_there_is_no_mutant():
     assert len(names) == len(mesh_mutants.MUTANTS)
     with pytest.raises(ValueError, match="stands 0 times"):
         mesh_mutants.hunt(mutants.Mutant("none", "no such text", ""))
+
+
+def test_every_mutant_changes_a_line_that_there_is():
+    sources = [file.read_text("utf-8") for file in Path(*protocol.__path__).glob("*.py")]
+    for mutant in mesh_mutants.MUTANTS:
+        assert sum(source.count(mutant.old) for source in sources) == 1, mutant.name

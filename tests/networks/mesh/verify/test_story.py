@@ -131,13 +131,10 @@ def test_a_story_says_what_is_broken_and_between_whom_a_packet_goes():
 def test_a_packet_that_goes_round_is_shown_on_its_way_to_its_recipient(dest, shown):
     """Or to node 0 where that is who leads, whoever it is."""
     gone = SimpleNamespace(kind=const.DATA, path=[0, 1, 0, 1], path_len=4, dest=dest)
-
-    def handed(number):
-        return 0 if number == 12 else story.NONE
-
+    states = {11: SimpleNamespace(handed=story.NONE), 12: SimpleNamespace(handed=0)}
     found = SimpleNamespace(
         broken=local.BROKEN_ROUND, path=[(move(nets.AIR), net(DEAD, 11, 12), 0)],
-        nets=SimpleNamespace(locals=SimpleNamespace(handed=handed, packets=[gone])),
+        nets=SimpleNamespace(locals=SimpleNamespace(states=states, packets=[gone])),
         model=SimpleNamespace(nodes=3, offers=((0, 1),)),
     )  # fmt: skip
     assert story._dest(found) == shown

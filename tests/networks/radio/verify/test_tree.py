@@ -1,13 +1,15 @@
 """A tree of draws: which values are tried, which runs follow from one, and where it begins."""
 
 import itertools
+from dataclasses import replace
 
 import pytest
 
 from innervate.networks.radio.verify import tree
 from innervate.networks.radio.verify.fuzz import drawn, smaller, trouble
-from innervate.networks.radio.verify.grid import Grid, Point
-from innervate.networks.radio.verify.tree import FEW, Asked, Grown, Tree, _branches, _points, values
+from innervate.networks.radio.verify.grid import Grid, Point, points
+from innervate.networks.radio.verify.tree import FEW, Asked, Grown, Tree, values
+from innervate.verify.draws import branches
 
 
 @pytest.mark.parametrize(
@@ -51,20 +53,18 @@ def test_every_answer_to_every_draw_is_run_once():
         ranges = ranges_of(script)
         full = script + (0,) * (len(ranges) - len(script))
         seen.append(full)
-        todo += _branches(script, ranges)
+        todo += branches(script, [len(values(count)) for count in ranges])
     wanted = [*itertools.product([0], range(3)), *itertools.product([1], range(3), range(3))]
     assert sorted(seen) == sorted(wanted)
 
 
 def test_points_are_all_offers_and_delays_with_the_first_at_0():
     grid = Grid(3, "paper", 0, offers_us=(0, 52), delays_us=(1, 2))
-    points = list(_points(grid))
-    assert len(points) == len(set(points)) == 2**2 * 2**3
-    assert {
-        point.offers_us[0] if hasattr(point, "offers_us") else point[0][0] for point in points
-    } == {0}
-    assert points[0] == Point((0, 0, 0), (1, 1, 1), ())
-    assert points[-1] == Point((0, 52, 52), (2, 2, 2), ())
+    found = list(points(replace(grid, draws=0)))
+    assert len(found) == len(set(found)) == 2**2 * 2**3
+    assert {point.offers_us[0] for point in found} == {0}
+    assert found[0] == Point((0, 0, 0), (1, 1, 1), ((), (), ()))
+    assert found[-1] == Point((0, 52, 52), (2, 2, 2), ((), (), ()))
 
 
 @pytest.mark.parametrize(("limit", "ended", "runs"), [(0, "complete", 6), (4, "limit", 4),
@@ -76,20 +76,21 @@ def test_a_search_counts_its_runs_and_what_breaks(monkeypatch, limit, ended, run
     def run(plan, advance, asked, script):
         asked.begin(script)
         asked.ask(3)
-        return 5 if asked.answer == 2 else 0
+        return (5 if asked.answer == 2 else 0), []
 
     monkeypatch.setattr(tree, "_run", run)
     monkeypatch.setattr(tree.loop, "bind", lambda _: None)
     told = []
     grown = tree.search(made, limit=limit, progress=lambda one: bool(told.append(one.runs)))
     assert (grown.ended, grown.runs, grown.deepest, told) == (ended, runs, 1, [])
-    first = Point((0, 0), (1,), ())
+    first = Point((0, 0), (1,), ((), ()))
     assert grown.first == {5: (first, (2,))}
     assert grown.broken == {5: 2 if runs == 6 else 1}
 
 
 def test_a_search_that_is_ended_says_so(monkeypatch):
-    monkeypatch.setattr(tree, "_run", lambda plan, advance, asked, script: asked.begin(script) or 0)
+    monkeypatch.setattr(tree, "_run", lambda _plan, _advance, asked, script: (
+        asked.begin(script) or 0, []))  # fmt: skip
     monkeypatch.setattr(tree.loop, "bind", lambda _: None)
     made = Tree(Grid(4, "paper", 0, offers_us=(0, 1), delays_us=(1, 2)), 2)
     told = []

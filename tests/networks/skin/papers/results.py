@@ -16,7 +16,6 @@ from innervate.networks.skin.papers import (
     fig8a,
     fig8b,
     fig10,
-    fig10_runs,
     fig11,
     loop,
     modes,
@@ -154,17 +153,17 @@ def _fig10(beta=1.0, over=0.0, gain=0.10, even=0.10, worst=0.30, wild=0.0, less=
     found = {}
     for setup in fig10.SETUPS:
         cells, ports = {"setup-5": (144, 2), "setup-6": (150, 2), "setup-7": (204, 3)}[setup]
-        least = fig10_runs.formulas.loss_bound(cells, ports, 250, 10)
+        least = fig10.formulas.loss_bound(cells, ports, 250, 10)
         dynamic = least + over
         each = cells / ports
         largest = {fig10.DYNAMIC: each, fig10.QUEUED: each}
         for mode in (*fig10.DRAWN, fig10.QUEUED):
-            seeds = list(fig10_runs.seeds(QUICK, mode))
-            for seed, point in zip(seeds, fig10_runs.runs(setup, mode, QUICK), strict=True):
+            seeds = list(fig10.seeds(QUICK, mode))
+            for seed, point in zip(seeds, fig10.runs(setup, mode, QUICK), strict=True):
                 loss = dynamic
                 if mode is fig10.STATIC:
                     loss += _tree(seed, len(seeds), gain, worst if setup == "setup-7" else gain)
-                elif mode is fig10_runs.EVEN:
+                elif mode is fig10.EVEN:
                     loss += even
                 elif mode is fig10.DYNAMIC:
                     loss += wild * (seed - 1)
@@ -185,7 +184,7 @@ def _eq9(off=0.0, printed=1.0, wave=0.05):
     found = {}
     for updates in eq9.UPDATES:
         for hz in eq9.hz(QUICK):
-            share = fig10_runs.formulas.beacon_share(hz)
+            share = fig10.formulas.beacon_share(hz)
             value = share * (1 + (wave if updates == "wave" else off))
             if printed != 1.0 and updates == "periodic" and hz in eq9.PRINTED:
                 value = eq9.PRINTED[hz] * (printed - 1)

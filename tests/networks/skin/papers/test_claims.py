@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from innervate.networks.skin.papers import arm, eq7, fig8a, fig8b, fig10_runs, modes, steady
+from innervate.networks.skin.papers import arm, eq7, fig8a, fig8b, fig10, modes, steady
 from innervate.networks.skin.papers.common import RULES, Case, recovery, seeds_of
 from innervate.papers.experiment import FAILS, HOLDS, Measured, columns
 
@@ -157,8 +157,8 @@ def test_waves_take_the_shortest_ways():
 
 def test_static_trees_lose_more_than_balanced_ones():
     seeds = (1, 2, 3)
-    trees = [fig10_runs.measure("setup-5", fig10_runs.STATIC, seed, 1.0) for seed in seeds]
-    balanced = fig10_runs.measure("setup-5", fig10_runs.DYNAMIC._replace(settle_s=20.0), 1, 1.0)
+    trees = [fig10.measure("setup-5", fig10.STATIC, seed, 1.0) for seed in seeds]
+    balanced = fig10.measure("setup-5", fig10.DYNAMIC._replace(settle_s=20.0), 1, 1.0)
     assert all(sum(run["loads"]) == 144 for run in (*trees, balanced))
     assert balanced["beta"] > sum(tree["beta"] for tree in trees) / len(seeds)
     assert 0.05 < balanced["loss"] < sum(tree["loss"] for tree in trees) / len(seeds)

@@ -1,17 +1,14 @@
 """What `innervate verify mesh` does: which networks, one after the other."""
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
-from innervate.networks.mesh.verify import story as mesh_story
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
-from innervate.networks.mesh.verify.search import Found
-from innervate.verify.cases import budget_of as budget_of
+from innervate.verify.cases import budget_of
 from innervate.verify.explore import MEMORY
-from innervate.verify.tally import Tally
 
 # A message is tried twice in all, a hop once: what three transmissions can do to a hop, one can.
 SHORT = (("e2e_tries", 1), ("transmissions", 1))
@@ -20,36 +17,6 @@ QUICK = (("period_s", 2.0), ("period_max_s", 2.0), ("dead_s", 3.0), ("dead_step_
 ASKED = (("period_s", 6.0), ("period_max_s", 6.0), ("guard_s", 0.1))
 DEATH_AND_ACK = MeshBudget(deaths=1, frames=0, acks=1)
 LOST_ACK = MeshBudget(deaths=0, frames=0, acks=1)
-
-
-@dataclass(slots=True)
-class MeshCase:
-    """One exploration and what came of it."""
-
-    name: str  # what is explored, in words
-    found: Found  # what came of it
-    story: mesh_story.MeshStory | None = None  # the counterexample, if something is broken
-
-    def as_dict(self) -> dict[str, Any]:
-        """The case as `innervate verify mesh --json` prints it."""
-        model, tally, found = self.found.model, self.found.tally, self.found
-        return {
-            "name": self.name,
-            "links": text_of(model.links),
-            "failover": model.failover,
-            "budget": asdict(model.budget),
-            **{name: getattr(tally, name) for name in ("states", "expanded", "generated")},
-            "calls": found.calls,
-            "node_states": len(found.nets.locals.states),
-            "depth": tally.depth,
-            "wall_s": round(tally.wall_s, 3),
-            "ended": tally.ended,
-            "fair": found.fair,
-            "longest": found.longest,
-            "one_value": found.wide,
-            "broken": self.story.title if self.story else None,
-            "story": self.story.sentences if self.story else None,
-        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,55 +40,46 @@ def text_of(links: Any) -> str:
 
 def models(wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
     """Everything that is asked for, in order."""
+    line = wanted.links or mesh_model.parse("line")
     for failover in wanted.failovers:
         if failover == "random":
-            links = wanted.links or mesh_model.parse("line")
+            how: dict[str, Any] = {"settings": SHORT, "reliable": False}
             budget = budget_of(wanted.budget, LOST_ACK)
-            two = ((1, 0), (1, 0))
-            yield (
-                "two messages",
-                MeshModel(links, failover, two, budget=budget, settings=SHORT, reliable=False),
-            )
+            yield "two messages", MeshModel(line, failover, ((1, 0),) * 2, budget=budget, **how)
         else:
-            yield from _own(failover, wanted)
+            yield from _messages(failover, wanted)
+        if failover == "search":
+            yield from _leaders(line, wanted)
 
 
-def _own(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
-    """What is asked of a failover that keeps its promises."""
+def _messages(failover: str, wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
+    """A message to the gateway, by a failover that keeps its promises."""
     shapes = ("line", "triangle", "square")
     for links in (wanted.links,) if wanted.links else map(mesh_model.parse, shapes):
         budget = budget_of(wanted.budget, DEATH_AND_ACK)
         far = ((max(b for _, b in links), 0),)
         yield "a message", MeshModel(links, failover, far, budget=budget, settings=SHORT)
-    if failover == "search":
-        links = wanted.links or mesh_model.parse("line")
-        budget = budget_of(wanted.budget, MeshBudget(0, 0, 0, 0))
-        last = max(b for _, b in links)
-        yield "an alarm", MeshModel(links, failover, (), last, budget=budget, settings=SHORT)
-        budget = budget_of(wanted.budget, MeshBudget(1, 1, 0, 0))
-        yield (
-            "gateways",
-            MeshModel(links, failover, (), standby=(last,), budget=budget, settings=QUICK, beats=6),
-        )
-        budget = budget_of(wanted.budget, MeshBudget(1, 0, 0, 0))
-        yield (
-            "gateways that are asked",
-            MeshModel(links, failover, (), standby=(last,), budget=budget, settings=ASKED, beats=3),
-        )
 
 
-def run(name: str, model: MeshModel, wanted: MeshWanted, progress: Any) -> MeshCase:
+def _leaders(
+    links: tuple[tuple[int, int], ...], wanted: MeshWanted
+) -> Iterator[tuple[str, MeshModel]]:
+    """An alarm of the last node, and gateways that it stands by for."""
+    last = max(b for _, b in links)
+    asked: list[tuple[str, MeshBudget, dict[str, Any]]] = [
+        ("an alarm", MeshBudget(0, 0, 0, 0), {"robot": last, "settings": SHORT}),
+        ("gateways", MeshBudget(1, 1, 0, 0),
+         {"standby": (last,), "settings": QUICK, "beats": 6}),
+        ("gateways that are asked", MeshBudget(1, 0, 0, 0),
+         {"standby": (last,), "settings": ASKED, "beats": 3}),
+    ]  # fmt: skip
+    for name, budget, how in asked:
+        yield name, MeshModel(links, budget=budget_of(wanted.budget, budget), **how)
+
+
+def run(model: MeshModel, wanted: MeshWanted, progress: mesh_search.Progress) -> mesh_search.Found:
     """Explore one model, or walk it at random, as is wanted; what came of it."""
-
-    def tell(tally: Tally) -> bool:
-        return bool(progress(f"{text_of(model.links)}, {model.failover}, {name}", tally))
-
+    how: dict[str, Any] = {"live": wanted.live, "progress": progress}
     if wanted.walks:
-        found = mesh_search.wander(
-            model, wanted.walks, seed=wanted.seed, live=wanted.live, progress=tell
-        )
-    else:
-        found = mesh_search.explore(
-            model, memory=wanted.memory, states=wanted.states, live=wanted.live, progress=tell
-        )
-    return MeshCase(name, found, mesh_story.tell(found) if found.broken else None)
+        return mesh_search.wander(model, wanted.walks, seed=wanted.seed, **how)
+    return mesh_search.explore(model, memory=wanted.memory, states=wanted.states, **how)

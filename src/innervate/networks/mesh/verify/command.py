@@ -1,6 +1,7 @@
 """What `innervate verify mesh` does: messages, alarms and gateways, on a few nodes."""
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
@@ -8,7 +9,9 @@ from innervate.kernel.words import number_of
 from innervate.networks.mesh.verify import cases, replay
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.mutants import MUTANTS, hunt
+from innervate.networks.mesh.verify.search import Found
 from innervate.networks.mesh.verify.shape import FEW
+from innervate.networks.mesh.verify.story import tell as story_of
 from innervate.verify import cases as common
 from innervate.verify.cases import Case, Explore, Tell
 from innervate.verify.errors import VerifyError
@@ -53,43 +56,60 @@ def explorations(_network: Any, options: Any) -> Iterator[Explore]:
 
 
 def _explore(name: str, model: Any, wanted: cases.MeshWanted, tell: Tell) -> Case:
-    def progress(name: str, tally: Tally) -> bool:
-        what = f"{name}: {tally.states:,} states, {tally.depth} events deep"
-        return tell(f"{what}, {tally.per_s / 1e3:.0f} k/s", 0, 0)
+    links = cases.text_of(model.links)
 
-    case = cases.run(name, model, wanted, progress)
+    def progress(tally: Tally) -> bool:
+        what = f"{links}, {model.failover}, {name}: {tally.states:,} states"
+        return tell(f"{what}, {tally.depth} events deep, {tally.per_s / 1e3:.0f} k/s", 0, 0)
+
+    found = cases.run(model, wanted, progress)
+    tally, story = found.tally, story_of(found) if found.broken else None
+    head = f"{links:24} {model.failover:9} {name:12}{common.many(tally)} {tally.wall_s:7.1f} s"
     return Case(
-        lines=_lines(case),
-        record=case.as_dict(),
-        is_broken=case.story is not None,
-        is_complete=case.found.tally.ended == "complete",
-        but=_but(case),
-        story=case.story,
-        play=None if case.story is None else partial(replay.write, case.story),
+        lines=common.lines_of(head, story, partial(_extent, found)),
+        record=_record(name, found, story),
+        is_broken=story is not None,
+        is_complete=tally.ended == "complete",
+        but=_but(found),
+        story=story,
+        play=None if story is None else partial(replay.write, story),
         stem="mesh-counterexample",
     )
 
 
-def _lines(case: cases.MeshCase) -> list[str]:
-    """What came of one exploration."""
-    found, tally = case.found, case.found.tally
-    head = f"{cases.text_of(found.model.links):24} {found.model.failover:9} {case.name:12}"
-    head += f"{common.many(tally)} {tally.wall_s:7.1f} s"
-    return common.lines_of(head, case.story, partial(_extent, case))
+def _record(name: str, found: Found, story: Any) -> dict[str, Any]:
+    """One exploration as `innervate verify mesh --json` prints it."""
+    model, tally = found.model, found.tally
+    return {
+        "name": name,
+        "links": cases.text_of(model.links),
+        "failover": model.failover,
+        "budget": asdict(model.budget),
+        **{key: getattr(tally, key) for key in ("states", "expanded", "generated")},
+        "calls": found.calls,
+        "node_states": len(found.nets.locals.states),
+        "depth": tally.depth,
+        "wall_s": round(tally.wall_s, 3),
+        "ended": tally.ended,
+        "fair": found.fair,
+        "longest": found.longest,
+        "one_value": found.wide,
+        "broken": story.title if story else None,
+        "story": story.sentences if story else None,
+    }
 
 
-def _but(case: cases.MeshCase) -> str:
+def _but(found: Found) -> str:
     """What was not looked at in all that was; "" nothing."""
-    found = case.found
     if found.tally.ended == "walked" or not found.wide:
         return ""
     return f"with one value for each node's draws out of more than {FEW}"
 
 
-def _extent(case: cases.MeshCase) -> str:
-    found, words = case.found, common.extent(case.found.tally)
-    if _but(case):
-        words += f", {_but(case)}"
+def _extent(found: Found) -> str:
+    words = common.extent(found.tally)
+    if but := _but(found):
+        words += f", {but}"
     if not found.fair:
         return words
     part = "" if found.fair >= found.tally.states else f" from {found.fair:,} of them"

@@ -13,9 +13,8 @@ LAST = 12  # events of a round without end that its story tells
 class Begun(NamedTuple):
     """Where an exploration begins, or what broke before it could."""
 
-    net: (
-        mesh_net.Net
-    )  # switched on; where something is offered, after the first round, its tables in force
+    # switched on; where something is offered, after the first round, its tables in force
+    net: mesh_net.Net
     broken: int  # what that broke, a number of local.py; 0 nothing
     start: mesh_net.Net  # the state before `path`; if nothing broke, `net`
     path: list[mesh_net.Successor]  # the events that broke it

@@ -9,13 +9,14 @@ from typing import Any, NamedTuple
 
 from innervate.dialect import plain
 from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, URGENT
+from innervate.dialect.outbox import DELIVER, SEND, SET_TIMER, URGENT
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import shape as mesh_shape
 from innervate.networks.mesh.verify.shape import NOW
+from innervate.verify.draws import branches
 from innervate.verify.values import values
 
 NONE = -1
@@ -58,7 +59,6 @@ class Outcome(NamedTuple):
     state: int  # the node's next one
     acks: tuple[int, ...]  # numbers of frames that went out at once
     delivered: tuple[int, ...]  # frames handed to the node's user
-    reports: tuple[tuple[int, int, int], ...]  # (code, a, b)
     broken: int  # what must not be, 0 nothing
     script: tuple[int, ...]  # what its draws gave
 
@@ -146,10 +146,6 @@ class Locals:
         """A field of a node's record."""
         return self.states[number].node[self.shape.place[name]]
 
-    def handed(self, number: int) -> int:
-        """The frame that a node has handed down, -1 none."""
-        return self.states[number].handed
-
     # Calls.
 
     def start(self, who: int, boots: int) -> Outcome:
@@ -180,10 +176,7 @@ class Locals:
         while todo:
             script = todo.pop()
             outcomes.append(self._make(number, event, elapsed, script))
-            drawn = self.node.drawn
-            for at in range(len(script), len(drawn)):
-                zeros = script + (0,) * (at - len(script))
-                todo += [(*zeros, value) for value in range(1, drawn[at])]
+            todo += branches(script, self.node.drawn)
         return outcomes
 
     def _make(
@@ -237,7 +230,7 @@ class Locals:
         if event[0] == TIMER:
             timers[event[1]] = NEVER
         handed = NONE if event[0] in (SENT, START) else before.handed
-        acks, delivered, reports = [], [], []
+        acks, delivered = [], []
         broken = BROKEN_CRASH if crashed else BROKEN_OUTBOX if out.overflow[0] else 0
         for k in range(out.count[0]):
             act = out.action[k]
@@ -251,15 +244,13 @@ class Locals:
                 timers[act.a] = mesh_shape.ahead(act.b, now & MASK30, self.shape.grain)
             elif act.kind == DELIVER:
                 delivered.append(self.packet_of(out.frame[k]))
-            elif act.kind == REPORT:
-                reports.append((act.a, act.b, act.c))
         number = self.number_of(before)
         if not crashed:
             try:
                 number = self._keep(node, gate, now, timers, handed)
             except mesh_shape.OutOfRange:
                 broken = broken or BROKEN_RANGE
-        return Outcome(number, tuple(acks), tuple(delivered), tuple(reports), broken, tuple(script))
+        return Outcome(number, tuple(acks), tuple(delivered), broken, tuple(script))
 
     def _keep(self, node: Any, gate: Any, now: int, timers: list[int], handed: int) -> int:
         """The number of what the records are now."""

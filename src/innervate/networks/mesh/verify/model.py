@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from innervate import scenario as scenarios
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.scenario.emit import to_toml
+from innervate.topology.placement import distances, neighbours
 from innervate.verify.errors import VerifyError
 
 NODES_MAX = 6
@@ -71,10 +72,6 @@ class MeshModel:
         """How many nodes the links join, the gateway included."""
         return 1 + max(max(link) for link in self.links)
 
-    def changed(self, **keys: Any) -> MeshModel:
-        """The same with some things different."""
-        return replace(self, **keys)
-
     @property
     def protocol(self) -> dict[str, Any]:
         """Keys of [protocol] by which a scenario is the same network."""
@@ -107,15 +104,9 @@ def parse(text: str) -> tuple[tuple[int, int], ...]:
 
 def reach(nodes: int, links: Any, start: int, dead: Any = ()) -> set[int]:
     """Who is connected to a live node over live nodes."""
-    found, todo = {start}, [start]
-    while todo:
-        here = todo.pop()
-        for a, b in links:
-            there = b if a == here else a if b == here else here
-            if there not in found and there not in dead:
-                found.add(there)
-                todo.append(there)
-    return found if nodes else set()
+    alive = [(a, b) for a, b in links if a not in dead and b not in dead]
+    hops = distances(neighbours(nodes, alive), start)
+    return {node for node, far in enumerate(hops) if far >= 0}
 
 
 def scenario_text(

@@ -38,7 +38,7 @@ MUTANTS = tuple(
         ("a flood is passed on each time",
          "    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
         ("a standby never takes over",
-         "if node.quiet >= params.dead + max(0, node.rank - 1) * params.dead_step:",
+         "if node.quiet >= silence or node.gateway == node.number:",
          "if node.quiet >= 60_000:"),
         ("a gateway does not answer who asks it",
          "    if node.leading:\n        if version != gate.version:\n            index = 0\n",

@@ -58,7 +58,6 @@ class Part(NamedTuple):
     got: int
     acks: tuple[int, ...]
     script: tuple[int, ...]
-    reports: tuple[tuple[int, int, int, int], ...]
     broken: int
 
 
@@ -76,7 +75,6 @@ class Nets:
         self.sets: list[frozenset[tuple[int, int, int, int]]] = [frozenset()]
         self.set_numbers = {self.sets[0]: 0}
         self.form = struct.Struct(f"{3 * self.n + 6}i")
-        self.reports: tuple[tuple[int, int, int, int], ...] = ()
 
     # Keeping states.
 
@@ -226,9 +224,8 @@ class Nets:
         for v in heard_by if is_for_all else [packet.link_dst]:
             if v not in missed and v in heard_by:
                 parts = self._apply(parts, v, event)
-        parts = [
-            part._replace(acks=(), reports=part.reports) for part in parts
-        ] if packet.link_dst == const.ALL else parts  # fmt: skip
+        if packet.link_dst == const.ALL:
+            parts = [part._replace(acks=()) for part in parts]
         done: list[Successor] = []
         for part in parts:
             acks = part.acks
@@ -296,7 +293,7 @@ class Nets:
     # Calls.
 
     def _part(self, net: Net) -> Part:
-        return Part(net.nodes, net.lags, net.got, (), (), (), 0)
+        return Part(net.nodes, net.lags, net.got, (), (), 0)
 
     def _apply(
         self, parts: list[Part], node: int, event: tuple[int, ...], elapsed: int = NONE
@@ -315,13 +312,11 @@ class Nets:
                     nodes = with_one(nodes, node, out.state)
                 if lags[node]:
                     lags = with_one(lags, node, 0)
-                reports = part.reports + tuple((node, *row) for row in out.reports)
                 acks, script = part.acks + out.acks, part.script + out.script
-                found.append(Part(nodes, lags, got, acks, script, reports, broken))
+                found.append(Part(nodes, lags, got, acks, script, broken))
         return found
 
     def _done(self, net: Net, move: Move, part: Part) -> Successor:
-        self.reports = part.reports
         after = net._replace(nodes=part.nodes, lags=part.lags, got=part.got)
         return move._replace(script=part.script), after, part.broken
 

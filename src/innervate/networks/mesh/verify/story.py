@@ -115,7 +115,7 @@ def _dest(found: Found) -> int:
     model, last = found.model, found.path[-1] if found.path else None
     if found.broken == local.BROKEN_ROUND and last is not None:
         for number in last[1].nodes:
-            handed = NONE if number == DEAD else found.nets.locals.handed(number)
+            handed = NONE if number == DEAD else found.nets.locals.states[number].handed
             if handed != NONE and local.goes_round(found.nets.locals.packets[handed]):
                 dest = found.nets.locals.packets[handed].dest
                 return dest if dest < model.nodes else 0

@@ -136,7 +136,7 @@ class Job:
         return round(self.options.turnaround_slots * SLOT)
 
     def run(self, function: Callable[..., None], *values: Any) -> None:
-        """Call a loop with the recorder and these values: integers, or records of them."""
+        """Call a loop with the recorder and these values: integers, or what holds them."""
         loop(function, self.plain)(self.recorder, *values)
 
 
@@ -206,17 +206,15 @@ def _pool(job: Job) -> int:
     assert job.load is not None
     per_slot = job.load / job.packet_slots
     if job.mac == "slotted-aloha":
-        loop(chance.pool, job.plain)(
-            job.recorder, poisson_table(job.load), job.packet, job.packet, 0
-        )
+        job.run(chance.pool, poisson_table(job.load), job.packet, job.packet, 0)
         return 0
     table = poisson_table(per_slot)
     if job.mac == "nonpersistent":
-        loop(chance.pool, job.plain)(job.recorder, table, SLOT, job.packet, SLOT)
+        job.run(chance.pool, table, SLOT, job.packet, SLOT)
         return SLOT
     after = poisson_table(per_slot * (job.packet_slots + 1))
     p = round((job.options.p or 0.1) * draws.UNIT)
-    loop(chance.persist, job.plain)(job.recorder, table, after, p, SLOT, job.packet)
+    job.run(chance.persist, table, after, p, SLOT, job.packet)
     return SLOT
 
 

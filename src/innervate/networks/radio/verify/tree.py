@@ -6,9 +6,8 @@ values, draws of a time with the first, the middle and the last of its range. Be
 every station goes on with a generator of its own.
 """
 
-import itertools
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
 from types import ModuleType
 from typing import Any
 
@@ -22,6 +21,7 @@ from innervate.networks.radio.verify import grid as grid
 from innervate.sim.channel import loop
 from innervate.sim.channel import world as w
 from innervate.sim.tables import get, put, row_dtype
+from innervate.verify.draws import branches
 
 FEW = 6
 ROOM = 512  # frames and reports of a run; a few stations need some dozens
@@ -111,13 +111,13 @@ def search(
     advance = loop.bind(stacks.bind(entry or stacks.PROTOCOLS[shared.protocol].entry, recorder))
     asked, grown = Asked(tree.depth), Grown(tree, 0, 0, 0.0, {}, {}, "interrupted")
     started = wall_s()
-    for point in _points(tree.grid):
+    for point in grid.points(replace(tree.grid, draws=0)):
         plan = grid.plan_of(shared, tree.grid, point)
         todo: list[tuple[int, ...]] = [()]
         while todo:
             script = todo.pop()
-            broken = _run(plan, advance, asked, script)
-            todo += _branches(script, asked.ranges)
+            broken, _ = _run(plan, advance, asked, script)
+            todo += branches(script, [len(values(count)) for count in asked.ranges])
             grown.runs += 1
             grown.deepest = max(grown.deepest, len(asked.ranges))
             grown.wall_s = wall_s() - started
@@ -139,36 +139,14 @@ def story(grown: Grown, code: int) -> list[str]:
     shared = grid.base_plan(made)
     advance = loop.bind(stacks.bind(stacks.PROTOCOLS[shared.protocol].entry, recorder))
     plan, asked = grid.plan_of(shared, made, point), Asked(grown.tree.depth)
-    _, sent = _played(plan, advance, asked, script)
+    _, sent = _run(plan, advance, asked, script)
     told = grid.sentences(made, point, sent, plan.arrivals[0][0])
     whole = script + (0,) * (len(asked.ranges) - len(script))
     drawn = [f"{values(of)[which]} of {of}" for which, of in zip(whole, asked.ranges, strict=True)]
     return [f"What stations draw, in the order of their asking: {', '.join(drawn)}.", *told]
 
 
-def _points(made: grid.Grid) -> Iterator[grid.Point]:
-    """Every combination of offers and delays of a grid; the first offer is at 0."""
-    pairs = made.stations * (made.stations - 1) // 2
-    for offers in itertools.product(made.offers_us, repeat=made.stations - 1):
-        for delays in itertools.product(made.delays_us, repeat=pairs):
-            yield grid.Point((0, *offers), delays, ())
-
-
-def _branches(script: tuple[int, ...], ranges: list[int]) -> list[tuple[int, ...]]:
-    """The scripts that differ from a run's in one later draw."""
-    found = []
-    for at in range(len(script), len(ranges)):
-        zeros = script + (0,) * (at - len(script))
-        found += [(*zeros, value) for value in range(1, len(values(ranges[at])))]
-    return found
-
-
-def _run(plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[int, ...]) -> int:
-    """One run; what is broken, 0 nothing."""
-    return _played(plan, advance, asked, script)[0]
-
-
-def _played(
+def _run(
     plan: Any, advance: Callable[..., None], asked: Asked, script: tuple[int, ...]
 ) -> tuple[int, Any]:
     """One run: what is broken, 0 nothing; and the frames that were sent."""

@@ -11,7 +11,8 @@ NONE = -1
 NOBODY = 255
 
 INFINITE = 65535  # INFINITE_RANK [RFC 6550, 17]
-INITIAL = 240  # of sequence counters [RFC 6550, 7.2]
+# Where sequence counters begin: who restarts is taken for newer than who has gone round [7.2].
+INITIAL = 240
 WINDOW = 16  # SEQUENCE_WINDOW
 ETX_ONE = 128  # an ETX of 1 [RFC 6719, 3.5]
 ETX_MOST = 4096

@@ -1,6 +1,6 @@
 """Sequence counters [RFC 6550, 7.2] and ranks [RFC 6550, 3.5.1]."""
 
-from innervate.networks.rpl.protocol.constants import INITIAL, WINDOW
+from innervate.networks.rpl.protocol.constants import WINDOW
 
 CIRCULAR = 128
 
@@ -20,11 +20,6 @@ def is_newer(a, b):
         return 256 + a - b <= WINDOW
     ahead = a - b if a >= CIRCULAR else (a - b) & (CIRCULAR - 1)
     return ahead > 0 and ahead <= WINDOW
-
-
-def first():
-    """Where counters begin: who restarts is taken for newer than who has gone round."""
-    return INITIAL
 
 
 def dag_rank(rank, step):

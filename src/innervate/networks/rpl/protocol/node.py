@@ -17,6 +17,7 @@ from innervate.networks.rpl.protocol.constants import (
     DIS,
     IDLE,
     INFINITE,
+    INITIAL,
     NEIGHBOURS,
     NOBODY,
     NODES,
@@ -29,7 +30,7 @@ from innervate.networks.rpl.protocol.constants import (
     TICK,
     TRICKLE,
 )
-from innervate.networks.rpl.protocol.counters import dag_rank, first, following
+from innervate.networks.rpl.protocol.counters import dag_rank, following
 from innervate.networks.rpl.protocol.downward import (
     AGAIN,
     DAO_TRIES,
@@ -85,13 +86,13 @@ def on_start(node, params, now, cause, out):
 def begin(node):
     """Nothing is known, nothing is under way."""
     node.known = 0
-    node.version = first()
+    node.version = INITIAL
     node.rank = INFINITE
     node.lowest = INFINITE
     node.floor = INFINITE
     node.parent = NONE
-    node.dtsn = first()
-    node.path_seq = first()
+    node.dtsn = INITIAL
+    node.path_seq = INITIAL
     node.hold = 0
     node.lonely = 0
     node.fresh = 0

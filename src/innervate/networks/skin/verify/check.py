@@ -24,7 +24,7 @@ def next_hop(world, c):
     if p == NONE:
         return NONE
     way = world.out_way[PORTS * c + p]
-    if not rows.is_up(world, world.way_link[way]):
+    if not rows.is_up(world, way // 2):
         return NONE
     return min(world.way_end[way] // PORTS, world.at[w.CELLS])
 
@@ -41,13 +41,12 @@ def check(world):
             rows.load_cell(world, hop, 1)
             if not is_worse(world.cells[0], world.cells[1]):
                 return w.BROKEN_ORDER
-        if world.at[w.MAY_LOOP] == 0:
-            steps = 0
-            while hop != NONE and hop != cells and steps < cells:
-                hop = next_hop(world, hop)
-                steps = steps + 1
-            if steps == cells:
-                return w.BROKEN_LOOP
+        steps = 0
+        while hop != NONE and hop != cells and steps < cells:
+            hop = next_hop(world, hop)
+            steps = steps + 1
+        if steps == cells:
+            return w.BROKEN_LOOP
     return w.FINE
 
 
@@ -59,7 +58,7 @@ def measure_depths(world):
     world.depth[cells] = 0
     for _ in range(cells):
         for way in range(world.at[w.DIRECTIONS]):
-            if rows.is_up(world, world.way_link[way]):
+            if rows.is_up(world, way // 2):
                 here = min(world.way_end[way] // PORTS, cells)
                 there = min(world.way_end[way ^ 1] // PORTS, cells)
                 if world.depth[there] + 1 < world.depth[here]:
@@ -86,7 +85,7 @@ def is_cell_settled(world, c):
         return False
     for q in range(PORTS):
         way = world.in_way[PORTS * c + q]
-        if way != NONE and rows.is_up(world, world.way_link[way]):
+        if way != NONE and rows.is_up(world, way // 2):
             there = min(world.way_end[way ^ 1] // PORTS, world.at[w.CELLS])
             if world.work[world.port_at[PORTS * c + q] + w.DIST] != world.depth[there]:
                 return False

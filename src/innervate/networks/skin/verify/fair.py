@@ -250,5 +250,5 @@ def _rows(model: Any, plain: bool, memory: int, rows: Any = None) -> Table:
     lay = model.layout()
     limit = memory // (lay.width + 32) if rows is None else len(rows) // (lay.width // 8)
     limit = min(limit, 1 << 19) if plain and rows is None else limit
-    refill = s.refill if plain else ex.compiled_refill(skin_system.compiled_parts)
+    refill = s.refill if plain else ex.compiled_engine(skin_system.compiled_parts).refill
     return Table(lay, plain, limit, [255] * lay.width, refill, rows)

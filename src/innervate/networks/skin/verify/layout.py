@@ -61,7 +61,7 @@ class Layout:
         """What `SkinWorld.at` holds: sizes, offsets in a row, flags of the model."""
         model = self.model
         at = [0] * w.SETTINGS
-        at[w.CELLS], at[w.LINKS], at[w.CAPACITY] = model.graph.cells, self.ways // 2, self.capacity
+        at[w.CELLS], at[w.CAPACITY] = model.graph.cells, self.capacity
         at[w.DIRECTIONS], at[w.PC_AT], at[w.LINK_AT] = self.ways, self.pc_at, self.link_at
         at[w.BUDGET_AT], at[w.MERGE], at[w.PROMPT] = self.budget_at, model.merges, model.prompt
         at[w.FEASIBLE], at[w.KEEP] = model.rule == "feasible", model.keep
@@ -71,7 +71,6 @@ class Layout:
         at[w.RISING] = model.rule == "strict" and model.budget.restart == 0
         # Looking at the same ports again changes nothing, or nobody does before the next tick.
         at[w.STEADY] = at[w.FEASIBLE] or at[w.RISING] or model.updates == "periodic"
-        at[w.IMAGES], at[w.WIDTH] = len(self.images()) // self.width, self.width
         return [int(value) for value in at]
 
     @property

@@ -55,7 +55,7 @@ def may_break(world, c, p):
     is_periodic = world.params[0].updates == const.PERIODIC
     if is_periodic and world.at[w.KEEP] == 0 and world.work[slot + w.DIST] == const.INFINITY:
         return 0
-    link = world.way_link[world.in_way[const.PORTS * c + p]]
+    link = world.in_way[const.PORTS * c + p] // 2
     return 1 if not rows.is_up(world, link) or rows.has_budget(world, w.FALSE) else 0
 
 
@@ -119,9 +119,8 @@ def variants(world, move):
 def change_link(world, link, down):
     """Cut a cable, with all frames on it, or mend it."""
     world.work[world.at[w.LINK_AT] + link] = down
-    way = world.link_way[link]
-    rows.clear(world, way)
-    rows.clear(world, way + 1)
+    rows.clear(world, 2 * link)
+    rows.clear(world, 2 * link + 1)
 
 
 def check_range(world):
@@ -147,7 +146,7 @@ def drain(world, first_end):
         act = out.action[i]
         if act.kind == SEND:
             way = world.out_way[first_end + act.a]
-            if way != const.NONE and rows.is_up(world, world.way_link[way]):
+            if way != const.NONE and rows.is_up(world, way // 2):
                 rows.push(world, way, out.frame[i])
         elif act.kind == REPORT and act.a == const.REPORT_FORGET:
             forgot = 1
@@ -216,7 +215,7 @@ def bind(skin, skin_sink):
             if slot < 0:
                 continue
             way = world.in_way[const.PORTS * c + p]
-            up = rows.is_up(world, world.way_link[way])
+            up = rows.is_up(world, way // 2)
             count = options(world, c, p)
             chosen = variant % count
             variant = variant // count

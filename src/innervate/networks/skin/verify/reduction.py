@@ -111,7 +111,7 @@ def is_gone(world, c, p, slot):
     penalty = (row[slot + w.SAYS] & PENALTY) >> 2
     if world.at[w.KEEP] == 0 and penalty > row[world.cell_at[c] + w.TICKS]:
         return True
-    link = world.way_link[world.in_way[PORTS * c + p]]
+    link = world.in_way[PORTS * c + p] // 2
     if rows.is_up(world, link) or rows.has_budget(world, w.HEAL):
         return False
     return penalty > 0 or (world.at[w.STEADY] and row[slot + w.DIST] == INFINITY)

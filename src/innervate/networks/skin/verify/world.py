@@ -10,10 +10,9 @@ from typing import Any, NamedTuple
 from innervate.sim.tables import Out
 
 # Places in `SkinWorld.at`.
-CELLS, LINKS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT = range(7)
-MERGE, PROMPT, FAIR, FEASIBLE, MAY_LOOP, KEEP, UNREDUCED, IMAGES, WIDTH, LEAN = range(7, 17)
-HELD, RISING, STEADY = range(17, 20)
-SETTINGS = 20
+CELLS, CAPACITY, DIRECTIONS, PC_AT, LINK_AT, BUDGET_AT, MERGE, PROMPT, FAIR = range(9)
+FEASIBLE, KEEP, UNREDUCED, LEAN, HELD, RISING, STEADY = range(9, 16)
+SETTINGS = 16
 DRAWS = 16  # most draws of a fair round that are tried in every way; others give the first
 
 # A cell's head; then PORT_BYTES for each cabled port.
@@ -57,10 +56,8 @@ class SkinWorld(NamedTuple):
     port_at: Any  # [4 * cell + port] where a cabled port lies, -1 none
     out_way: Any  # [end] the direction that frames sent there take, -1 no cable
     in_way: Any  # [end] the direction that ends there
-    way_end: Any  # [direction] the end it leads to
-    way_link: Any
-    queue_at: Any
-    link_way: Any  # [link] its first direction; the other is the next
+    way_end: Any  # [direction] the end it leads to; cable `link` has directions 2 link and the next
+    queue_at: Any  # [direction] where its frames lie
     depth: Any  # scratch of a search for shortest routes
     orders: Any  # in which nodes tick in a fair round, one after the other; none in a search
     move_kind: Any
