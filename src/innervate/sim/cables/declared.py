@@ -28,7 +28,7 @@ from innervate.sim.counts import Counts
 from innervate.sim.own import check_of, message_times, words_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import WORDS, look_of, parts_of
-from innervate.sim.tables import Tables, put
+from innervate.sim.tables import Tables, get, put
 
 OUTBOX = 16
 
@@ -171,7 +171,9 @@ class DeclaredCables(Cables):
 
     def counts(self) -> Counts:
         """Frames of all cables, and what users gave and got."""
-        offered = bisect_right(self.message_times, self.clock_us())
+        done = int(get(self.world.run, 0, "next_command"))
+        newest_us = int(get(self.world.commands, done - 1, "at")) if done else 0
+        offered = bisect_right(self.message_times, max(self.clock_us(), newest_us))
         return super().counts()._replace(offered=offered)
 
 
