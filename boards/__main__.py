@@ -15,7 +15,7 @@ from boards.compile import mpy
 from boards.errors import BoardMissing
 from boards.parity.record import part, plan_of
 from boards.roles import kind_of, roles
-from innervate.folders import not_for_boards
+from innervate.folders import NetworkError, not_for_boards
 from innervate.live.board import Program, Role
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
@@ -33,7 +33,8 @@ def program_of(role: Role) -> Program:
         LiveError: there is no driver for it.
     """
     if role.program is None:
-        raise LiveError(f"{role.name}: there is no driver for boards")
+        known = "the skin and networks of your own over cables have one"
+        raise LiveError(f"{role.name}: there is no driver for boards; {known}")
     return role.program
 
 
@@ -88,7 +89,11 @@ def numbers_of(role: Role, arguments: list[str]) -> dict[str, int]:
 
 def main(arguments: list[str]) -> int:
     """The command; its exit code."""
-    known = roles()
+    try:
+        known = roles()
+    except NetworkError as error:  # what INNERVATE_NETWORKS names
+        print(error, file=sys.stderr)
+        return 2
     words = [argument for argument in arguments if "=" not in argument]
     if words == ["--help"]:
         print(__doc__)

@@ -29,6 +29,7 @@ from boards.parity.record import plan_of, scenario_of
 from boards.roles import roles
 from innervate import scenario
 from innervate.firmware.emit import Library
+from innervate.folders import NetworkError
 from innervate.live.board import Role
 
 CALLS = 1_000_000
@@ -135,7 +136,12 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--plain", action="store_true")
     parser.add_argument("--emulated", action="store_true")
     parser.add_argument("roles", nargs="*")
-    asked, known = parser.parse_args(arguments), roles()
+    asked = parser.parse_args(arguments)
+    try:
+        known = roles()
+    except NetworkError as error:  # what INNERVATE_NETWORKS names
+        print(error, file=sys.stderr)
+        return 2
     for name in asked.roles or known:
         if name not in known:
             print(f"no protocol {name!r}; known: {', '.join(known)}", file=sys.stderr)

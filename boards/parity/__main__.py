@@ -15,6 +15,7 @@ from boards.errors import BoardFailed, BoardMissing
 from boards.parity import microbit, nodejs, record
 from boards.parity.record import Transcript
 from boards.roles import roles
+from innervate.folders import NetworkError
 from innervate.live.board import Role
 from innervate.scenario import ScenarioError
 
@@ -44,6 +45,8 @@ def compare(role: Role, file: Path | None, quick: bool) -> bool:
     print(f"{role.name}: {what}, node {role.watched.node}")
     print(f"  compiled     0x{compiled:08x} at the end")
     print(f"  plain        0x{plain:08x} after {len(transcript.marks)} calls")
+    if len(transcript.marks) == 1:
+        print(f"  it was only switched on; {role.name}=FILE: a scenario in which it is told more")
     played = nodejs.play(transcript)
     said = agree(transcript, played.marks, "MicroPython")
     same = same and bool(said) and len(played.marks) == len(transcript.marks)
@@ -62,7 +65,11 @@ def compare(role: Role, file: Path | None, quick: bool) -> bool:
 
 def main(arguments: list[str]) -> int:
     """The command; its exit code."""
-    known = roles()
+    try:
+        known = roles()
+    except NetworkError as error:  # what INNERVATE_NETWORKS names
+        print(error, file=sys.stderr)
+        return 2
     named = [name.partition("=") for name in arguments if name != "--quick"]
     files = {name: Path(file) for name, is_file, file in named if is_file}
     wanted = [name for name, *_ in named] or list(known)

@@ -18,7 +18,8 @@ def counts(lost=0, dropped=0, **more):
 
 
 CASES = [
-    (counts(), 0, NO_DATA, "Nothing has happened yet."),
+    (counts(offered=0, delivered=0), 0, NO_DATA, "Nothing has happened yet."),
+    (counts(delivered=0, off=(0, 1, 2)), 0, DOWN, "All 3 nodes are off."),
     (counts(), 1, OK, "All 4 messages are delivered, none of 10 frames is lost."),
     (counts(offered=0, delivered=0), 1, OK, "None of 10 frames is lost."),
     (counts(off=(0, 1, 2)), 1, DOWN, "All 3 nodes are off."),

@@ -6,11 +6,14 @@ from types import SimpleNamespace
 
 import pytest
 
+from boards import __main__ as build
 from boards import join, records
 from boards.errors import BoardFailed, BoardMissing
+from boards.firmware import __main__ as firmware
 from boards.parity import __main__ as parity
 from boards.parity import microbit, nodejs, record, replay
 from boards.roles import roles
+from innervate.network import networks
 
 CALLS = {
     "skin": 500,
@@ -131,6 +134,19 @@ def test_the_whole_command(capsys):
 def test_an_unknown_protocol_is_the_users_mistake(capsys):
     assert parity.main(["skni"]) == 2
     assert "known: skin, radio, csma, mesh" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [build, parity, firmware])
+def test_a_folder_that_is_no_network_is_one_line(tmp_path, monkeypatch, capsys, command):
+    """INNERVATE_NETWORKS names the networks' own folders, and not the one that they are in."""
+    monkeypatch.setenv("INNERVATE_NETWORKS", str(tmp_path))
+    networks.cache_clear()
+    try:
+        assert command.main(["gossip"]) == 2
+    finally:
+        monkeypatch.undo()
+        networks.cache_clear()
+    assert capsys.readouterr().err == f"{tmp_path} holds no network.py\n"
 
 
 @pytest.mark.parametrize(

@@ -5,13 +5,16 @@ import os
 import socket
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from innervate import scenario as scenarios
 from innervate.cli import app, live_status
 from innervate.live import status
+from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
+from innervate.live.node import is_broken
 from innervate.live.up import Processes
 from tests.live.net import Mesh, Skin, until
 
@@ -32,6 +35,20 @@ def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():
     assert lines[3].startswith("  port 1 (down): local 0-2, heard ")
     assert live_status.lines(told[-1])[1] == f"  cells per interface port: {told[-1]['cells']}"
     assert {"broken: c0 port 1", "broken: c2 port 0"} & set(live_status.broken(told))
+
+
+@pytest.mark.parametrize(
+    ("up", "heard_at", "most_us", "broken"),
+    [
+        (True, 0, 50, True), (True, 949, 50, True), (True, 950, 50, False), (False, 950, 50, True),
+        (True, 0, NEVER, False), (True, 1, NEVER, False), (False, 950, NEVER, True),
+    ],
+)  # fmt: skip
+def test_a_path_is_broken_that_was_silent_for_longer_than_its_protocol_allows(
+    up, heard_at, most_us, broken
+):
+    """A token goes one way round: who sends over a cable need never hear anything on it."""
+    assert is_broken(SimpleNamespace(up=up, heard_at=heard_at), 1000, most_us) == broken
 
 
 def path(own, far, broken=True):

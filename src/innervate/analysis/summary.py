@@ -201,7 +201,7 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         handled: handler calls.
         goes_on: messages that are not delivered may still come.
     """
-    if not handled:
+    if not handled and not counts.offered:
         return BEFORE_ALL
     nodes, off = counts.nodes, counts.off
     lost, dropped = sum(counts.lost_by.values()), sum(counts.dropped_by.values())

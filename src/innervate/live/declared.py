@@ -14,6 +14,7 @@ from msgspec import Meta
 from innervate.dialect import plain
 from innervate.dialect.rng import seeded
 from innervate.live.build import links_of, sealer_of, state_of
+from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
 from innervate.live.links import Path
 from innervate.live.machine import machine
@@ -25,7 +26,6 @@ from innervate.live.streams import Stream
 from innervate.network import Network, networks
 from innervate.wire.frames import REASONS, Codec
 
-FOR_EVER_US = 1 << 62  # protocols that do not say when a path is broken never call one so
 OUTBOX = 16
 # Fields that the driver sets as a node is made, and that nobody wants to read.
 DRIVERS = ("number", "rng", "choice")  # a node's driver sets them
@@ -94,7 +94,7 @@ class DeclaredStack(CabledStack):
         self.coder = coder_of(network, number, self.params)
         self.reasons: tuple[str, ...] = self.coder.reasons
         self._rest: Iterator[int] = iter(())
-        self.silent_us = getattr(self.params, "silent_us", FOR_EVER_US)
+        self.silent_us = getattr(self.params, "silent_us", NEVER)
         self.item = frame()
 
     def decode(self, data: bytes) -> int:

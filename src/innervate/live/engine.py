@@ -21,7 +21,7 @@ class Stack(Protocol):
         inbox: the frame record that received bytes are read into.
         timers: how many timers it has.
         reasons: words for what `decode` returns; 0 is "read".
-        silent_us: a path on which nothing was heard for so long is broken.
+        silent_us: a path on which nothing was heard for so long is broken; NEVER: none is.
     """
 
     out: Any

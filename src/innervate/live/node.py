@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import IO, TYPE_CHECKING, Any
 
-from innervate.live.engine import Engine, Stack, clock_us
+from innervate.live.engine import NEVER, Engine, Stack, clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path
 from innervate.live.machine import IDLE_STATES, machine
@@ -306,8 +306,10 @@ class LiveNode:
 
 
 def is_broken(path: Path, now: int, most_us: int) -> bool:
-    """True if the path cannot be used, or nothing was heard on it for so long."""
-    return not path.up or not path.heard_at or now - path.heard_at > most_us
+    """True if the path cannot be used, or nothing was heard on it for so long, or ever."""
+    if not path.up or most_us == NEVER:
+        return not path.up
+    return not path.heard_at or now - path.heard_at > most_us
 
 
 def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from innervate.sim.counts import Counts
-from innervate.sim.own import Declared, came_of
+from innervate.sim.own import Declared, came_of, with_messages
 from innervate.sim.tables import Tables
 
 SENT = 0
@@ -50,7 +50,7 @@ class Heard(Declared):
             delivered=int(kept.counters[DELIVERED]),
             is_shared=True,
         )
-        return self.with_messages(found, kept.came)
+        return with_messages(found, self.message_times, self.clock_us(), kept.came)
 
     def named(self, counters: Any, places: Mapping[str, int]) -> dict[str, int]:
         """Some of the counters by name."""

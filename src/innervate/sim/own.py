@@ -40,10 +40,6 @@ class Declared(Simulation):
         """When users give what is to be delivered, us."""
         return message_times(self.plan)
 
-    def with_messages(self, counts: Counts, came: Came) -> Counts:
-        """Counts with what users gave until now, and of how much of that nobody got anything."""
-        return with_messages(counts, self.message_times, self.clock_us(), came)
-
 
 def frames_of(declared: Any, measured: Iterable[str] = ()) -> dict[str, Callable[..., Any]]:
     """What a medium does with frames, written out for their fields, by name.

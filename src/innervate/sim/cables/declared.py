@@ -23,10 +23,18 @@ from innervate.sim.cables.world import ALIVE, SOURCE, World
 from innervate.sim.came import note_came
 from innervate.sim.counts import Counts
 from innervate.sim.handlers import Given, handlers
-from innervate.sim.own import Declared, Unfit, came_of, check_of, frames_of, modules_of
+from innervate.sim.own import (
+    Declared,
+    Unfit,
+    came_of,
+    check_of,
+    frames_of,
+    modules_of,
+    with_messages,
+)
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import look_of, parts_of
-from innervate.sim.tables import Tables, put
+from innervate.sim.tables import Tables, get, put
 
 OUTBOX = 16
 CELL = Given("world.cells[node], world.params[0]", "world.sample[0]")
@@ -103,7 +111,10 @@ class DeclaredCables(Declared, Cables):
 
     def counts(self) -> Counts:
         """Frames of all cables, and what users gave and got."""
-        return self.with_messages(super().counts(), self.world.watch)
+        done = int(get(self.world.run, 0, "next_command"))
+        newest_us = int(get(self.world.commands, done - 1, "at")) if done else 0
+        now_us = max(self.clock_us(), newest_us)
+        return with_messages(super().counts(), self.message_times, now_us, self.world.watch)
 
 
 def _functions(network: Network) -> ModuleType:

@@ -255,7 +255,9 @@ def test_a_run_says_which_cluster_it_is_of() -> None:
     tables = '[[flow]]\nfrom = "all"\nto = "gateway"\nstart_s = 15\n'
     result = simulate(line(2, tables=tables), plain=True)
     summary = summarize(result)
-    assert summary["cluster"] == {"number": 2, "of": 3, "nodes": 30}
+    members = [f"n{node}" for node in range(9, 23)]
+    assert summary["cluster"] == {"number": 2, "of": 3, "nodes": 30, "members": members}
+    assert [members[one["node"]] for one in summary["gateways"]] == ["n15"]
     assert (summary["nodes"], summary["delivery_ratio"]) == (14, 1.0)
     said = "x: cluster 2 of 3, 30 nodes in all; here 14 nodes, 13 good links"
     assert opening(summary | {"name": "x"}) == said

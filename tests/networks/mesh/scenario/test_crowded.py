@@ -9,6 +9,8 @@ from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.networks.mesh.scenario.words import warnings
 from innervate.scenario import loads, plan
 
+WAITING = "standby = [1]\nprotocol.guard_s = 0"  # for requests alone
+
 
 def made(text: str, *sets: Any) -> MeshPlan:
     found = plan(loads(f'kind = "mesh"\n{text}', sets))
@@ -17,14 +19,15 @@ def made(text: str, *sets: Any) -> MeshPlan:
 
 
 def test_rounds_of_many_nodes_take_their_time() -> None:
-    """As long as ever up to 32 nodes; what is chosen stands; a standby waits no longer."""
+    """As long as ever up to 32 nodes, or where a standby waits for them; what is chosen stands."""
     names = ("jitter_us", "flood_us", "listen_us", "spread_us", "collect_us", "period", "job_tries")
-    few, crowd, late = (
+    few, crowd, asking, late = (
         [made(f"nodes = {n}\n{more}").params[name] for name in names]
-        for n, more in ((32, ""), (64, ""), (64, "standby = [1]"))
+        for n, more in ((32, ""), (64, ""), (64, "standby = [1]"), (64, WAITING))
     )
     assert few == [100_000, 12_500, 300_000, 400_000, 1_500_000, 10, 3]
     assert crowd == [200_000, 12_500, 600_000, 1_200_000, 2_866_667, 30, 6]
+    assert asking == crowd
     assert late == [*crowd[:5], 10, 6]
     chosen = made("nodes = 64", "protocol.spread_s=1", "protocol.period_s=20").params
     assert (chosen["spread_us"], chosen["period"], chosen["period_max"]) == (1_000_000, 20, 60)
@@ -59,9 +62,18 @@ def test_all_have_tables_of_a_first_round_that_saw_nearly_all_links(radio, nodes
 
 
 @pytest.mark.parametrize(
-    ("more", "most"), [("", 200), ("standby = [1]", 120), ("radio.profile = '38k4'", 50)]
+    ("more", "most"),
+    [("", 200), ("standby = [1]", 200), (WAITING, 120), ("radio.profile = '38k4'", 50)],
 )
 def test_more_nodes_than_tables_reach_in_time_are_warned_of(more: str, most: int) -> None:
     few, many = (warnings(made(f"nodes = {n}\n{more}")) for n in (most, most + 1))
     assert not any("will not be everywhere" in line for line in few)
     assert any(f"more than {most} fill a" in line for line in many)
+
+
+@pytest.mark.parametrize(("more", "warned"), [("", False), ("protocol.asks = true", True)])
+def test_a_round_is_not_over_before_those_that_are_asked_again_have_answered(more, warned):
+    """Of 200 nodes answers are collected for 7.4 s, and as long again."""
+    told = warnings(made(f"nodes = 200\n{WAITING}\nprotocol.failover = 'random'\n{more}"))
+    said = "a round every 10 s, but answers are collected for 14.8 s: no round is ever complete"
+    assert any(said in line and "raise protocol.period_s to 15" in line for line in told) == warned

@@ -132,7 +132,8 @@ def test_first_or_best_can_be_had_with_every_discovery(discovery: str, usual: st
 @pytest.mark.parametrize("profile", ["250k", "38k4", "ip", "ideal"])
 @pytest.mark.parametrize("nodes", [2, 15, 16, 32, 33, 64, 65])
 def test_parameters(profile: str, nodes: int) -> None:
-    p = made(f"nodes = {nodes}\nstandby = [1]\n[radio]\nprofile = '{profile}'")
+    waiting = "standby = [1]\nprotocol.guard_s = 0"
+    p = made(f"nodes = {nodes}\n{waiting}\n[radio]\nprofile = '{profile}'")
     assert set(p.params) == {field[0] for field in PARAMS}
     for name, length, low, high, *_ in PARAMS:
         values = p.params[name] if length else [p.params[name]]

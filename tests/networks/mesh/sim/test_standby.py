@@ -100,6 +100,29 @@ def test_nobody_takes_over_from_a_gateway_that_lives():
     assert 20 < len(questions) <= 150
 
 
+@pytest.mark.parametrize("asks", [0, 1])
+def test_a_gateway_that_collects_for_long_is_not_taken_for_dead(asks):
+    """Until its first round is over it has no table; who did not respond is asked once more."""
+    slow = dict(GUARD, collect_us=7_000_000, asks=asks, period=30, dead=75)
+    net = Net(8, ring(8), standbys=(4,), **slow)
+    net.lost = lambda frame, to: to == 0 and frame.kind == RESPONSE and frame.origin == 5
+    net.run(SURE)
+    assert leaders(net) == [0]
+    assert {i for _, i, *_ in net.of(REPORT_ROUND)} == {0}
+
+
+@pytest.mark.parametrize("asks", [0, 1])
+def test_nor_is_who_took_over_without_tables(asks):
+    slow = dict(GUARD, collect_us=7_000_000, asks=asks, period=30, dead=75)
+    net = Net(8, ring(8), standbys=(4, 6), **slow)
+    net.lost = lambda frame, to: to == 4 and frame.kind == RESPONSE and frame.origin == 5
+    net.run(1_000_000)
+    net.kill(0)
+    net.run(60_000_000)
+    assert leaders(net) == [4]
+    assert {i for _, i, *_ in net.of(REPORT_ROUND)} == {0, 4}
+
+
 def fill(net, who):
     """End-to-end acks take all places of a node's queue, and do not go for twelve seconds."""
     node = net.nodes[who]

@@ -36,10 +36,10 @@ GATEWAYS = [
 ASKING = [
     (links, "search", {"standby": standby, "beats": 3, "budget": budget, "settings": ASKED}, states)
     for links, standby, budget, states in (
-        ("line", (2,), DEATH, 10_899),
-        ("line", (2,), LOSS, 67_788),
-        ("line", (2,), RETURNS, 282_168),
-        ("triangle", (1, 2), DEATH, 34_358),
+        ("line", (2,), DEATH, 9_893),
+        ("line", (2,), LOSS, 66_853),
+        ("line", (2,), RETURNS, 249_069),
+        ("triangle", (1, 2), DEATH, 31_614),
     )
 ]
 

@@ -13,6 +13,7 @@ from innervate.networks.mesh.analysis.headline import headline, traffic
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.reach import of_simulation
 from innervate.networks.mesh.protocol.constants import ALARM, ALL, DATA, FLOOD, MONITOR, PARITY
+from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.sim.tables import get
 from innervate.topology.placement import UNREACHABLE
 
@@ -56,15 +57,16 @@ def summarize(result: Any) -> keys.MeshSummary:
         "airtime": network.airtime(result, kinds),
         "give_ups": messages.give_ups(result),
         "suspects": network.suspects(result),
-        **_of_cluster(plan.cluster),
+        **_of_cluster(plan),
     }
 
 
-def _of_cluster(cluster: Any) -> keys.OfCluster:
-    if cluster is None:
+def _of_cluster(plan: MeshPlan) -> keys.OfCluster:
+    if plan.cluster is None:
         return {}
-    sizes = cluster.sizes
-    return {"cluster": {"number": cluster.number, "of": len(sizes), "nodes": sum(sizes)}}
+    number, sizes, names = plan.cluster.number, plan.cluster.sizes, list(plan.names)
+    found = keys.InClusters(number=number, of=len(sizes), nodes=sum(sizes), members=names)
+    return {"cluster": found}
 
 
 def _counts(found: messages.Messages) -> keys.Counts:

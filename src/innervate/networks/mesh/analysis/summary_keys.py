@@ -141,11 +141,16 @@ class Airtime(TypedDict):
 
 
 class InClusters(TypedDict):
-    """Which of several clusters this is, from 1 on; how many there are, and nodes in all."""
+    """Which of several clusters this is, from 1 on; how many there are, and nodes in all.
+
+    Attributes:
+        members: what the nodes of this one are called: summary and tables number them so, from 0.
+    """
 
     number: int
     of: int
     nodes: int
+    members: list[str]
 
 
 class OfCluster(TypedDict):

@@ -221,8 +221,8 @@ Timers
 | `RETRY = 4`    | first end-to-end timeout: `e2e_us`, or with `e2e_adapt` 4 round trips; doubled, |
 |                | at most 4 times                                                                 |
 | `JOBS = 5`     | gateway: a table's acks: `job_us`, more by tries, parts and hops; standby:      |
-|                | `guard_us`, so many as stand by before it, more with `patience`; after the      |
-|                | request of a new gateway `collect_us` more                                      |
+|                | `guard_us`, so many as stand by before it, more with `patience`; after a        |
+|                | request of a gateway that is new or has no table `collect_us` more              |
 | `BACKOFF = 0`  | access: a draw below 2^exponent times `backoff_us`                              |
 
 `TIMERS = 6`, of access `TIMERS = 1`. Exponents: `exponent_min` and a transmission each, at most

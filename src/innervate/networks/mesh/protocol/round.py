@@ -104,8 +104,9 @@ def on_request(node, params, now, frame, k, out):
         before = node.epoch
         begin(node, params, gateway, epoch, round, out)
         settles = 0
-        if old != gateway and old != ALL:
+        if old != gateway or not frame.table_ver:  # until it has tables it proves nothing
             settles = params.collect_us
+        if old != gateway and old != ALL:
             if node.rank > 1:
                 node.rank = node.rank - 1
             redirect(node, params, now, old, out)

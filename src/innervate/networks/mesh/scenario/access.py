@@ -32,6 +32,14 @@ def is_shared(mac: str) -> bool:
     return mac not in ("csma", "none")
 
 
+def waits_for_requests(model: MeshScenario, profile: Profile) -> bool:
+    """True if there is a standby that does not ask whether the gateway lives (decision 0042)."""
+    guard_s = model.protocol.guard_s
+    if guard_s is None:
+        guard_s = 0 if model.protocol.dead_s else profile.guard
+    return len(model.standby) > 0 and guard_s == 0
+
+
 def suited(model: MeshScenario, profile: Profile, count: int) -> Profile:
     """The profile with the timers that suit the medium access and the number of nodes [mesh 8.3].
 
@@ -44,7 +52,7 @@ def suited(model: MeshScenario, profile: Profile, count: int) -> Profile:
         return profile
     if not is_shared(mac_of(model, profile)):
         again = model.protocol.failover in ("search", "alternate")
-        return crowded(profile, count, len(model.standby) > 0, again)
+        return crowded(profile, count, waits_for_requests(model, profile), again)
     mtu = model.protocol.mtu or profile.mtu
     turnaround_us = model.radio.turnaround_us or profile.turnaround_us
     turn_us = (profile.phy_bytes + HEADER_SLOTS + mtu) * profile.byte_ns / 1000 + turnaround_us

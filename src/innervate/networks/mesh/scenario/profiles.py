@@ -95,21 +95,21 @@ def profile_of(name: str, nodes: int) -> Profile:
     return found
 
 
-def crowded(profile: Profile, nodes: int, standby: bool, again: bool) -> Profile:
+def crowded(profile: Profile, nodes: int, waiting: bool, again: bool) -> Profile:
     """The same with time for what many nodes say: it meets about the gateway (decision 0044).
 
     Twice as many nodes respond within three times the time, and rounds are as much further apart,
-    for tables grow with the nodes, too; but not where a standby waits for requests. Requests come
-    by more ways: twice the jitter. With `again` each sends them once more, and a hop is tried more
-    often (0058); not where the graph may be flooded, of which everybody sends each part so often,
-    nor by the document's own rules.
+    for tables grow with the nodes, too; but not where a standby is `waiting` for them. Requests
+    come by more ways: twice the jitter. With `again` each sends them once more, and a hop is tried
+    more often (0058); not where the graph may be flooded, of which everybody sends each part so
+    often, nor by the document's own rules.
     """
     if nodes <= CROWD:
         return profile
     more = 1 + 2 * (nodes - CROWD) / CROWD
     listen, spread = 2 * profile.listen, more * profile.spread
     rest = profile.collect - profile.listen - profile.spread
-    period = profile.period if standby else round(more * profile.period)
+    period = profile.period if waiting else round(more * profile.period)
     return profile._replace(
         jitter=2 * profile.jitter,
         copies=COPIES_IN_CROWD if again else profile.copies,

@@ -1,5 +1,6 @@
 """A mesh scenario in a few lines, without running it; and what somebody should know before."""
 
+from math import ceil
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as c
@@ -149,13 +150,15 @@ def _distribution(made: MeshPlan) -> list[str]:
         return []
     what, limits = "graph", GRAPH_MAX
     if params["mode"] == c.TABLES:
-        what, limits = "tables", TABLES_MAX_BEHIND_STANDBY if max(made.ranks) else TABLES_MAX
+        waiting = max(made.ranks) and not params["guard_us"]
+        what, limits = "tables", TABLES_MAX_BEHIND_STANDBY if waiting else TABLES_MAX
     period_us = params["period"] * params["tick_us"]
-    if period_us < params["collect_us"]:
+    collect_us = params["collect_us"] << params["asks"]
+    if period_us < collect_us:
         found.append(
             f"a round every {period_us / 1e6:g} s, but answers are collected for "
-            f"{params['collect_us'] / 1e6:g} s: no round is ever complete, and nobody gets any "
-            f"{what}; raise protocol.period_s to protocol.collect_s"
+            f"{collect_us / 1e6:g} s: no round is ever complete, and nobody gets any {what}; raise "
+            f"protocol.period_s to {ceil(collect_us / 1e6)}"
         )
     if made.nodes > limits.get(profile, made.nodes):
         found.append(

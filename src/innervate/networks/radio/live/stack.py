@@ -4,6 +4,7 @@ from typing import Any
 
 from innervate.dialect import plain
 from innervate.dialect.rng import seeded
+from innervate.live.engine import NEVER
 from innervate.live.stack import filled
 from innervate.networks.radio import frames as wire
 from innervate.networks.radio.protocol import fields as fields
@@ -33,7 +34,7 @@ class StationStack:
 
     def __init__(self, number: int, params: dict[str, int], seed: int) -> None:
         self.params = filled(Params(), params)
-        self.silent_us = 1 << 62  # a channel may be silent for as long as it likes
+        self.silent_us = NEVER  # a channel may be silent for as long as it likes
         self.station = Station()
         self.station.number, self.station.rng, self.station.choice = number, seeded(seed), -1
         self.out = plain.Outbox(Frame, OUTBOX)
