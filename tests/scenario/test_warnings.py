@@ -92,7 +92,7 @@ CASES = [
         for rest in (f"[radio]\nprofile = '{profile}'\n[protocol]\nfailover = '{rule}'\nmtu = 127",)
     ),
     *(
-        ("mesh", f"nobody gets any {what}; raise protocol.period_s to protocol.collect_s",
+        ("mesh", f"nobody gets any {what}; raise protocol.period_s to 2",
          f"{rounds}period_s = 1.0", f"{rounds}period_s = 2.0")
         for what, rule in (("tables", "search"), ("graph", "graph"))
         for rounds in (f"{grid(20)}[protocol]\nfailover = '{rule}'\ncollect_s = 2.0\n",)

@@ -141,9 +141,12 @@ class Airtime(TypedDict):
 
 
 class InClusters(TypedDict):
-    """Which of several clusters this is, from 1 on; how many there are, and nodes in all.
+    """Which of several clusters a run is of.
 
     Attributes:
+        number: which, from 1 on.
+        of: how many there are.
+        nodes: of all of them.
         members: what the nodes of this one are called: summary and tables number them so, from 0.
     """
 
