@@ -56,11 +56,11 @@ def test_in_order_with_restarting_recipients_delivered_means_handed_up(seed):
 
 
 def test_a_slow_mesh_that_runs_for_days_keeps_what_it_promises():
-    found = runs.run(3, "weeks", storms=1, storm_s=3600, calm_s=7200, slow=60, nodes=5, rate=0.05)
+    found = runs.run(3, "weeks", storms=1, storm_s=1200, calm_s=1800, slow=60, nodes=5, rate=0.1)
     assert found.broken == []
-    assert found.seconds > 3 * 3600
-    assert found.told["delivered"] > 100
-    assert found.told["lives"] > 10
+    assert found.seconds > 3600
+    assert found.told["delivered"] > 50
+    assert found.told["lives"] > 5
 
 
 def test_a_seed_shows_the_same_again():
