@@ -49,8 +49,6 @@ MUTANTS = tuple(
          "        return\n"),
         ("a frame whose hop failed stays where it is",
          "UNACKED:\n        return\n    node.busy = -1\n", "UNACKED:\n        return\n"),
-        ("frames behind the first are forgotten",
-         "            wake(node, params, now, out)\n            return\n", "            return\n"),
     )
 )  # fmt: skip
 
