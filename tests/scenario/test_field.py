@@ -146,6 +146,8 @@ def test_a_plan_in_words():
     assert "flooding" in head
     assert nodes == "  nodes      4 in a field, 3 pairs hear each other"
     assert protocol.startswith("  protocol   ")
+    _, two, *_ = describe(planned(nodes=2, spacing_m=30)).splitlines()
+    assert two == "  nodes      2 in a field, 1 pair hears each other"
 
 
 @pytest.mark.parametrize(
