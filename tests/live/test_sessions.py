@@ -108,6 +108,17 @@ async def test_a_path_on_which_nothing_goes_is_looked_after_rarely_until_somethi
 
 
 @timed
+async def test_who_is_told_to_hurry_asks_at_once_whatever_is_sent_meanwhile():
+    a, _ = await two()
+    await settle(100.0)
+    begun = len(asked(a))
+    contact_of(a).renew_all()
+    a.frame(b"meanwhile")
+    await settle(0.01)
+    assert len(asked(a)) == begun + 1
+
+
+@timed
 async def test_of_a_neighbours_sessions_the_newest_are_kept():
     a, b = await two()
     indices = []

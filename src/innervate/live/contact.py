@@ -78,6 +78,7 @@ class Contact:
 
     def start(self) -> None:
         """Ask who is there, from the loop's next turn on."""
+        self._rests = False
         self._timer = asyncio.get_running_loop().call_later(0, self.beat)
 
     def stop(self) -> None:

@@ -52,7 +52,11 @@ def where() -> Path:
     here = folder()
     if os.environ.get("INNERVATE_RUN") or _sockets(here):
         return here
-    return next((there for note in _notes(here) if (there := note.readlink()).is_dir()), here)
+    for note in _notes(here):
+        with suppress(OSError):  # it has just ended
+            if (there := note.readlink()).is_dir():
+                return there
+    return here
 
 
 def _notes(here: Path) -> list[Path]:
