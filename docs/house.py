@@ -37,8 +37,15 @@ def lines(home: str, room: str) -> int:
     return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in files)
 
 
-def imports(graph: grimp.ImportGraph, home: str, names: list[str]) -> nx.DiGraph:
-    """Who imports whom among rooms, without what follows from other imports."""
+def built() -> grimp.ImportGraph:
+    """All imports of the toolkit's modules."""
+    return grimp.build_graph(SPINE, exclude_type_checking_imports=True, cache_dir=None)
+
+
+def imports(graph: grimp.ImportGraph, home: str) -> nx.DiGraph:
+    """Who imports whom among rooms, of which the networks are none, nor a network's record."""
+    apart = "networks" if home == SPINE else "network"
+    names = [room for room in rooms(home) if room != apart]
     found = nx.DiGraph()
     found.add_nodes_from(names)
     for one in names:
@@ -47,8 +54,7 @@ def imports(graph: grimp.ImportGraph, home: str, names: list[str]) -> nx.DiGraph
                 importer=f"{home}.{one}", imported=f"{home}.{other}", as_packages=True
             ):
                 found.add_edge(one, other)
-    reduced: nx.DiGraph = nx.transitive_reduction(found)
-    return reduced
+    return found
 
 
 def floors(graph: nx.DiGraph) -> dict[str, int]:
@@ -89,14 +95,13 @@ def house(
 
 def draw() -> Path:
     """The spine, and beside it every network with the same plan inside."""
-    graph = grimp.build_graph(SPINE, exclude_type_checking_imports=True, cache_dir=None)
+    graph = built()
     figure, ax = plt.subplots(figsize=(22, 6))
-    spine = imports(graph, SPINE, [room for room in rooms(SPINE) if room != "networks"])
+    spine = nx.transitive_reduction(imports(graph, SPINE))
     right = house(ax, spine, floors(spine), SPINE, 0.0, LIGHT)
     ax.text(right / 2, -0.75, "the spine: names no network", ha="center", size=9, color=DARK)
     homes = [f"{HOME}.{name}" for name in networks()]
-    plans = [imports(graph, home, [room for room in rooms(home) if room != "network"])
-             for home in homes]  # fmt: skip
+    plans = [nx.transitive_reduction(imports(graph, home)) for home in homes]
     level = floors(nx.compose_all(plans))  # the same plan in each
     for home, inside, tint in zip(homes, plans, TINTS, strict=True):
         width = house(ax, inside, level, home, right + 0.5, tint)

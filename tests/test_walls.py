@@ -6,7 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import networkx as nx
 import pytest
+
+from innervate.network import networks
 
 ROOT = Path(__file__).resolve().parent.parent
 HEAVY = ("numba", "numpy", "polars", "matplotlib")
@@ -41,6 +44,13 @@ def lint_imports(root):
 def test_contracts_are_kept():
     done = lint_imports(ROOT)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("home", ["innervate", *(f"innervate.networks.{n}" for n in networks())])
+def test_no_room_stands_on_one_that_stands_on_it(home):
+    from docs import house
+
+    assert list(nx.simple_cycles(house.imports(house.built(), home))) == []
 
 
 # A file, an import it must not have, and the contract that says so.

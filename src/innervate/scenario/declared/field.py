@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
-from innervate.kernel.words import number_of
 from innervate.network import networks
 from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
@@ -309,7 +308,7 @@ def sizes_of(frames: Any) -> dict[int, int]:
 def describe(plan: Any) -> str:
     """A plan in words, several lines, without a newline at the end."""
     params = ", ".join(f"{name} {value}" for name, value in plan.params.items())
-    pairs = number_of(len(plan.good), "pair") + (" hears" if len(plan.good) == 1 else " hear")
+    pairs = f"{len(plan.good):,} pair{' hears' if len(plan.good) == 1 else 's hear'}"
     lines = [
         opening(plan),
         f"  nodes      {plan.nodes:,} in a field, {pairs} each other",
