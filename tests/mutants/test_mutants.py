@@ -6,6 +6,7 @@ import random
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,7 @@ def said(number):
 TESTS = """\
 import subprocess
 import sys
+import tomllib
 
 import pytest
 
@@ -192,6 +194,14 @@ def test_a_test_that_failed_has_not_passed_though_it_was_taken_down(tmp_path):
         assert seen_in(log) == Seen(*failed, {"a": 0.5})
     log.write_text(json.dumps(lines[0]) + "\n")
     assert seen_in(log) == Seen("a", LATE, {})
+
+
+def test_every_fault_that_changes_nothing_is_in_a_line_that_there_is():
+    for fault in tomllib.loads((ROOT / "tests/mutants/equivalent.toml").read_text("utf-8"))[
+        "fault"
+    ]:
+        lines = (ROOT / fault["path"]).read_text("utf-8").splitlines()
+        assert any(line.split("  #")[0].strip() == fault["line"] for line in lines), fault
 
 
 def made(tmp_path):
