@@ -47,7 +47,7 @@ def frame_to(node, port, kind, out):
     return frame
 
 
-def arm(node, now, at, out):
+def arm(node, at, out):
     """Look again at `at`, or before."""
     if node.looking == 0 or not after(at, node.look_at):
         node.looking = 1

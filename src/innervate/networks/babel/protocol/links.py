@@ -33,7 +33,7 @@ def hear(node, params, now, port, frame, out):
     if frame.rxcost:
         node.txcost[port] = frame.rxcost
         node.ihu_at[port] = (now + node.hello_us[port] * 21 // 2) & MASK30
-    arm(node, now, node.hello_at[port], out)
+    arm(node, node.hello_at[port], out)
     judge(node, params, port, out)
     if is_new:
         frame_to(node, port, ROUTE_REQUEST, out)
@@ -87,4 +87,4 @@ def look_at_link(node, params, now, p, out):
     if node.history[p] == 0:
         forget_neighbour(node, p)
     else:
-        arm(node, now, node.hello_at[p], out)
+        arm(node, node.hello_at[p], out)

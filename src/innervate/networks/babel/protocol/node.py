@@ -156,7 +156,7 @@ def look(node, params, now, out):
             node.fd_known = 0
             node.said = INFINITY
         else:
-            arm(node, now, node.fd_at, out)
+            arm(node, node.fd_at, out)
     if node.wanted:
         if after(now, node.wanted_at):
             if node.wanted_tries > 0:
@@ -167,4 +167,4 @@ def look(node, params, now, out):
             else:
                 node.wanted = 0
         else:
-            arm(node, now, node.wanted_at, out)
+            arm(node, node.wanted_at, out)

@@ -32,7 +32,7 @@ def want(node, now, seq, wait_us, tries, out):
     node.wanted_tries = tries
     node.wanted_us = wait_us
     node.wanted_at = (now + wait_us) & MASK30
-    arm(node, now, node.wanted_at, out)
+    arm(node, node.wanted_at, out)
 
 
 def send_request(node, port, seq, hops, out):

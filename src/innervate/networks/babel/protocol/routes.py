@@ -41,7 +41,7 @@ def take(node, params, now, port, frame, out):
         node.asked[port] = 0
         node.route_us[port] = frame.update * TENTH_MS
         node.route_at[port] = (now + node.route_us[port] * 7 // 2) & MASK30
-        arm(node, now, node.route_at[port], out)
+        arm(node, node.route_at[port], out)
 
 
 def select(node, params, now, out):
@@ -88,8 +88,8 @@ def look_at_route(node, now, p, out):
         node.route_at[p] = (now + node.route_us[p] * 7 // 2) & MASK30
     elif p == node.parent and node.asked[p] == 0:
         if not after(now, before):
-            arm(node, now, before, out)
+            arm(node, before, out)
             return
         node.asked[p] = 1
         frame_to(node, p, ROUTE_REQUEST, out)  # [3.8.2.3]
-    arm(node, now, node.route_at[p], out)
+    arm(node, node.route_at[p], out)

@@ -43,7 +43,7 @@ def fill_route(node, params, now, frame, is_update, out):
         node.fd_metric = min(node.fd_metric, metric)
     node.fd_known = 1
     node.fd_at = (now + params.gc_us) & MASK30
-    arm(node, now, node.fd_at, out)
+    arm(node, node.fd_at, out)
 
 
 def trigger(node, params, now, out):

@@ -68,7 +68,7 @@ def on_frame(node, params, now, port, frame, out):
         take(node, frame, out)
     if frame.dest == node.number:
         if frame.kind == PACKET and frame.want:
-            answer(node, params, now, frame, out)
+            answer(node, params, frame, out)
     elif frame.hops > 0:
         pass_on(node, params, now, frame, out)
 
@@ -142,7 +142,7 @@ def send_own(node, params, now, place, out):
     set_timer(out, PLACES + place, (now + params.retry_us) & MASK30)
 
 
-def answer(node, params, now, frame, out):
+def answer(node, params, frame, out):
     """Acknowledge a packet that is for us; it may go little further than the packet came."""
     node.id = (node.id + 1) & MASK16
     remember(node, node.number, node.id)

@@ -216,7 +216,7 @@ class MeshNode(LiveNode):
     def troubles(self) -> dict[str, str]:
         """Besides those of all nodes, whether neighbours have a longer MTU than this one."""
         found = super().troubles()
-        if not self.counters()["dropped: " + TOO_LONG]:
+        if self.engine is None or not self.engine.counters["dropped: " + TOO_LONG]:
             return found
         mtu = self.stack.params.mtu
         found["mtu"] = (

@@ -133,7 +133,7 @@ def on_frame(node, params, now, port, frame, out):
             take_dao(node, params, now, frame, out)
     else:
         take_packet(node, params, now, frame, out)
-    go(node, params, now, out)
+    go(node, params, out)
 
 
 def on_sent(node, params, now, ok, out):
@@ -156,7 +156,7 @@ def on_timer(node, params, now, timer, out):
     else:
         node.dao_armed = 0
         delay_over(node, params, now, out)
-    go(node, params, now, out)
+    go(node, params, out)
 
 
 def on_input(node, params, now, kind, item, out):
@@ -164,7 +164,7 @@ def on_input(node, params, now, kind, item, out):
     dest = params.root if kind == ALARM else item.dest
     if dest != node.number:
         new_message(node, params, dest, item, out)
-        go(node, params, now, out)
+        go(node, params, out)
 
 
 def tick(node, params, now, out):

@@ -56,7 +56,7 @@ from innervate.networks.rpl.protocol.trickle import reset_trickle
 STAY = -2  # no next hop now: there may be one later
 
 
-def go(node, params, now, out):
+def go(node, params, out):
     """Send what is next, if nothing is under way."""
     if node.under != IDLE:
         return
@@ -70,7 +70,7 @@ def go(node, params, now, out):
         blank(node, DIS, ALL, out)
     elif not node.dao_due or not send_dao(node, params, out):
         node.dao_due = 0
-        go_on(node, params, now, out)
+        go_on(node, params, out)
 
 
 def send_dao(node, params, out):
@@ -84,7 +84,7 @@ def send_dao(node, params, out):
     return False
 
 
-def go_on(node, params, now, out):
+def go_on(node, params, out):
     """Send the first packet that has somewhere to go; those before it are dropped."""
     to = NONE
     for _i in range(QUEUE):
@@ -195,7 +195,7 @@ def sent(node, params, now, ok, out):
     """The frame that was handed down has left, or the channel stayed busy."""
     if node.under == A_DIO or node.under == A_DIS:
         node.under = IDLE
-        go(node, params, now, out)
+        go(node, params, out)
     elif node.under != IDLE and ok:
         node.waiting = 1
         set_timer(out, ACK_WAIT, (now + params.ack_us) & MASK30)
@@ -235,7 +235,7 @@ def missed(node, params, now, out):
     node.under = IDLE
     node.to = NOBODY
     choose(node, params, now, out)
-    go(node, params, now, out)
+    go(node, params, out)
 
 
 def turn_back(node, params, now, gone, out):
@@ -292,7 +292,7 @@ def acked(node, params, now, frame, out):
     node.under = IDLE
     node.to = NOBODY
     choose(node, params, now, out)
-    go(node, params, now, out)
+    go(node, params, out)
 
 
 def new_message(node, params, dest, item, out):
