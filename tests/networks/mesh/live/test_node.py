@@ -9,7 +9,7 @@ from innervate.live.receipts import DELIVERED, REFUSED, Receipt
 from innervate.live.state import State
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
-from innervate.networks.mesh.live.stack import TOO_LONG, MeshStack
+from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import (
     AGAIN,
     ALL,
@@ -123,10 +123,3 @@ def test_at_the_end_messages_under_way_are_waited_for_but_not_for_ever(ends_s, i
         return await node.drain(0.05)
 
     assert asyncio.run(main()) == is_drained
-
-
-def test_frames_of_a_longer_mtu_are_the_users_to_mend():
-    node = made(mtu=64)
-    assert node.troubles() == {}
-    node.outcomes["dropped: " + TOO_LONG] = 1
-    assert node.troubles()["mtu"].startswith("frames come that are longer than protocol.mtu = 64")
