@@ -151,8 +151,7 @@ def papers(
     Args:
         paper: Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
         only: A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare;
-            may be
-            given again.
+            may be given again.
         quick: Few seeds and settings: in about a minute.
         redraw: Use kept results even if the sources have changed since.
         page: Of compare: a page of Markdown whose tables are made anew between its marks.
