@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 import resource
 import signal
 import socket
@@ -122,6 +123,35 @@ def test_a_node_starts_though_its_disk_is_full(tmp_path):
         assert node.told()["state"]["written_s"] is None
         assert node.end() == 0
     assert not node.lines("Traceback")
+
+
+@contextmanager
+def log_on_a_full_disk():
+    with open("/dev/full", "w") as log:
+        yield log
+
+
+@contextmanager
+def log_that_nobody_reads():
+    reader, writer = os.pipe()
+    os.close(reader)
+    with open(writer, "w") as log:
+        yield log
+
+
+@pytest.mark.parametrize("log", [log_on_a_full_disk, log_that_nobody_reads])
+def test_a_node_whose_log_cannot_be_written_goes_on(tmp_path, log):
+    command = [sys.executable, "-c", OFTEN, str(write_file(tmp_path))]
+    with log() as stderr, subprocess.Popen(command, stderr=stderr) as process:
+        try:
+            wait_until(lambda: (tmp_path / "n0.sock").exists() or process.poll() is not None)
+            process.send_signal(signal.SIGHUP)  # it has another word to say
+            told = status.ask_one(tmp_path / "n0.sock", {"do": "status"})
+            assert told["state"]["trouble"] == ""
+            process.send_signal(signal.SIGTERM)
+            assert process.wait(FIRST_S) == 0
+        finally:
+            process.kill()
 
 
 def test_the_device_that_is_always_full(tmp_path):

@@ -182,8 +182,10 @@ class Life(Machine):
     def time_ns(self):
         return EPOCH_NS + self.world.now + self.host.wall_ns
 
-    def say(self, text):
+    def log(self, text):
         self.host.said.append((self.world.now, text))
+        if self.host.disk.full:
+            raise OSError(errno.ENOSPC, "No space left on device")
 
     def socket(self, family, kind):
         self._check()

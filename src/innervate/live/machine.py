@@ -74,7 +74,17 @@ class Machine:
         return time.time_ns()
 
     def say(self, text: str) -> None:
-        """A line for whoever reads the node's log."""
+        """A line for whoever reads the node's log; where none can be written, the node goes on."""
+        with suppress(OSError, ValueError):
+            self.log(text)
+
+    def log(self, text: str) -> None:
+        """Write a line of the log.
+
+        Raises:
+            OSError: the disk is full, or nobody reads the pipe any more.
+            ValueError: the log is closed.
+        """
         print(text, file=sys.stderr, flush=True)
 
     def socket(self, family: int, kind: int) -> Socket:
