@@ -17,6 +17,7 @@ import pytest
 
 from innervate.cli import live_status
 from innervate.live import status
+from innervate.live.errors import LiveError
 from innervate.live.notices import PERIOD_S, Notices
 from innervate.live.state import State
 from tests.live.net import until
@@ -139,15 +140,34 @@ def log_that_nobody_reads():
         yield log
 
 
-@pytest.mark.parametrize("log", [log_on_a_full_disk, log_that_nobody_reads])
+@contextmanager
+def log_whose_reader_is_stuck():
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    with open(reader), open(writer, "w") as log:
+        with suppress(BlockingIOError):
+            while True:
+                os.write(writer, bytes(4096))
+        os.set_blocking(writer, True)
+        yield log
+
+
+def is_answering(where):
+    with suppress(LiveError):
+        return status.ask_one(where, {"do": "status"})["state"]["trouble"] == ""
+    return False
+
+
+@pytest.mark.parametrize(
+    "log", [log_on_a_full_disk, log_that_nobody_reads, log_whose_reader_is_stuck]
+)
 def test_a_node_whose_log_cannot_be_written_goes_on(tmp_path, log):
     command = [sys.executable, "-c", OFTEN, str(write_file(tmp_path))]
     with log() as stderr, subprocess.Popen(command, stderr=stderr) as process:
         try:
-            wait_until(lambda: (tmp_path / "n0.sock").exists() or process.poll() is not None)
+            wait_until(lambda: is_answering(tmp_path / "n0.sock") or process.poll() is not None)
             process.send_signal(signal.SIGHUP)  # it has another word to say
-            told = status.ask_one(tmp_path / "n0.sock", {"do": "status"})
-            assert told["state"]["trouble"] == ""
+            assert is_answering(tmp_path / "n0.sock")
             process.send_signal(signal.SIGTERM)
             assert process.wait(FIRST_S) == 0
         finally:

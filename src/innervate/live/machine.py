@@ -4,9 +4,11 @@ Whatever runs live asks `machine()` for them. A test hands in another machine (`
 networks run in one process under simulated time; the loop is asyncio's, and can be replaced too.
 """
 
+import errno
 import io
 import os
 import random
+import select
 import socket
 import sys
 import time
@@ -14,7 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
-from typing import IO, Protocol
+from typing import IO, Any, Protocol
 
 from innervate.live import private
 from innervate.live.errors import LiveError
@@ -50,6 +52,14 @@ class SerialPort(Protocol):
         """Give the port back to the system."""
 
 
+def _has_room(stream: Any) -> bool:
+    """False if a line would have to wait: a pipe is full, and who should read it does not."""
+    try:
+        return bool(select.select((), (stream,), (), 0)[1])
+    except (OSError, ValueError, TypeError):  # not a file of the system
+        return True
+
+
 class Machine:
     """The machine that this process runs on; what it cannot do is an OSError that says so.
 
@@ -79,12 +89,14 @@ class Machine:
             self.log(text)
 
     def log(self, text: str) -> None:
-        """Write a line of the log.
+        """Write a line of the log, but never wait for whoever reads it.
 
         Raises:
-            OSError: the disk is full, or nobody reads the pipe any more.
+            OSError: the disk is full, or nobody reads the pipe, or not any more.
             ValueError: the log is closed.
         """
+        if not _has_room(sys.stderr):
+            raise BlockingIOError(errno.EAGAIN, "the log is full")
         print(text, file=sys.stderr, flush=True)
 
     def socket(self, family: int, kind: int) -> Socket:
