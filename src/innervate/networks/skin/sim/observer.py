@@ -5,23 +5,14 @@ cables join it with the PC at all. A change of a parent costs as much as the cel
 that it can stay on at any size; one of the cables costs as much as there are cells.
 """
 
-from innervate.networks.skin.protocol.constants import (
-    DROP_NO_ROUTE,
-    NONE,
-    PORTS,
-    REPORT_BALANCE,
-    REPORT_BROKEN,
-    REPORT_DROP,
-    REPORT_PARENT,
-    RULE_FEASIBLE,
-    RULE_STRICT,
-)
+from innervate.networks.skin.protocol import constants as const
+from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.networks.skin.sim.counters import EARLY, NO_ROUTE
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim.cables.world import DEAD
 from innervate.sim.rows import record_row as note
 
-DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
+DROPS = NO_ROUTE - const.DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
 
 # Codes of the observer's own rows; those below 100 are the protocol's reports.
 UNROUTED = 100  # a = connected cells without a route, from now on
@@ -42,17 +33,17 @@ BROKEN_FEASIBLE = 2
 
 def on_report(world, time, node, code, a, b):
     """Count what a node reports, and judge what follows from it for routes."""
-    if code == REPORT_DROP:
+    if code == const.REPORT_DROP:
         world.counters[DROPS + a] += 1
-        if a == DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:
+        if a == const.DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:
             world.counters[EARLY] += 1
         return
     if world.run[0].observe == 0:
         return
-    if code == REPORT_BROKEN and world.ends[4 * node + a].peer < 0:
+    if code == const.REPORT_BROKEN and world.ends[4 * node + a].peer < 0:
         return
     note(world, time, node, code, a, b)
-    if code == REPORT_PARENT or code == REPORT_BALANCE:
+    if code == const.REPORT_PARENT or code == const.REPORT_BALANCE:
         follow(world, time, node, b)
         note_unrouted(world, time, node)
 
@@ -147,7 +138,7 @@ def open_loop(world, time, cell):
     run.loops_open += 1
     note(world, time, cell, LOOP_OPEN, length, 0)
     rule = world.params[0].rule
-    loop_free = rule == RULE_FEASIBLE or rule == RULE_STRICT
+    loop_free = rule == const.RULE_FEASIBLE or rule == const.RULE_STRICT
     if loop_free and run.checks and run.broken == 0:
         run.broken = BROKEN_LOOP
         run.broken_node = cell
