@@ -92,8 +92,7 @@ def _patched(source: Source, model: SkinScenario) -> Graph:
             graph.connect(a, b)
     for index, interface in enumerate(model.interface):
         key = ("interface", index)
-        where = CellTable(patch=interface.patch, row=interface.row, column=interface.column)
-        cell = named.cell(where, key)
+        cell = named.cell(interface, key)
         with named.told_at(key, *(() if interface.port is None else ("port",))):
             graph.add_interface(cell, interface.port)
     _copies(named, model)

@@ -51,13 +51,9 @@ def on_report(world, time, node, code, a, b):
 def next_hop(world, cell):
     """The node a cell's data goes to over a live cable, or NONE."""
     port = world.watch.port[cell]
-    if port == NONE:
+    if port != NONE and world.epoch[4 * cell + port] & 1:
         return NONE
-    end = 4 * cell + port
-    peer = world.ends[end].peer
-    if peer < 0 or world.epoch[end] & 1:
-        return NONE
-    return min(peer >> 2, world.run[0].cells)
+    return peer_of_parent(world, cell)
 
 
 def follow(world, time, cell, port):
@@ -268,20 +264,20 @@ def trace_cables(world):
         watch.joined[cell] = 0
     count = 0
     for end in range(4 * run.cells, len(world.ends)):
-        peer = world.ends[end].peer
-        if peer >= 0 and (world.epoch[end] & 1) == 0 and watch.joined[peer >> 2] == 0:
-            watch.joined[peer >> 2] = 1
-            watch.stack[count] = peer >> 2
-            count += 1
+        count = join(world, end, count)
     while count > 0:
         count -= 1
-        node = watch.stack[count]
-        for p in range(PORTS):
-            end = 4 * node + p
-            peer = world.ends[end].peer
-            if peer >= 0 and peer >> 2 < run.cells and (world.epoch[end] & 1) == 0:
-                other = peer >> 2
-                if watch.joined[other] == 0:
-                    watch.joined[other] = 1
-                    watch.stack[count] = other
-                    count += 1
+        first = 4 * watch.stack[count]
+        for end in range(first, first + PORTS):
+            count = join(world, end, count)
+
+
+def join(world, end, count):
+    """A live cable joins the cell behind it: it is on the stack now, if it was not before."""
+    watch = world.watch
+    cell = world.ends[end].peer >> 2
+    if cell < 0 or cell >= world.run[0].cells or world.epoch[end] & 1 or watch.joined[cell]:
+        return count
+    watch.joined[cell] = 1
+    watch.stack[count] = cell
+    return count + 1
