@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from innervate.network import networks
-from innervate.networks.skin.prove.feasible import ENTRY
+from innervate.networks.skin.prove.neighbours import ENTRY
 from innervate.prove import kept
 from innervate.prove.theory import source
 

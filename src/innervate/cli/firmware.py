@@ -2,10 +2,11 @@
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from innervate.firmware import emit, library
-from innervate.firmware.emulated import engine_of
+from innervate.firmware.emulated import Emulated
 from innervate.live.board import roles_of
 from innervate.live.engine import Engine
 from innervate.live.nodefile import load
@@ -35,4 +36,4 @@ def engine_for(file: Path, image: Path) -> Callable[..., Engine]:
         LiveError: there is no such file.
     """
     role = roles_of(networks()[load(file).table.kind])[-1]
-    return engine_of(image.absolute(), role)
+    return partial(Emulated, image.absolute(), role)

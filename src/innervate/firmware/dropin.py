@@ -6,7 +6,7 @@ else reads a node's state does so as ever.
 
 import ctypes
 from collections.abc import Iterator
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import Any
 
 from innervate.firmware import compiled, views
@@ -139,8 +139,7 @@ def _role_of(stack: Any, network: Network) -> tuple[Role, Coded | None] | None:
     if role is None or not role.frame:
         return None
     if role.live:
-        module, _, name = role.live.partition(":")
-        role = getattr(import_module(module), name)(stack.params)
+        role = resolve_name(role.live)(stack.params)
     # Of those that say themselves what runs on boards it is shown that they stay in their ranges.
     wide = not network.has("boards")
     role = role._replace(room=stack.out.limit[0], frames=0, frame_bytes=0, wide=wide)

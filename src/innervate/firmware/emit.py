@@ -10,7 +10,7 @@ from innervate.firmware.constants import names_of, note_of
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.expressions import Expressions, local
 from innervate.firmware.facts import Facts
-from innervate.firmware.helpers import HELPERS, own, public
+from innervate.firmware.helpers import HELPERS, own
 from innervate.firmware.outbox import Outbox
 from innervate.firmware.program import Made, Program, Type
 from innervate.firmware.records import initial, name_of, records_of, struct
@@ -118,10 +118,10 @@ class Library:
             made.append(f"/** Handlers look into no frame. */\ntypedef void {small}_frame_t;\n")
         if "item" not in self.records and "frame" in self.records:
             made.append(f"typedef {small}_frame_t {small}_item_t; /* what its user hands down */\n")
-        return [*made, self.outbox.struct()]
+        return [*made, self.outbox.text("struct")]
 
     def _public(self) -> str:
-        lines = [public(self.prefix, self.records)]
+        lines = [shipped("made/public.h", self.prefix, frozenset(self.records))]
         for made in self.program.handlers:
             lines += [*self._comment(made), self._head(made) + ";", ""]
         return "\n".join(lines)
@@ -164,12 +164,12 @@ class Library:
         prefix = self.prefix
         helpers = [shipped("made/helpers.c", prefix, frozenset({name})) for name in HELPERS
                    if name in self.helpers]  # fmt: skip
-        helpers += [self.outbox.helper()] if "frame" in self.helpers else []
+        helpers += [self.outbox.text("give")] if "frame" in self.helpers else []
         functions = []
         for made, body in self.bodies.items():
             lines = [*self._comment(made), self._head(made), "{", *body, "}", ""]
             functions.append("\n".join(lines))
-        beginning = [*self._defaults(), own(self.prefix, self.records), self.outbox.functions()]
+        beginning = [*self._defaults(), own(self.prefix, self.records), self.outbox.text("own")]
         text = "\n".join([*helpers, *beginning, *functions])
         return self._filled("made/protocol.c", {"@header": header, "@functions\n": text}, set())
 

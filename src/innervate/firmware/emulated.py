@@ -32,23 +32,24 @@ QEMU = "qemu-system-arm"
 
 
 class Emulated(Engine):
-    """Runs a stack's handlers on an emulated board, given what an `Engine` is given.
+    """Runs a stack's handlers, those of `role` in an image, on an emulated board.
 
-    `packed` are the role's records as they lie in its memory: "state", "frame", "item".
+    Behind image and role it is given what an `Engine` is given.
 
     Raises:
         FirmwareError: there is no QEMU.
     """
 
-    def __init__(self, image: Path, packed: dict[str, Packed], *given: Any) -> None:
+    def __init__(self, image: Path, role: Role, *given: Any) -> None:
         super().__init__(*given)
-        self.image, self.packed = image, packed
+        self.image = image
+        self.packed = {name: Packed(fields) for name, fields in records_of(role).items()}
         self.emulator = find(QEMU)
         self._process: subprocess.Popen[bytes] | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._lines: list[asyncio.StreamWriter | None] = [None] * UARTS
         self._tasks: list[asyncio.Task[None]] = []
-        self._state = bytearray(packed["state"].size)
+        self._state = bytearray(self.packed["state"].size)
         self._begun: tuple[int, int, int] | None = None
         self._watch = -1  # becomes readable when the emulator ends
 
@@ -167,13 +168,3 @@ class Emulated(Engine):
 def _end_with_us() -> None:
     """In the new process: be killed when the node's process is, however it ends (Linux)."""
     ctypes.CDLL(None).prctl(DEATH_SIGNAL, signal.SIGKILL)
-
-
-def engine_of(image: Path, role: Role) -> Callable[..., Engine]:
-    """What makes an engine of a live node: its role's handlers run in this image."""
-    packed = {name: Packed(fields) for name, fields in records_of(role).items()}
-
-    def made(*given: Any) -> Engine:
-        return Emulated(image, packed, *given)
-
-    return made

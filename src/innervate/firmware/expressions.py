@@ -22,7 +22,8 @@ class Expressions:
     """Writes the expressions of one function.
 
     Attributes:
-        used: names of constants and helpers that occurred.
+        constants: those with names that occurred.
+        helpers: names of those that occurred.
     """
 
     def __init__(self, program: Program, facts: Facts, made: Made, names: dict[str, str]) -> None:
@@ -103,7 +104,7 @@ class Expressions:
                 # Unsigned: small processors divide by a function, and need only one.
                 op = BINARY[type(node.op)]
                 left, right = self.text(node.left, UNARY), self.text(node.right, UNARY)
-                if not isinstance(node.right, ast.Constant) and not self._is_known(node.right):
+                if not self.is_constant(node.right):
                     right = f"(uint32_t){right}"
                 return f"(int32_t)((uint32_t){left} {op} {right})", UNARY
         op = BINARY[type(node.op)]
@@ -118,9 +119,13 @@ class Expressions:
             left = self.text(node.left, BITS)
         return f"{left} {op} {self.text(node.right, UNARY)}", BITS
 
-    def _is_known(self, node: ast.expr) -> bool:
-        """True for a constant with a name."""
-        return isinstance(node, ast.Name) and node.id not in self.made.types
+    def is_constant(self, node: ast.expr) -> bool:
+        """True for a number, or a constant with a name, whatever its sign."""
+        if isinstance(node, ast.UnaryOp):
+            return self.is_constant(node.operand)
+        return isinstance(node, ast.Constant) or (
+            isinstance(node, ast.Name) and node.id not in self.made.types
+        )
 
     def _UnaryOp(self, node: ast.UnaryOp, _as_test: bool) -> tuple[str, int]:
         signs = {ast.Not: "!", ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}

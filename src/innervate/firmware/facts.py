@@ -12,8 +12,6 @@ from typing import NamedTuple
 
 from innervate.firmware.program import Made, Program, Type
 
-NATURAL_GIVEN = ("now", "port", "cause", "timer", "kind")
-
 
 class Fact(NamedTuple):
     """Of a number: `natural`, it is never negative; `flag`, it is 0 or 1."""

@@ -9,13 +9,8 @@ HELPERS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
-def public(prefix: str, records: dict[str, dict[str, Field]]) -> str:
-    """Declarations of what no function of the protocol does."""
-    return shipped("made/public.h", prefix, frozenset(records))
-
-
 def own(prefix: str, records: dict[str, dict[str, Field]]) -> str:
-    """Definitions of what `public` declares."""
+    """Definitions of what made/public.h declares: what no function of the protocol does."""
     zero = shipped("made/helpers.c", prefix, frozenset({"zero"}))
     parts = [zero, _init(prefix, "state", records["state"])]
     if "gate" in records:

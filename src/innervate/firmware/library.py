@@ -1,8 +1,9 @@
 """What a maker gets: the role that was meant, its parameters, and the files of its library."""
 
 import re
-from importlib import import_module, resources
+from importlib import resources
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
 from innervate import scenario
@@ -62,7 +63,7 @@ def role_of(name: str, nodes: int | None = None) -> tuple[Network, Role]:
         return network, role
     if not role.sized:
         raise FirmwareError(f"{role.name}: its arrays do not depend on how many nodes there are")
-    return network, _part(role.sized)(nodes)
+    return network, resolve_name(role.sized)(nodes)
 
 
 def _own(network: Network) -> Role:
@@ -97,7 +98,7 @@ def parameters_of(network: Network, role: Role, settings: list[str]) -> dict[str
             raise FirmwareError(f"{setting}: give a whole number, like {like}=20000")
         changes[name] = int(value)
     if role.parameters:
-        made: dict[str, Any] = _part(role.parameters)(changes, role.name)
+        made: dict[str, Any] = resolve_name(role.parameters)(changes, role.name)
         return made
     check_parameters(changes, role.params, role.name)
     plan = scenario.plan(scenario.from_dict({"kind": network.name}))
@@ -141,7 +142,7 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
         raise FirmwareError(f"{library.role.name}: --sealed is for nodes that speak on lines")
     if coded is None:
         return texts
-    most = _part(coded.payload_max)(library.params) if coded.payload_max else 0
+    most = resolve_name(coded.payload_max)(library.params) if coded.payload_max else 0
     carried = FRAME_MAX - SEAL_BYTES * sealed
     if coded.size_max + most > carried:
         raise FirmwareError(
@@ -247,8 +248,3 @@ def _put(path: Path, text: str) -> None:
         fresh.replace(path)
     finally:
         fresh.unlink(missing_ok=True)
-
-
-def _part(place: str) -> Any:
-    module, _, name = place.partition(":")
-    return getattr(import_module(module), name)

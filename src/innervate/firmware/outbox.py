@@ -29,7 +29,8 @@ class Outbox:
             self.words = {"@last": name_of(last), "@used": name_of(role.counted[last]),
                           "@spare": str(widest - 1)}  # fmt: skip
 
-    def _text(self, part: str) -> str:
+    def text(self, part: str) -> str:
+        """A part: "struct" for the header, "give" that gives frames out, "own" for the source."""
         own = {"frames", "behind" if self.is_behind else "whole"} if self.has_frames else set()
         text = shipped("made/outbox.c", self.prefix, frozenset({part, *own}))
         return filled(text, self.words)
@@ -41,15 +42,3 @@ class Outbox:
         else:
             name, many, what = "FRAMES", self.frames, "frames of one call at most"
         return f"#define {self.prefix.upper()}_{name} {many} /* {what} */"
-
-    def struct(self) -> str:
-        """The struct that the header declares."""
-        return self._text("struct")
-
-    def helper(self) -> str:
-        """The function that gives frames out."""
-        return self._text("give")
-
-    def functions(self) -> str:
-        """Definitions of what the header declares."""
-        return self._text("own")

@@ -22,20 +22,32 @@ def cases(coded: Coded) -> list[str]:
 
 def _walk(fields: tuple[Any, ...]) -> list[str]:
     """Lines that go through a payload's fields, from bit `at` on, and say whether it ends there."""
-    lines, skip, counted = [], 0, {many for _, many, _, _ in fields if isinstance(many, str)}
     for name, many, bits, _ in fields:
         if isinstance(bits, tuple) and many != REST and not is_fixed(bits):
             raise FirmwareError(f"{name}: groups of variable length are read at the end alone")
         if many == PAIRS:
             raise FirmwareError(f"{name}: pairs are no payload")
+    if not fields or fields[-1][1] != REST:
+        lines, skip = _passed(fields)
+        return [*lines, f"return at + {skip} == end;" if skip else "return at == end;"]
+    lines, bits = _whole(fields[:-1]), fields[-1][2]
+    if not isinstance(bits, tuple):
+        return [*lines, f"return at <= end && (end - at) % {bits} == 0;"]
+    return [*lines, "while (at < end) {", *(f"    {line}" for line in _whole(bits)), "}",
+            "return at == end;"]  # fmt: skip
+
+
+def _whole(fields: tuple[Any, ...]) -> list[str]:
+    """Lines that go over all of some fields."""
+    lines, skip = _passed(fields)
+    return [*lines, *([f"at += {skip};"] if skip else [])]
+
+
+def _passed(fields: tuple[Any, ...]) -> tuple[list[str], int]:
+    """Lines that go over fields, and how many bits are then still to be passed over."""
+    lines, skip, counted = [], 0, {many for _, many, _, _ in fields if isinstance(many, str)}
+    for name, many, bits, _ in fields:
         each = width(bits) if isinstance(bits, tuple) else bits
-        if many == REST:
-            lines += [f"at += {skip};"] if skip else []
-            if not isinstance(bits, tuple):
-                return [*lines, f"return at <= end && (end - at) % {each} == 0;"]
-            inner = _groups(bits)
-            return [*lines, "while (at < end) {", *(f"    {line}" for line in inner), "}",
-                    "return at == end;"]  # fmt: skip
         if isinstance(many, str):
             lines.append(f"at += count * {each};")
         elif name in counted:
@@ -43,21 +55,7 @@ def _walk(fields: tuple[Any, ...]) -> list[str]:
             skip = 0
         else:
             skip += each * max(1, many)
-    return [*lines, f"return at + {skip} == end;" if skip else "return at == end;"]
-
-
-def _groups(fields: tuple[Any, ...]) -> list[str]:
-    """Lines for one of the groups that go on to the end."""
-    lines, skip, counted = [], 0, {many for _, many, _, _ in fields if isinstance(many, str)}
-    for name, many, bits, _ in fields:
-        if isinstance(many, str):
-            lines.append(f"at += count * {bits};")
-        elif name in counted:
-            lines += _count(skip, bits)
-            skip = 0
-        else:
-            skip += bits * max(1, many)
-    return [*lines, *([f"at += {skip};"] if skip else [])]
+    return lines, skip
 
 
 def _count(skip: int, bits: int) -> list[str]:

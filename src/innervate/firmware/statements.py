@@ -113,7 +113,7 @@ class Statements:
         """A value as a field takes it: C compilers want to know that it is meant."""
         field = self.expressions.place(target)
         text = self.expressions.text(value)
-        if field is None or field.type == "int32_t" or self._is_constant(value):
+        if field is None or field.type == "int32_t" or self.expressions.is_constant(value):
             return text
         if isinstance(value, ast.Attribute | ast.Subscript):
             other = self.expressions.place(value)
@@ -121,13 +121,6 @@ class Statements:
                 return text
         inner = self.expressions.text(value, 1)
         return f"({field.type}){inner}"
-
-    def _is_constant(self, node: ast.expr) -> bool:
-        if isinstance(node, ast.UnaryOp):
-            return self._is_constant(node.operand)
-        return isinstance(node, ast.Constant) or (
-            isinstance(node, ast.Name) and node.id not in self.made.types
-        )
 
     def _Expr(self, node: ast.Expr, depth: int, _declared: list[str]) -> None:
         call = self.expressions.text(node.value)

@@ -11,16 +11,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from innervate.analysis.parents import (
-    NOWHERE,
-    Cable,
-    Change,
-    Harm,
-    Ways,
-    most_without,
-    settled_us,
-    time_without_us,
-)  # fmt: skip
+from innervate.analysis import parents
+from innervate.analysis.parents import Cable, Change, Harm, Ways
 from innervate.papers.errors import PapersError
 from innervate.trace.streams import Stream, stream
 
@@ -123,15 +115,15 @@ def measured(
     share = _largest_share(ways)
     ways.play((change for change in changes if change[0] >= harm.at_us), [harm])
     calm = CALM * given["beacon_us"]
-    start = settled_us(ways.steps, 0, harm.at_us, calm)
-    routed = settled_us(ways.steps, harm.at_us, end, calm)
+    start = parents.settled_us(ways.steps, 0, harm.at_us, calm)
+    routed = parents.settled_us(ways.steps, harm.at_us, end, calm)
     found = [at for at in downs if at > harm.at_us]
     return {
         "start_ms": None if start is None else start / 1e3,
         "detected_ms": (min(found) - harm.at_us) / 1e3 if found else None,
         "routed_ms": None if routed is None else (routed - harm.at_us) / 1e3,
-        "without": most_without(ways.steps, harm.at_us, end),
-        "without_s": time_without_us(ways.steps, harm.at_us, end) / 1e6,
+        "without": parents.most_without(ways.steps, harm.at_us, end),
+        "without_s": parents.time_without_us(ways.steps, harm.at_us, end) / 1e6,
         "loops": len(ways.loops),
         "bits_per_s": sent * FRAME_BITS / len(made.cables) / (end / 1e6),
         "largest_share": share,
@@ -140,5 +132,5 @@ def measured(
 
 def _largest_share(ways: Ways) -> float | None:
     """Share of the nodes whose way goes through the sink's busiest port, of those with a way."""
-    roots = [root for node, root in enumerate(ways.roots()) if node and root != NOWHERE]
+    roots = [root for node, root in enumerate(ways.roots()) if node and root != parents.NOWHERE]
     return max(map(roots.count, set(roots))) / len(roots) if roots else None

@@ -7,7 +7,7 @@ it by `run_declared`; one of its own loop runs as it likes, and says what came w
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -83,8 +83,7 @@ class World:
 
 def world_of(given: Given, seed: int) -> World:
     """The world that a case's function draws."""
-    module, _, name = str(given["world"]).partition(":")
-    made: World = getattr(import_module(module), name)(given, seed)
+    made: World = resolve_name(str(given["world"]))(given, seed)
     return made
 
 

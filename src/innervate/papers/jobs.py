@@ -12,13 +12,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple
 
-from innervate.analysis.intervals import (
-    Interval,
-    mean_interval,
-    median_interval,
-    quantile_interval,
-    wilson,
-)  # fmt: skip
+from innervate.analysis import intervals
 from innervate.network import networks
 from innervate.papers.experiment import Claim, Measured, Point, Sheet, verdict
 
@@ -159,7 +153,7 @@ class Compared:
             ours, its = (self._by_seed(case, entry, name) for entry in pair)
             both = [(ours[seed], its[seed]) for seed in ours if seed in its]
             differences = [a - b if a != b else 0.0 for a, b in both]
-            between = median_interval(differences)
+            between = intervals.median_interval(differences)
             holds = holds and between.high < 0
             fewer, more = sum(d < 0 for d in differences), sum(d > 0 for d in differences)
             counts = f"less in {fewer} and more in {more} of {len(differences)}"
@@ -189,28 +183,28 @@ def cell(values: list[float], column: Column) -> str:
         return f"{(sum if column.show == TOTAL else max)(values):.{digits}f}"
     if column.show == SHARE:
         hits = sum(value > 0 for value in values)
-        return f"{hits} ({interval(wilson(hits, len(values)), 2)})"
+        return f"{hits} ({interval(intervals.wilson(hits, len(values)), 2)})"
     if not finite:
         return "never"
     if 2 * never > len(values) and column.show == MEDIAN:
         return f"never in {never} of {len(values)}"
     if column.show in (MEAN, PERCENT):
-        found = mean_interval(finite)
+        found = intervals.mean_interval(finite)
         if column.show == PERCENT:
-            found = Interval(found.value, max(found.low, 0.0), min(found.high, 100.0))
+            found = intervals.Interval(found.value, max(found.low, 0.0), min(found.high, 100.0))
     else:
-        found = quantile_interval(values, 0.5 if column.show == MEDIAN else TAIL_SHARE)
+        found = intervals.quantile_interval(values, 0.5 if column.show == MEDIAN else TAIL_SHARE)
     return shown(found, digits) + (f", never in {never}" if never else "")
 
 
-def shown(found: Interval, digits: int) -> str:
+def shown(found: intervals.Interval, digits: int) -> str:
     """An estimate with its interval: "12.0 (11.2 to 12.9)"; "never" needs none."""
     if abs(found.value) == inf and found.low == found.high:
         return number(found.value, digits)
     return f"{number(found.value, digits)} ({interval(found, digits)})"
 
 
-def interval(found: Interval, digits: int) -> str:
+def interval(found: intervals.Interval, digits: int) -> str:
     """An interval without its estimate."""
     return f"{number(found.low, digits)} to {number(found.high, digits)}"
 

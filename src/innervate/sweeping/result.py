@@ -139,7 +139,7 @@ class Sweep:
             raise SweepError("shares of quantiles lie between 0 and 1")
         rows = []
         for point in self.plan.points:
-            values = self._values(point.index, measure)
+            values = list(self._by_repeat(point.index, measure).values())
             found = {f"q{s:g}": quantile(values, s) if values else None for s in shares}
             rows.append({"point": point.index, **point.columns, "runs": len(values)} | found)
         return tables.frame(rows, numbers=[f"q{s:g}" for s in shares])
@@ -254,9 +254,6 @@ class Sweep:
         mine = self.results.filter(self.results["point"] == index)
         rows = zip(mine["repeat"].to_list(), mine[measure].to_list(), strict=True)
         return {repeat: value for repeat, value in rows if value is not None}
-
-    def _values(self, index: int, measure: str) -> list[float]:
-        return list(self._by_repeat(index, measure).values())
 
     def _check(self, name: str) -> None:
         if name not in self.results.columns:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
 
+from innervate.topology.cover import Cell, cells_on_surfaces
 from innervate.topology.errors import TopologyError
 from innervate.topology.graph import Graph
 from innervate.topology.patch import NOTHING, PORTS
@@ -39,8 +40,8 @@ def cells_from_urdf(
     path = find_urdf(urdf, folder or Path())
     if pitch_mm is None:
         return read_positions(path, pattern)
-    names, positions = _covered(path, _changed_ns(path), pattern, pitch_mm)
-    return list(names), list(positions)
+    cells = _covered(path, _changed_ns(path), pattern, pitch_mm)
+    return [name for name, _, _ in cells], [place for _, place, _ in cells]
 
 
 def normals_from_urdf(
@@ -53,9 +54,7 @@ def normals_from_urdf(
     path = find_urdf(urdf, folder or Path())
     if pitch_mm is None:
         return [(turn[0][2], turn[1][2], turn[2][2]) for _, _, turn, _ in read_links(path, pattern)]
-    from innervate.topology.cover import normals_on_surfaces
-
-    return normals_on_surfaces(path, pattern, pitch_mm)
+    return [normal for _, _, normal in _covered(path, _changed_ns(path), pattern, pitch_mm)]
 
 
 def _changed_ns(path: Path) -> int:
@@ -67,14 +66,9 @@ def _changed_ns(path: Path) -> int:
 
 
 @cache
-def _covered(
-    path: Path, _changed: int, pattern: str, pitch_mm: float
-) -> tuple[tuple[str, ...], tuple[Vector, ...]]:
+def _covered(path: Path, _changed: int, pattern: str, pitch_mm: float) -> tuple[Cell, ...]:
     """Cells on surfaces; worked out once, since a sweep asks for them in every run."""
-    from innervate.topology.cover import cells_on_surfaces
-
-    names, positions = cells_on_surfaces(path, pattern, pitch_mm)
-    return tuple(names), tuple(positions)
+    return tuple(cells_on_surfaces(path, pattern, pitch_mm))
 
 
 def body_graph(

@@ -23,7 +23,7 @@ SEED = 1
 DRAWN = 25  # points a square of the pitch; with more, hardly any more are kept
 CELLS_MAX = 5000
 NAMED_MAX = 8  # links in a message
-Cell = tuple[str, Vector, Vector]  # its name, place in mm, direction of its surface
+Cell = tuple[str, Vector, Vector]  # its name, place in mm, where its surface faces (length 1)
 
 
 def has_surface(link: Link) -> bool:
@@ -31,24 +31,6 @@ def has_surface(link: Link) -> bool:
     return link.element.find("visual/geometry") is not None or (
         link.element.find("collision/geometry") is not None
     )
-
-
-def cells_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> tuple[list[str], list[Vector]]:
-    """(names, positions in mm) of cells on the surfaces of the links that match.
-
-    Two cells of a link are at least the pitch, > 0, apart; as read_positions() otherwise.
-
-    Raises:
-        TopologyError: no link matches, none has a shape, one has only shapes that cannot be read,
-            or too many cells.
-    """
-    found = _all_cells(path, pattern, pitch_mm)
-    return [name for name, _, _ in found], [place for _, place, _ in found]
-
-
-def normals_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> list[Vector]:
-    """For each of these cells the direction in which the surface faces, of length 1; see above."""
-    return [normal for _, _, normal in _all_cells(path, pattern, pitch_mm)]
 
 
 def surfaces(path: Path, pattern: str) -> Iterator[Any]:
@@ -76,7 +58,15 @@ def _say_unreadable(path: Path, links: Sequence[Link]) -> None:
         )
 
 
-def _all_cells(path: Path, pattern: str, pitch_mm: float) -> list[Cell]:
+def cells_on_surfaces(path: Path, pattern: str, pitch_mm: float) -> list[Cell]:
+    """Cells on the surfaces of the links that match.
+
+    Two cells of a link are at least the pitch, > 0, apart; as read_positions() otherwise.
+
+    Raises:
+        TopologyError: no link matches, none has a shape, one has only shapes that cannot be read,
+            or too many cells.
+    """
     found: list[Cell] = []
     links = read_links(path, pattern)
     _say_unreadable(path, links)

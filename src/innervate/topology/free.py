@@ -57,7 +57,8 @@ def free_graph(links: Sequence[tuple[str, str]]) -> Graph:
         both = []
         for (name, port), side in zip(pair, "ab", strict=True):
             if port < 0:
-                port = _first_free(graph, number[name], name, taken)
+                ports = range(len(graph.ends_of(number[name])))
+                port = next((one for one in ports if (name, one) not in taken), NOTHING)
                 if port < 0:
                     message = f"{name} has no port left: a cell has four; leave out a cable"
                     raise TopologyError(message, f"link.{index}.{side}")
@@ -93,10 +94,3 @@ def _interfaces(ends: list[list[tuple[str, int]]]) -> int:
         message = f"the PC has a port pc.{max(named)} but nothing is on pc.{gap}; number from pc.0"
         raise TopologyError(message, "link")
     return count
-
-
-def _first_free(graph: Graph, node: int, name: str, taken: set[tuple[str, int]]) -> int:
-    for port in range(len(graph.ends_of(node))):
-        if (name, port) not in taken:
-            return port
-    return NOTHING

@@ -182,11 +182,6 @@ class Graph:
         del depth[self.cells :]
         return depth
 
-    @property
-    def depth_max(self) -> int:
-        """Hops of the deepest cell that is connected to the PC; 0 if there is none."""
-        return max(max(self.depths(), default=0), 0)
-
     def _free_in_words(self, node: int) -> str:
         if node == self.cells:
             return "use another interface port"

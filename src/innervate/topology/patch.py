@@ -15,7 +15,6 @@ from innervate.topology.errors import TopologyError
 W, E, UP, DOWN = 0, 1, 2, 3
 PORT_NAMES = ("W", "E", "up", "down")
 PORTS = 4
-WIRINGS = ("Z", "S")
 CELLS_MAX = 4_000_000
 NOTHING = -1
 
@@ -68,11 +67,6 @@ def port_number(port: int | str) -> int:
     raise TopologyError(f'no port is called "{port}"; ports are W, E, up, down (0 to 3)', "port")
 
 
-def opposite(port: int) -> int:
-    """The port that faces `port` inside a patch: W and E, up and down."""
-    return port ^ 1
-
-
 def neighbour(patch: Patch, row: int, column: int, port: int) -> tuple[int, int] | None:
     """(row, column) of the cell wired to a port, or None at the border [skin 1]."""
     if port == W:
@@ -100,5 +94,5 @@ def wire(patch: Patch) -> array[int]:
                 other = neighbour(patch, row, column, port)
                 if other is not None:
                     there = other[0] * patch.columns + other[1]
-                    table[PORTS * cell + port] = PORTS * there + opposite(port)
+                    table[PORTS * cell + port] = PORTS * there + (port ^ 1)  # W and E, up and down
     return table

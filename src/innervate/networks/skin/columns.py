@@ -17,9 +17,8 @@ def columns(table: Table, result: Any) -> Columns:
     return _MAKERS[table.name](result)
 
 
-def _routes(result: Any) -> Columns:
-    changes = rows.parent_changes(result)
-    return {column.name: getattr(changes, column.name) for column in ROUTES.columns}
+def _named(table: Table, found: Any) -> Columns:
+    return {column.name: getattr(found, column.name) for column in table.columns}
 
 
 def _links(result: Any) -> Columns:
@@ -46,9 +45,10 @@ def _outages(result: Any) -> Columns:
 
 def _loops(result: Any) -> Columns:
     found = rows.loop_episodes(result)
-    made: Columns = {column.name: getattr(found, column.name) for column in LOOPS.columns}
     closed = found.closed_us.tolist()
-    return {**made, "closed_us": [None if time == rows.NEVER else time for time in closed]}
+    return _named(LOOPS, found) | {
+        "closed_us": [None if time == rows.NEVER else time for time in closed]
+    }
 
 
 def _received(result: Any) -> Columns:
@@ -61,7 +61,7 @@ def _received(result: Any) -> Columns:
 
 
 _MAKERS = {
-    ROUTES.name: _routes,
+    ROUTES.name: lambda result: _named(ROUTES, rows.parent_changes(result)),
     LINKS.name: _links,
     OUTAGES.name: _outages,
     LOOPS.name: _loops,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from innervate.kernel.words import number_of
@@ -9,7 +10,7 @@ from innervate.networks.skin.plot import words as skin_words
 from innervate.plot import words
 
 if TYPE_CHECKING:
-    from innervate.networks.skin.analysis.summary_keys import Commands, Data, Latency, SkinSummary
+    from innervate.networks.skin.analysis.summary_keys import Commands, Latency, SkinSummary
     from innervate.running import Run
 
 EVENTS_MAX = 8
@@ -58,8 +59,9 @@ def state_lines(summary: SkinSummary) -> list[str]:
     if data["loss_ratio"] is not None:
         share = words.share_words(data["loss_ratio"])
         early = skin_words.early_words(data["lost"], summary["lost_at_start"] or 0)
+        why = _why(data["lost_by"], skin_words.LOST)
         lines.append(
-            f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){_why(data)}"
+            f"Samples: {data['sent']:,} sent, {data['lost']:,} lost ({share}){why}"
             f"{early and f'; {early}'}."
         )
         lines += latency_lines(data["latency_ms"])
@@ -95,10 +97,10 @@ def command_lines(commands: Commands) -> list[str]:
     ratio = commands["loss_ratio"]
     if ratio is None:
         return []
-    share = words.share_words(ratio)
+    share, why = words.share_words(ratio), _why(commands["lost_by"], skin_words.MISSED)
     line = (
         f"Commands: {commands['sent']:,} sent, for {commands['addressed']:,} cells in all, "
-        f"{commands['lost']:,} not reached ({share}){_missed(commands)}"
+        f"{commands['lost']:,} not reached ({share}){why}"
     )
     half, most = commands["latency_ms"]["p50"], commands["latency_ms"]["max"]
     if half is None or most is None:
@@ -107,15 +109,10 @@ def command_lines(commands: Commands) -> list[str]:
     return [f"{line}; {took}."]
 
 
-def _missed(commands: Commands) -> str:
-    lost = [(n, why) for why, n in commands["lost_by"].items() if n]
-    return "".join(f", {n:,} {skin_words.MISSED[why]}" for n, why in sorted(lost, reverse=True))
-
-
-def _why(data: Data) -> str:
-    """The reasons of lost samples, the greatest first."""
-    lost = sorted(((n, why) for why, n in data["lost_by"].items() if n), reverse=True)
-    return "".join(f", {n:,} {skin_words.LOST.get(why, why)}" for n, why in lost)
+def _why(lost_by: Mapping[str, int], words: Mapping[str, str]) -> str:
+    """The reasons of what was lost, the greatest first."""
+    lost = sorted(((n, why) for why, n in lost_by.items() if n), reverse=True)
+    return "".join(f", {n:,} {words.get(why, why)}" for n, why in lost)
 
 
 def _broken(summary: SkinSummary) -> list[str]:

@@ -61,8 +61,8 @@ def test_conserved_whatever_happens(go, seed):
 def test_conserved_uncompiled(go):
     compiled, plain = go(random_skin(1)), go(random_skin(1), plain=True)
     check_conserved(plain)
-    assert frames.data_traffic(plain) == frames.data_traffic(compiled)
-    assert frames.beacon_traffic(plain) == frames.beacon_traffic(compiled)
+    for what in frames.BLOCKS:
+        assert frames.traffic_of(plain, what) == frames.traffic_of(compiled, what), what
 
 
 def test_a_frame_that_went_nowhere_is_noticed(go):

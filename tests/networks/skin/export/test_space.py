@@ -56,9 +56,9 @@ def test_what_happens_at_a_moment_is_seen_a_step_later():
 def test_a_ring_leads_nowhere_nor_do_those_behind_it():
     now = at_the_end((1, A, 1), (2, B, 0), (3, C, 0), (4, D, 0))
     assert now.hops == [-1, -1, -1, 1]
-    assert [now.above(cell) for cell in range(4)] == [B, A, B, 4]
-    assert at_the_end((1, A, 3)).above(A) == -1  # a port without a cable
-    assert at_the_end((1, A, 0), (2, A, -1)).above(A) == -1
+    assert now.hop == [B, A, B, 4]
+    assert at_the_end((1, A, 3)).hop[A] == -1  # a port without a cable
+    assert at_the_end((1, A, 0), (2, A, -1)).hop[A] == -1
 
 
 def test_a_cable_carries_the_samples_of_all_behind_it():

@@ -4,6 +4,7 @@ import pytest
 
 from innervate.network import networks
 from innervate.networks.skin.prove import feasible, theories
+from innervate.networks.skin.prove.neighbours import TICKS
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
 from innervate.prove.faults import faults_of, hunt
@@ -47,7 +48,7 @@ def test_every_mistake_is_refuted(one):
 
 def test_a_refuted_step_is_told_of_two_cells():
     wrong = fault("who has a route does not ask the rule at its tick")
-    tick = next(one for one in feasible.steps((wrong.old, wrong.new)) if one.func is feasible.tick)
+    tick = next(one for one in feasible.steps((wrong.old, wrong.new)) if TICKS in one.args)
     claim = theories.theories(SKIN)[1]
     step = tick()
     step.goals = [goal for goal in step.goals if goal.name.startswith("I5")]

@@ -182,9 +182,9 @@ SAID = [  # what a beacon says on a port, and whether its sender may ever have s
 @pytest.mark.parametrize(("port", "route", "ghosts", "feasibly", "strictly"), SAID)
 def test_what_a_beacon_may_say(port, route, ghosts, feasibly, strictly):
     made = cell_of({}, ghosts, frame={"sq": route[0], "dist": route[1]})
-    number = made.stage.terms.number(port)
-    assert is_so(feasible.said_by(made, number)) == feasibly
-    assert is_so(strict.said_by(made, number)) == strictly
+    made.port = made.t.number(port)
+    assert is_so(feasible.said_by(made)) == feasibly
+    assert is_so(strict.said_by(made)) == strictly
 
 
 MOVES = [  # (known, number, hops, old) before and after

@@ -8,7 +8,8 @@ import pytest
 from innervate.dialect.outbox import REPORT, SEND, SET_TIMER
 from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.networks.skin.prove import forgetting, pc
-from innervate.networks.skin.prove.mirror import ORDERS, SAID, Mirror, _same_sent
+from innervate.networks.skin.prove.mirror import ORDERS, Mirror, _same_sent
+from innervate.networks.skin.prove.reductions import SAID
 from innervate.prove.records import Action
 from innervate.prove.terms import Terms
 from innervate.prove.theory import source
@@ -63,8 +64,8 @@ def test_a_dead_port_is_the_parents_or_another_is_or_none(rule, count):
     asked = [step.args[3:] for step in forgetting.steps(rule)]
     others = {NONE, forgetting.PORT + 1}
     assert len(set(asked)) == len(asked) == count
-    assert {parent for parent, why in asked if why != forgetting.SAID} == others
-    own = [(forgetting.PORT, forgetting.SAID)] if rule == forgetting.ANY_RULE else []
+    assert {parent for parent, why in asked if why != forgetting.NO_ROUTE} == others
+    own = [(forgetting.PORT, forgetting.NO_ROUTE)] if rule == forgetting.ANY_RULE else []
     assert [one for one in asked if one[0] == forgetting.PORT] == own
 
 

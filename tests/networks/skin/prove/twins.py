@@ -5,7 +5,7 @@ from __future__ import annotations
 from innervate.dialect.arith import MASK30
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.prove.feasible import ENTRY
+from innervate.networks.skin.prove.neighbours import ENTRY
 from tests.prove.parity import Twin, twin
 
 DECLARED = {"cell": fields.CELL, "params": fields.PARAMS, "frame": fields.FRAME}

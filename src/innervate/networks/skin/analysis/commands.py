@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.networks.skin.analysis.frames import command_traffic, number_of, under_way
+from innervate.networks.skin.analysis.frames import number_of, traffic_of, under_way
 from innervate.networks.skin.analysis.latency import command_latency_ms
 from innervate.networks.skin.analysis.summary_keys import Commands
 from innervate.networks.skin.sim import counters as words
@@ -23,7 +23,7 @@ def commands_summary(result: Any) -> Commands:
         for name, state in REASONS.items()
     }
     addressed, lost = counters[words.ADDRESSED], sum(lost_by.values())
-    traffic = command_traffic(result)
+    traffic = traffic_of(result, "commands")
     return {
         "sent": counters[words.GIVEN],
         "addressed": addressed,

@@ -15,6 +15,9 @@ from innervate.sim.driver import InvariantBroken
 from innervate.sim.tables import column, get
 from innervate.sim.wheel import FRESH, NIL
 
+# Blocks of counters, by what they count; with beacons whatever else goes before data.
+BLOCKS = {"data frames": 0, "beacons": wires.URGENT_BLOCK, "commands": words.COMMAND_BLOCK}
+
 
 class FramesLost(InvariantBroken):
     """Frames of a run that went nowhere: a mistake of the simulator, never of the scenario."""
@@ -37,28 +40,13 @@ class Traffic:
         return self.sent - gone - self.flying - self.queued
 
 
-def data_traffic(result: Any) -> Traffic:
-    """Data frames on the cables."""
-    return _traffic(result, 0)
-
-
-def beacon_traffic(result: Any) -> Traffic:
-    """Beacons, and whatever else goes before data, on the cables."""
-    return _traffic(result, wires.URGENT_BLOCK)
-
-
-def command_traffic(result: Any) -> Traffic:
-    """Commands of the PC on the cables."""
-    return _traffic(result, words.COMMAND_BLOCK)
-
-
 def data_summary(result: Any) -> Data:
     """Tactile samples from cell to PC: sent, delivered, lost by reason, in flight.
 
     `loss_ratio` is lost / sent; None if none were sent. Latencies: see latency.py.
     """
     counters = result.counters
-    traffic = data_traffic(result)
+    traffic = traffic_of(result, "data frames")
     lost_by = dict(traffic.lost)
     lost_by["no_route"] = counters[words.NO_ROUTE]
     lost_by["loop"] = counters[words.LOOPED]
@@ -88,12 +76,8 @@ def check_conserved(result: Any) -> None:
         FramesLost: says how many are not, and of which run.
     """
     data = data_summary(result)
-    missing = {
-        "data frames": data_traffic(result).missing,
-        "beacons": beacon_traffic(result).missing,
-        "commands": command_traffic(result).missing,
-        "samples": data["sent"] - data["delivered"] - data["lost"] - data["in_flight"],
-    }
+    missing = {what: traffic_of(result, what).missing for what in BLOCKS}
+    missing["samples"] = data["sent"] - data["delivered"] - data["lost"] - data["in_flight"]
     wrong = [f"{count} {name}" for name, count in missing.items() if count]
     if wrong:
         seed = result.plan.seed
@@ -110,8 +94,9 @@ def beacon_share(result: Any) -> float | None:
     return float(beacons * result.plan.wire_us / (directions * result.ended_us))
 
 
-def _traffic(result: Any, block: int) -> Traffic:
-    counters = result.counters
+def traffic_of(result: Any, what: str) -> Traffic:
+    """The frames of one of BLOCKS."""
+    counters, block = result.counters, BLOCKS[what]
     return Traffic(
         sent=counters[wires.SENT + block],
         arrived=counters[wires.ARRIVED + block],

@@ -139,20 +139,12 @@ def parents_before(result: Any, place: int) -> rows.Numbers:
     """Parent port of every cell just before mark `place` (see rows.marks); -1 none."""
     at, changes = rows.marks(result), rows.parent_changes(result)
     cells = result.plan.graph.cells
+    stopped = {fault.index: fault.node for fault in result.plan.faults
+               if fault.action in (KILL, RESTART) and fault.node < cells}  # fmt: skip
+    marks = zip(at.row[:place].tolist(), at.event[:place].tolist(), strict=True)
+    lost = {stopped[event]: row for row, event in marks if event in stopped}
     behind = int(np.searchsorted(changes.row, at.row[place]))
-    # Of several values for one place NumPy keeps the last.
-    parent = np.full(cells, NONE, np.int64)
-    parent[changes.cell[:behind]] = changes.new[:behind]
-    changed = np.full(cells, NOBODY, np.int64)
-    changed[changes.cell[:behind]] = changes.row[:behind]
-    faults = {fault.index: fault for fault in result.plan.faults}
-    for row, event in zip(at.row[:place].tolist(), at.event[:place].tolist(), strict=True):
-        fault = faults.get(event)
-        if fault is None or fault.action not in (KILL, RESTART):
-            continue
-        if fault.node < cells and changed[fault.node] < row:
-            parent[fault.node] = NONE  # its memory went with it
-    return parent
+    return rows.parents(changes, cells, behind, lost)
 
 
 def next_hops(graph: Any, parent: rows.Numbers) -> rows.Numbers:

@@ -3,20 +3,18 @@
 All functions take a `sim.simulate.Result`; times are in us of true time.
 """
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from innervate.analysis.ways import Numbers as Numbers
-from innervate.networks.skin.protocol.constants import (
-    PORTS,
-    REPORT_BALANCE,
-    REPORT_BROKEN,
-    REPORT_PARENT,
-)
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.sim import observer
 
 NEVER = -1
+NOBODY: Mapping[int, int] = MappingProxyType({})
 
 
 class ParentChanges(NamedTuple):
@@ -70,13 +68,27 @@ class Marks(NamedTuple):
 
 def parent_changes(result: Any) -> ParentChanges:
     """All changes of parent ports."""
-    rows = result.rows
-    code = rows["code"]
-    at = np.flatnonzero((code == REPORT_PARENT) | (code == REPORT_BALANCE))
-    part = rows[at]
-    return ParentChanges(
-        at, part["time"], part["node"], part["a"], part["b"], part["code"] == REPORT_BALANCE
-    )
+    at, part = _coded(result, const.REPORT_PARENT, const.REPORT_BALANCE)
+    balancing = part["code"] == const.REPORT_BALANCE
+    return ParentChanges(at, part["time"], part["node"], part["a"], part["b"], balancing)
+
+
+def parents(
+    changes: ParentChanges, cells: int, behind: int, lost: Mapping[int, int] = NOBODY
+) -> Numbers:
+    """Parent port of every cell after the first changes, -1 none.
+
+    A cell that `lost` its memory at a row has none that it took before.
+    """
+    # Of several values for one place NumPy keeps the last.
+    parent = np.full(cells, const.NONE, np.int64)
+    parent[changes.cell[:behind]] = changes.new[:behind]
+    changed = np.full(cells, NEVER, np.int64)
+    changed[changes.cell[:behind]] = changes.row[:behind]
+    for cell, row in lost.items():
+        if changed[cell] < row:
+            parent[cell] = const.NONE
+    return parent
 
 
 def unrouted_steps(result: Any) -> Steps:
@@ -107,8 +119,8 @@ def values_at(steps: Steps, at: Numbers) -> Numbers:
 
 def broken_changes(result: Any) -> BrokenChanges:
     """Ports found broken, and working again."""
-    at, part = _coded(result, REPORT_BROKEN)
-    return BrokenChanges(at, part["time"], PORTS * part["node"] + part["a"], part["b"])
+    at, part = _coded(result, const.REPORT_BROKEN)
+    return BrokenChanges(at, part["time"], const.PORTS * part["node"] + part["a"], part["b"])
 
 
 def marks(result: Any) -> Marks:
@@ -119,10 +131,7 @@ def marks(result: Any) -> Marks:
 
 def loop_episodes(result: Any) -> LoopEpisodes:
     """All forwarding loops: a ring of parents over live cables."""
-    rows = result.rows
-    code = rows["code"]
-    at = np.flatnonzero((code == observer.LOOP_OPEN) | (code == observer.LOOP_CLOSED))
-    part = rows[at]
+    _, part = _coded(result, observer.LOOP_OPEN, observer.LOOP_CLOSED)
     # The rows of one ring's cell alternate: opened, closed, opened ...
     order = np.argsort(part["node"], kind="stable")
     node, time = part["node"][order], part["time"][order]
@@ -135,6 +144,6 @@ def loop_episodes(result: Any) -> LoopEpisodes:
     return LoopEpisodes(node[where], time[where], closed_us[where], part["a"][order][where])
 
 
-def _coded(result: Any, code: int) -> tuple[Numbers, Any]:
-    at = np.flatnonzero(result.rows["code"] == code)
+def _coded(result: Any, *codes: int) -> tuple[Numbers, Any]:
+    at = np.flatnonzero(np.isin(result.rows["code"], codes))
     return at, result.rows[at]

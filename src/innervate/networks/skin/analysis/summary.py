@@ -27,7 +27,6 @@ def summarize(result: Any) -> SkinSummary:
     loads = port_loads(result)
     data = data_summary(result)
     facts = skin_facts(result, data)
-    apart = reach(result, facts)
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -38,10 +37,7 @@ def summarize(result: Any) -> SkinSummary:
         "depth_max": plan.depth_max,
         "start_up": start_up(result),
         "recoveries": recoveries(result),
-        "cut_off": apart["cut_off"],
-        "without_way": apart["without_way"],
-        "switched_off": apart["switched_off"],
-        "lost_at_start": apart["lost_at_start"],
+        **reach(result, facts),
         "loops": loops(result),
         "balance_factor": balance_factor(loads),
         "port_loads": loads,

@@ -8,6 +8,7 @@ import numpy as np
 
 from innervate.export import rrd_parts
 from innervate.export.rrd_parts import ALARM, GREY, INK, PALE, PORTS, Column, Parts
+from innervate.networks.skin.analysis.load import interfaces_along
 from innervate.networks.skin.export.states import States
 from innervate.scenario.actions.cables import CUT, KILL, RESTORE, REVIVE
 
@@ -76,8 +77,7 @@ def _over_time(
             known = np.array(now.known(at))
             force = np.where(known, np.array(now.force) / FORCE_MAX_MN, 0.0)
             colours["touch"].add(at, rrd_parts.heat(np.clip(force, 0.0, 1.0)))
-        above = [now.above(cell) for cell in range(now.graph.cells)]
-        pairs = [(cell, to) for cell, to in enumerate(above) if 0 <= to < now.graph.sink]
+        pairs = [(cell, to) for cell, to in enumerate(now.hop) if 0 <= to < now.graph.sink]
         ways.add(at, np.array(pairs, np.int64).reshape(-1, 2))
     for name, changes in colours.items():
         if changes.rows:
@@ -114,21 +114,11 @@ class _Changes:
 
 def _ports_and_loads(now: States) -> tuple[list[int], list[int]]:
     """Per cell the interface port that its chain leads to, -1 none; how many cells send over it."""
-    graph = now.graph
-    port, load = [-1] * graph.cells, [0] * graph.cells
-    order = sorted((hops, cell) for cell, hops in enumerate(now.hops) if hops > 0)
-    for _, cell in order:
-        above = now.above(cell)
-        if above == graph.sink:
-            port[cell] = graph.port_of(graph.peer[graph.end(cell, now.parent[cell])])
-        else:
-            port[cell] = port[above]
-    for _, cell in reversed(order):
-        load[cell] += 1
-        above = now.above(cell)
-        if above < graph.sink:
-            load[above] += load[cell]
-    return port, load
+    load = [int(hops > 0) for hops in now.hops]
+    for cell in sorted(range(len(load)), key=lambda cell: -now.hops[cell]):
+        if now.hops[cell] > 1:
+            load[now.hop[cell]] += load[cell]
+    return interfaces_along(now.graph, np.array(now.parent, np.int64)).tolist(), load
 
 
 def _strips(

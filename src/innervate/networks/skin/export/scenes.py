@@ -3,21 +3,8 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from innervate.export import schemas
-from innervate.export.scenes import (
-    BLUE,
-    DARK,
-    LINE_PAIRS,
-    ORANGE,
-    STEP_US,
-    YELLOW,
-    Channel,
-    Message,
-    ball,
-    entity,
-    lines,
-    stamp,
-)
+from innervate.export import scenes, schemas
+from innervate.export.scenes import Channel, Message, ball, entity, lines, stamp
 from innervate.networks.skin.export.states import States
 
 FORCE_MAX_MN = 3000
@@ -27,7 +14,7 @@ def channels(plan: Any, tables: Mapping[str, Any]) -> list[Channel]:
     """What there is to show; tables are polars frames by name."""
 
     def told(make: Callable[[int, States], Any]) -> Iterator[Message]:
-        states = States(plan, tables, STEP_US)
+        states = States(plan, tables, scenes.STEP_US)
         return ((at, make(at, now)) for at, now in states.snapshots())
 
     found = [
@@ -66,15 +53,12 @@ def _balls(at: int, now: States) -> Any:
     known = now.known(at)
     balls, ways = [], []
     for cell, place in enumerate(now.places):
-        colour = BLUE if now.hops[cell] >= 0 else ORANGE
+        colour = scenes.BLUE if now.hops[cell] >= 0 else scenes.ORANGE
         share = min(1.0, now.force[cell] / FORCE_MAX_MN) if known[cell] else 0.0
-        mixed = tuple((1 - share) * a + share * b for a, b in zip(colour, YELLOW, strict=True))
-        balls.append(ball(place, 0.012, mixed))
-        above = now.above(cell)
-        if 0 <= above < now.graph.sink:
-            ways += [place, now.places[above]]
-    return {
-        "deletions": [],
-        "entities": [entity(at, "cells", spheres=balls),
-                     entity(at, "parents", lines=[lines(LINE_PAIRS, 0.002, DARK, ways)])],
-    }  # fmt: skip
+        pairs = zip(colour, scenes.YELLOW, strict=True)
+        balls.append(ball(place, 0.012, tuple((1 - share) * a + share * b for a, b in pairs)))
+        if 0 <= now.hop[cell] < now.graph.sink:
+            ways += [place, now.places[now.hop[cell]]]
+    strips = [lines(scenes.LINE_PAIRS, 0.002, scenes.DARK, ways)]
+    entities = [entity(at, "cells", spheres=balls), entity(at, "parents", lines=strips)]
+    return {"deletions": [], "entities": entities}

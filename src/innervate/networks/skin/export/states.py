@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
+from innervate.analysis.ways import NOWHERE, follow
+from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.topology.layout import cell_places
 
 TOUCH_WINDOW_US = 100_000
@@ -17,6 +21,7 @@ class States:
 
     Attributes:
         parent: per cell the port of its parent, -1 none.
+        hop: per cell the node that its parent's port leads to, -1 none; the PC is behind the last.
         hops: per cell hops to the PC, -1 without a chain of parents that leads there.
         unrouted: how many cells that cables reached had no route, by the run's own account.
         cut_off: how many cells were on, but joined with the PC by no cable.
@@ -34,6 +39,7 @@ class States:
         self.unrouted = self.cut_off = 0
         self.force, self.proximity = [0] * cells, [0] * cells
         self.heard = [-TOUCH_WINDOW_US - 1] * cells
+        self.hop: list[int] = []
         self.hops: list[int] = []
         self.places = places_m(self.graph)
         self.routes = iter(tables["routes"].select("time_us", "cell", "new").iter_rows())
@@ -62,7 +68,7 @@ class States:
                     take(*row)
                     row = next(rows, None)
                 waiting[i] = row
-            self.hops = self._hops()
+            self._follow()
             yield at, self
 
     def _route(self, _time: int, cell: int, new: int) -> None:
@@ -75,28 +81,10 @@ class States:
         self.heard[cell], self.proximity[cell] = time, proximity
         self.force[cell] = round(sum(forces) / 3)
 
-    def above(self, cell: int) -> int:
-        """The parent of a cell, -1 none; the PC is the node behind the last cell."""
-        port = self.parent[cell]
-        end = self.graph.peer[self.graph.end(cell, port)] if port >= 0 else -1
-        return -1 if end < 0 else int(self.graph.node_of(end))
-
-    def _hops(self) -> list[int]:
-        """Hops of every cell to the PC; -1 without a chain of parents that leads there."""
-        sink = self.graph.sink
-        hops = {sink: 0, -1: -1}
-        for cell in range(sink):
-            way = []
-            node = cell
-            while node not in hops:
-                way.append(node)
-                hops[node] = -1  # a ring leads nowhere
-                node = self.above(node)
-            count = hops[node]
-            for above in reversed(way):
-                count = count + 1 if count >= 0 else -1
-                hops[above] = count
-        return [hops[cell] for cell in range(sink)]
+    def _follow(self) -> None:
+        hop = next_hops(self.graph, np.array(self.parent, np.int64))
+        _, far = follow(hop, hop == self.graph.sink)
+        self.hop, self.hops = hop.tolist(), np.where(far == NOWHERE, NOWHERE, far + 1).tolist()
 
     def known(self, at: int) -> list[bool]:
         """Per cell whether the PC heard of it lately."""

@@ -3,6 +3,8 @@
 from datetime import datetime
 from typing import Any
 
+from innervate.kernel.words import number_of
+
 SOCKETS = ("W", "E", "up", "down")
 
 
@@ -12,7 +14,7 @@ def lines(told: dict[str, Any]) -> list[str]:
         return [f"  cells per interface port: {told['cells']}"]
     way = "no route"
     if told["parent"] is not None:
-        way = f"by port {_sockets(told)[told['parent']]}, {_hops(told['dist'])}"
+        way = f"by port {_sockets(told)[told['parent']]}, {number_of(told['dist'], 'hop')}"
     return [f"  to the PC: {way}, load {told['load']}"]
 
 
@@ -38,7 +40,7 @@ def command_text(command: dict[str, Any]) -> str:
     whom = "all cells" if command["to_all"] else "this cell"
     return (
         f"{_time(command['time_us'])} command {command['number']} for {whom}: code "
-        f"{command['code']}, value {command['value']}, {_hops(command['hops'])}"
+        f"{command['code']}, value {command['value']}, {number_of(command['hops'], 'hop')}"
     )
 
 
@@ -50,11 +52,7 @@ def touch_text(touch: dict[str, Any]) -> str:
     """A sample, with the time at which the PC received it."""
     force = " ".join(str(value) for value in touch["force"])
     return (
-        f"{_time(touch['time_us'])} seq {touch['seq']}, {_hops(touch['hops'])}, "
+        f"{_time(touch['time_us'])} seq {touch['seq']}, {number_of(touch['hops'], 'hop')}, "
         f"interface {touch['port']}, proximity {touch['proximity']}, force {force} mN, "
         f"{20 + touch['temperature'] / 2:g} degC"
     )
-
-
-def _hops(count: int) -> str:
-    return f"{count} hop{'' if count == 1 else 's'}"

@@ -10,22 +10,8 @@ import numpy as np
 from innervate.networks.skin.analysis.rows import broken_changes, parent_changes
 from innervate.networks.skin.papers import warm_up
 from innervate.networks.skin.papers.common import plan_of, seeds_of, simulated
-from innervate.papers import cabled
+from innervate.papers import cabled, jobs
 from innervate.papers.experiment import Claim, verdict
-from innervate.papers.jobs import (
-    MEDIAN,
-    MOST,
-    TAIL,
-    TOTAL,
-    Case,
-    Column,
-    Compared,
-    Entry,
-    Given,
-    Job,
-    Words,
-    entries,
-)  # fmt: skip
 from innervate.sim.cables.wires import BLOCKS, SENT
 
 JOB = "skin"
@@ -38,21 +24,21 @@ SETTLE, WATCH = 100, 200
 CALM_SETTLE = 1_000  # periods until the load is balanced
 STATIC_WATCH = 700  # its dead time of 2 s, and what comes before and after
 RECOVERY = (
-    Column("found (ms)", "detected_ms", MEDIAN),
-    Column("all have a way (ms)", "routed_ms", MEDIAN),
-    Column("90 % (ms)", "routed_ms", TAIL),
-    Column("cells without, most", "without", MEDIAN, 0),
-    Column("cell seconds without", "without_s", MEDIAN, 2),
-    Column("loops, all runs", "loops", TOTAL, 0),
+    jobs.Column("found (ms)", "detected_ms", jobs.MEDIAN),
+    jobs.Column("all have a way (ms)", "routed_ms", jobs.MEDIAN),
+    jobs.Column("90 % (ms)", "routed_ms", jobs.TAIL),
+    jobs.Column("cells without, most", "without", jobs.MEDIAN, 0),
+    jobs.Column("cell seconds without", "without_s", jobs.MEDIAN, 2),
+    jobs.Column("loops, all runs", "loops", jobs.TOTAL, 0),
 )
 CALM = (
-    Column("start-up (ms)", "start_ms", MEDIAN),
-    Column("90 % (ms)", "start_ms", TAIL),
-    Column("control bit/s a cable", "bits_per_s", MEDIAN, 0),
-    Column("busiest port's share", "largest_share", MEDIAN, 2),
-    Column("cell seconds without, later", "without_s", MEDIAN, 2),
-    Column("loops, all runs", "loops", TOTAL, 0),
-    Column("cells without later, most of all", "without", MOST, 0),
+    jobs.Column("start-up (ms)", "start_ms", jobs.MEDIAN),
+    jobs.Column("90 % (ms)", "start_ms", jobs.TAIL),
+    jobs.Column("control bit/s a cable", "bits_per_s", jobs.MEDIAN, 0),
+    jobs.Column("busiest port's share", "largest_share", jobs.MEDIAN, 2),
+    jobs.Column("cell seconds without, later", "without_s", jobs.MEDIAN, 2),
+    jobs.Column("loops, all runs", "loops", jobs.TOTAL, 0),
+    jobs.Column("cells without later, most of all", "without", jobs.MOST, 0),
 )
 
 
@@ -67,13 +53,13 @@ def cables(setup: str) -> list[list[str]]:
     return [[end(a), end(b)] for a, b in graph.links()]
 
 
-def cases(quick: bool) -> list[Case]:
+def cases(quick: bool) -> list[jobs.Case]:
     """Every setup, with and without loss, everything that can happen."""
     setups = list(SETUPS)[: 1 if quick else None]
     return [case(*one, quick) for one in product(setups, LOSSES, HARMS)]
 
 
-def case(setup: str, loss: float, harm: str, quick: bool) -> Case:
+def case(setup: str, loss: float, harm: str, quick: bool) -> jobs.Case:
     """One setting, as a case."""
     settle = CALM_SETTLE if harm == "none" else SETTLE
     given = {"cables": cables(setup), "beacon_us": BEACON_US, "k": K, "loss": loss, "harm": harm,
@@ -82,10 +68,10 @@ def case(setup: str, loss: float, harm: str, quick: bool) -> Case:
     name = f"{setup}, loss {loss:g}, {harm}, {BEACON_US} us, k={K}, {settle} + {WATCH} periods"
     # With loss, links are found down all the time, whatever was cut.
     columns = CALM if harm == "none" else RECOVERY[1:] if loss else RECOVERY
-    return Case(name, said, given, seeds_of(3 if quick else 60), columns)
+    return jobs.Case(name, said, given, seeds_of(3 if quick else 60), columns)
 
 
-def measure(given: Given, seed: int, **protocol: Any) -> dict[str, Any]:
+def measure(given: jobs.Given, seed: int, **protocol: Any) -> dict[str, Any]:
     """One run of a case under a rule."""
     if protocol.get("rule") == "static":
         given = {**given, "watch": STATIC_WATCH}
@@ -116,9 +102,9 @@ def measure(given: Given, seed: int, **protocol: Any) -> dict[str, Any]:
     return cabled.measured(given, harm, moved, downs, sent)
 
 
-def entry(name: str, what: str, **protocol: Any) -> Entry:
+def entry(name: str, what: str, **protocol: Any) -> jobs.Entry:
     """An entry that is the skin, in some setting."""
-    return Entry(JOB, name, what, partial(measure, **protocol), warm_up, 0.2)
+    return jobs.Entry(JOB, name, what, partial(measure, **protocol), warm_up, 0.2)
 
 
 ENTRIES = (
@@ -156,7 +142,7 @@ NO_TIES = (
 )
 
 
-def judge(compared: Compared) -> Iterator[Claim]:
+def judge(compared: jobs.Compared) -> Iterator[Claim]:
     """Setup by setup, with and without loss."""
     for place, group in groupby(compared.cases(), lambda case: case.title.partition(":")[0]):
         cases = {case.given["harm"]: case for case in group}
@@ -166,8 +152,8 @@ def judge(compared: Compared) -> Iterator[Claim]:
     yield _loops(compared)
 
 
-def _recovery(compared: Compared, place: str, cases: dict[str, Case]) -> Iterator[Claim]:
-    known = {one.name: one for one in entries(compared.job.name)}
+def _recovery(compared: jobs.Compared, place: str, cases: dict[str, jobs.Case]) -> Iterator[Claim]:
+    known = {one.name: one for one in jobs.entries(compared.job.name)}
     for ours, other, words, why in (
         (OURS, RFC, "at the same beacon rate, with k = 5,", SLOW_TO_FIND),
         (FAST, RFC, "at the same beacon rate, with k = 2,", NOTHING_TO_DO),
@@ -175,11 +161,11 @@ def _recovery(compared: Compared, place: str, cases: dict[str, Case]) -> Iterato
         (OURS, STATIC, "with the same time to find a failure", ""),
     ):
         claim = f'{place}: {words} all cells of "{ours}" have a way again sooner than of "{other}"'
-        yield compared.less(cases, "routed_ms", (known[ours], known[other]), Words(claim, why))
+        yield compared.less(cases, "routed_ms", (known[ours], known[other]), jobs.Words(claim, why))
 
 
-def _calm(compared: Compared, place: str, calm: dict[str, Case]) -> Iterator[Claim]:
-    known = {one.name: one for one in entries(compared.job.name)}
+def _calm(compared: jobs.Compared, place: str, calm: dict[str, jobs.Case]) -> Iterator[Claim]:
+    known = {one.name: one for one in jobs.entries(compared.job.name)}
     for name, words, why, digits in (
         ("start_ms", "starts up sooner", LISTENS, 1),
         ("bits_per_s", "sends less control", WAVES, 0),
@@ -187,13 +173,13 @@ def _calm(compared: Compared, place: str, calm: dict[str, Case]) -> Iterator[Cla
     ):
         claim = f'{place}: "{OURS}" {words} than "{RFC}"'
         pair = known[OURS], known[RFC]
-        yield compared.less(calm, name, pair, Words(claim, why, digits))
+        yield compared.less(calm, name, pair, jobs.Words(claim, why, digits))
 
 
-def _loops(compared: Compared) -> Claim:
+def _loops(compared: jobs.Compared) -> Claim:
     found = {
         entry.name: sum(sum(compared.values(case, entry, "loops")) for case in compared.cases())
-        for entry in entries(compared.job.name)
+        for entry in jobs.entries(compared.job.name)
     }
     runs = sum(len(case.seeds) for case in compared.cases())
     said = ", ".join(f"{name} {count:.0f}" for name, count in found.items())
@@ -204,7 +190,7 @@ def _loops(compared: Compared) -> Claim:
 
 
 JOBS = (
-    Job(
+    jobs.Job(
         JOB,
         "Cells that want to reach the PC while cables fail",
         "Until all cells have a way again, from the failure on; a dot a run, the median and its "

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.recovery import next_hops
-from innervate.networks.skin.analysis.rows import loop_episodes, parent_changes
+from innervate.networks.skin.analysis.rows import loop_episodes, parent_changes, parents
 from innervate.networks.skin.papers.common import RULES, Case, Rule, seeds_of
 from innervate.networks.skin.plot.history import Moment
 from innervate.networks.skin.plot.map import route_map
@@ -81,10 +81,9 @@ def picture() -> dict[str, Any]:
 def _parents(result: Any, behind: int) -> list[int]:
     """Parent port of every cell after the first `behind` rows."""
     changes = parent_changes(result)
-    parent = np.full(result.plan.graph.cells, NONE, np.int64)
     first = int(np.searchsorted(changes.row, behind))
-    parent[changes.cell[:first]] = changes.new[:first]
-    return [int(port) for port in parent]
+    found: list[int] = parents(changes, result.plan.graph.cells, first).tolist()
+    return found
 
 
 def _ring(graph: Any, parents: list[int], start: int) -> list[int]:

@@ -88,14 +88,7 @@ class History:
         graph = self.graph
         down, dead, lost = self._damage(time_us)
         behind = int(np.searchsorted(self._changes.time_us, time_us, "right"))
-        parent = np.full(graph.cells, NONE, np.int64)
-        # Of several values for one place NumPy keeps the last.
-        parent[self._changes.cell[:behind]] = self._changes.new[:behind]
-        changed = np.full(graph.cells, -1, np.int64)
-        changed[self._changes.cell[:behind]] = self._changes.row[:behind]
-        for cell, row in lost.items():
-            if changed[cell] < row:
-                parent[cell] = NONE
+        parent = rows.parents(self._changes, graph.cells, behind, lost)
         live = parent.copy()
         for end in down:
             for one in (end, graph.peer[end]):

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.plot import binned
 from innervate.networks.skin.plot.history import Moment, hops_of
 from innervate.networks.skin.plot.sheet import NEAR, PLUGS_MAX, Sheet
@@ -86,8 +87,7 @@ def _tip(sheet: Sheet, moment: Moment, hops: Any, cell: int) -> str:
         return f"{name}: switched off"
     if server < 0:
         return f"{name}: no way to the PC"
-    plural = "s" if hops[cell] != 1 else ""
-    return f"{name}: {int(hops[cell])} hop{plural}, through port {server}"
+    return f"{name}: {number_of(int(hops[cell]), 'hop')}, through port {server}"
 
 
 def _cells(drawing: svg.Drawing, sheet: Sheet, kinds: list[str], tips: list[str]) -> None:

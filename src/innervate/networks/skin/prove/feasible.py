@@ -6,19 +6,15 @@ sent, and has to end in such a state. What neighbours meanwhile do to it is a st
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 from innervate.dialect.outbox import REPORT
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import constants as const
-from innervate.networks.skin.prove.neighbours import Cell, View, invariants, true_ghosts
+from innervate.networks.skin.prove import neighbours as near
+from innervate.networks.skin.prove.neighbours import Cell, Rule, View
 from innervate.prove.steps import Goal, Step, own_goals, sent
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
-
-ENTRY = "innervate.networks.skin.protocol.cell"
-Known = dict[str, Any]
-
 
 OTHERS = {  # kinds of frames that are no beacons
     "a cell is given data": (const.DATA, const.DATA),
@@ -29,112 +25,58 @@ OTHERS = {  # kinds of frames that are no beacons
 
 def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """All that can happen to a cell."""
-    known = source(ENTRY, change)
+    play, hears = partial(RULE.play, source(near.ENTRY, change)), near.EVENTS[near.HEARS]
     return (
-        *(partial(make, known) for make in (start, hear, tick, soon)),
-        *(partial(other, known, name) for name in OTHERS),
-        partial(sample, known),
+        partial(play, near.STARTS, _started),
+        partial(play, near.HEARS, _kept),
+        partial(play, near.TICKS, _ticked),
+        partial(play, near.TELLS, _kept, more=lambda view: view.is_(view.soon, 1)),
+        *(partial(play, name, _kept, hears, kinds) for name, kinds in OTHERS.items()),
+        partial(play, "a cell reads its sensors", _kept, ("on_input", const.SAMPLE, "frame")),
     )
 
 
-def facts(view: View) -> list[Term]:
-    """What is known of a cell before any event."""
-    return [goal.holds for goal in invariants(view)] + [view.windowed(), true_ghosts(view)]
-
-
-def start(known: Known) -> Step:
-    """Switched on, for the first time or anew."""
-    cell = Cell(known, const.RULE_FEASIBLE)
-    t, view = cell.stage.terms, cell.view(cell.stage.store)
-    assumed = [view.windowed(), true_ghosts(view)]
-    step = cell.play("a cell is switched on", "on_start", ["cause"], assumed)
-    after = cell.view(step.after)
-    k = after.param("k")
-    least = t.add(t.add(k, t.number(3)), t.div(k, t.number(8)))
-    again = view.is_(t.unknown("cause", 0, 1), const.MEMORY_LOST)
-    step.goals = [
-        *_always(cell, step),
-        Goal("W1 after a restart it waits for k + 3 + k/8 periods",
-             t.implies(again, t.at_most(least, after.wait))),
-        Goal("W2 it knows nothing", t.all(view.is_(after.fd_known, 0), view.is_(after.hold, 0),
-                                          view.is_(after.parent, const.NONE))),
-    ]  # fmt: skip
-    return step
-
-
-def _played(cell: Cell, name: str, handler: str, told: list[Any], *more: Term) -> Step:
-    """A handler is run that keeps the feasible distance; `more` is known than of any event."""
-    known = [*facts(cell.view(cell.stage.store)), *more]
-    step = cell.play(name, handler, told, known)
-    step.goals = [*_always(cell, step), *_kept(cell, step)]
-    return step
-
-
-def hear(known: Known) -> Step:
-    """A beacon comes in on any port, of those that its sender ever may have sent."""
-    cell = Cell(known, const.RULE_FEASIBLE)
-    cell.stage.fix(cell.frame, "kind", const.BEACON)
-    may = said_by(cell, cell.port)
-    return _played(cell, "a cell hears a beacon", "on_frame", ["port", "frame"], may)
-
-
-def said_by(cell: Cell, port: Term) -> Term:
-    """What a beacon on a port may say, given the neighbour there."""
-    stage = cell.stage
-    t, view = stage.terms, cell.view(stage.store)
-    route = stage.store[cell.frame, "sq", None], stage.store[cell.frame, "dist", None]
+def said_by(cell: Cell) -> Term:
+    """What a beacon may say that comes in, of those that its sender ever may have sent."""
+    t, store, view = cell.t, cell.stage.store, cell.view(cell.stage.store)
+    route = store[cell.frame, "sq", None], store[cell.frame, "dist", None]
     finite = t.less(route[1], t.number(const.INFINITY))
     parts = [t.implies(finite, view.in_window(route[0]))]
     for p, ghost in enumerate(cell.ghosts):
-        here = t.all(view.is_(port, p), finite)
+        here = t.all(view.is_(cell.port, p), finite)
         fd = ghost.sq, ghost.dist
         parts.append(t.implies(t.all(here, ghost.known), t.negated(view.nearer(route, fd))))
         parts.append(t.implies(here, t.any(ghost.known, ghost.old)))
     return t.all(*parts)
 
 
-def tick(known: Known) -> Step:
+def _started(cell: Cell, step: Step) -> list[Goal]:
+    """Switched on, for the first time or anew."""
+    t, after = cell.t, cell.view(step.after)
+    k = after.param("k")
+    least = t.add(t.add(k, t.number(3)), t.div(k, t.number(8)))
+    again = after.is_(t.unknown("cause", 0, 1), const.MEMORY_LOST)
+    return [
+        Goal("W1 after a restart it waits for k + 3 + k/8 periods",
+             t.implies(again, t.at_most(least, after.wait))),
+        Goal("W2 it knows nothing", t.all(after.is_(after.fd_known, 0), after.is_(after.hold, 0),
+                                          after.is_(after.parent, const.NONE))),
+    ]  # fmt: skip
+
+
+def _ticked(cell: Cell, step: Step) -> list[Goal]:
     """A cell's beacon period ends."""
-    cell = Cell(known, const.RULE_FEASIBLE)
-    stage = cell.stage
-    step = cell.play("a cell's period ends", "on_timer", [const.TICK],
-                     facts(cell.view(stage.store)))  # fmt: skip
-    before, after = cell.view(step.before), cell.view(step.after)
-    t = stage.terms
+    t, before, after = cell.t, cell.view(step.before), cell.view(step.after)
     lost = t.negated(before.has_parent())
     over = t.at_most(before.param("hold_periods"), t.add(before.hold, t.number(1)))
     counted = t.any(t.same(after.hold, t.add(before.hold, t.number(1))), before.is_(after.hold, 0),
                     t.all(before.has_parent(), t.same(after.hold, before.hold)))  # fmt: skip
-    step.goals = [
-        *_always(cell, step),
+    return [
         *_kept(cell, step, may_forget=t.all(lost, over)),
         Goal("F2 periods without a route are counted one by one", counted),
         Goal("W3 periods of waiting are counted one by one",
              t.at_most(t.sub(before.wait, t.number(1)), after.wait)),
     ]  # fmt: skip
-    return step
-
-
-def soon(known: Known) -> Step:
-    """The timer for a beacon that had to keep the gap."""
-    cell = Cell(known, const.RULE_FEASIBLE)
-    view = cell.view(cell.stage.store)
-    is_due = view.is_(view.soon, 1)
-    return _played(cell, "a cell announces what is new", "on_timer", [const.SOON], is_due)
-
-
-def other(known: Known, name: str) -> Step:
-    """A frame that is no beacon comes in on any port."""
-    cell = Cell(known, const.RULE_FEASIBLE)
-    kind = cell.stage.terms.unknown("frame.kind", *OTHERS[name])
-    cell.stage.store[cell.frame, "kind", None] = kind
-    return _played(cell, name, "on_frame", ["port", "frame"])
-
-
-def sample(known: Known) -> Step:
-    """A cell's own sensors were read."""
-    cell = Cell(known, const.RULE_FEASIBLE)
-    return _played(cell, "a cell reads its sensors", "on_input", [const.SAMPLE, "frame"])
 
 
 def _always(cell: Cell, step: Step) -> list[Goal]:
@@ -143,7 +85,7 @@ def _always(cell: Cell, step: Step) -> list[Goal]:
     t = step.terms
     return [
         *own_goals(step, ("cell",), const.TIMERS, const.PORTS),
-        *invariants(after),
+        *near.invariants(after),
         Goal("N no handler makes a number of its own", after.windowed()),
         Goal("B no beacon is nearer than its sender's fd", t.all(*_beacons(after, step))),
         Goal("C it tells its parent, and nobody else, that it is", t.all(*_told(after, step))),
@@ -207,3 +149,6 @@ def forgotten(step: Step) -> Term:
     told = [t.all(action.guard, t.same(action.a, t.number(const.REPORT_FORGET)))
             for action in step.machine.out.actions if action.kind == REPORT]  # fmt: skip
     return t.any(*told)
+
+
+RULE = Rule(const.RULE_FEASIBLE, near.invariants, View.windowed, said_by, _always)

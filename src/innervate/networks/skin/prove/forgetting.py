@@ -15,20 +15,19 @@ from typing import Any
 from innervate.dialect.source import Change, Function
 from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import ANY_RULE, ROOM
-from innervate.networks.skin.prove.reductions import STORED, Bare
+from innervate.networks.skin.prove.neighbours import ANY_RULE, ENTRY, ROOM
+from innervate.networks.skin.prove.reductions import LOADS, STORED, Bare
 from innervate.prove.execute import Machine
 from innervate.prove.records import Array, Call, Demand, Outbox, State, Store
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
 
-LOADS = frozenset({"load", "size", "own_load"})
 SAYS = frozenset({"dist", "sq", "child", "load", "size"})
-SAID, REFUSED, BROKEN = "says that it cannot be had", "says what the rule refuses", "does not work"
+NO_ROUTE, REFUSED = "says that it cannot be had", "says what the rule refuses"
+BROKEN = "does not work"
 PORT = 0  # ports are alike (mirror.py), so that one stands for all, and for all others the next
-QUESTIONS = {SAID: "is_usable", REFUSED: "is_allowed", BROKEN: "is_usable"}
+QUESTIONS = {NO_ROUTE: "is_usable", REFUSED: "is_allowed", BROKEN: "is_usable"}
 
 
 class Asked(Machine):
@@ -87,74 +86,74 @@ def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], 
     return tuple(
         partial(_dead, known, rule, PORT, parent, why)
         for parent in (const.NONE, PORT, PORT + 1)
-        for why in ((SAID, BROKEN) if rule == ANY_RULE else (REFUSED,))
-        if parent != PORT or why == SAID
+        for why in ((NO_ROUTE, BROKEN) if rule == ANY_RULE else (REFUSED,))
+        if parent != PORT or why == NO_ROUTE
     )
 
 
-class Runs:
+class Runs(Bare):
     """Runs of a cell one of whose ports is dead.
 
     Args:
         p: the port that is dead.
         parent: the cell's.
-        why: SAID, REFUSED or BROKEN.
+        why: NO_ROUTE, REFUSED or BROKEN.
     """
 
     def __init__(self, known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> None:
-        self.pair = Bare(known, rule)
-        self.known, self.rule, self.p, self.why = known, rule, p, why
-        self.t, self.stage, self.cell = self.pair.t, self.pair.stage, self.pair.cell
-        self.stage.fix(self.cell.cell, "parent", parent)
+        super().__init__(known, rule)
+        self.p, self.why = p, why
+        self.stage.fix(self.cell, "parent", parent)
         if parent == p:  # only until the next tick
-            self.stage.fix(self.cell.params, "updates", const.PERIODIC)
+            self.stage.fix(self.params, "updates", const.PERIODIC)
         if parent != const.NONE:
-            self.stage.fix(self.cell.cell, "wait", 0)  # I2
+            self.stage.fix(self.cell, "wait", 0)  # I2
         self.goals: list[Term] = []
 
     def dead(self, sq: Term, dist: Term, child: Term) -> Term:
         """Who says this is dead, unless a feasible distance is forgotten."""
-        t, view = self.t, self.pair.view(self.stage.store)
-        if self.why == SAID:
+        t, store = self.t, self.stage.store
+        view = self.view(store)
+        if self.why == NO_ROUTE:
             return t.any(view.is_(dist, const.INFINITY), view.is_(child, 1))
         if self.why == BROKEN:
             return t.negated(view.works(self.p))
-        asked = "nearer_than_fd" if self.rule == const.RULE_FEASIBLE else "later"
-        known = view.fd_known if self.rule == const.RULE_FEASIBLE else view.sq_known
-        args = [self.cell.cell, sq, dist] if self.rule == const.RULE_FEASIBLE else [sq, view.sq_own]
-        machine = Machine(self.known, t, Outbox(fields.FRAME, ROOM))
-        _, better = machine.run(asked, args, self.stage.store, t.true)
-        return t.all(view.is_(known, 1), t.negated(t.as_truth(better)))
+        if self.rule == const.RULE_FEASIBLE:
+            known, better = view.fd_known, self.asks("nearer_than_fd", [self.cell, sq, dist], store)
+        else:
+            known, better = view.sq_known, self.asks("later", [sq, view.sq_own], store)
+        return t.all(view.is_(known, 1), t.negated(better))
 
     def forgotten(self, store: Store) -> Store:
         """The same where the port has said "no route"; of one that is broken, any penalty of it."""
         words = {"dist": const.INFINITY, "sq": 0, "child": 0, "load": 0, "size": 0}
         found = dict(store)
         for name, value in words.items():
-            found[self.cell.cell, name, self.p] = self.t.number(value)
+            found[self.cell, name, self.p] = self.t.number(value)
         if self.why == BROKEN:
-            found[self.cell.cell, "pf", self.p] = self.t.unknown(
-                "other penalty", const.ONE, 2 * const.ONE
-            )
+            any_ = self.t.unknown("other penalty", const.ONE, 2 * const.ONE)
+            found[self.cell, "pf", self.p] = any_
         return found
 
-    def run(self, store: Store, handler: str, *told: Any) -> tuple[Store, Asked]:
+    def asked(self, store: Store, handler: str, *told: Any) -> tuple[Store, Asked]:
         """The values after a handler, where the question is answered."""
         event = " ".join([handler, *(str(one) for one in told if isinstance(one, int))])
         machine = Asked(self.known, self.t, QUESTIONS[self.why], self.p, event)
-        after, _ = self.pair.play(machine, store, handler, *told)
+        after, _ = self.by(machine, store, handler, *told)
         self.goals += [self.t.implies(one.guard, one.holds) for one in machine.demands
                        if one.where == machine.question]  # fmt: skip
         return after, machine
 
-    def compare(self, a: tuple[Store, Asked], b: tuple[Store, Asked]) -> None:
-        """Both runs leave the same, but for the port's words and for loads, and send the same."""
-        pair = self.pair
-        self.goals += [
-            pair.same_state(a[0], b[0], self.may_differ).holds,
-            pair.same_sent(a[1], b[1], (a[0], b[0]), LOADS).holds,
-            pair.same_drawn(a[1], b[1]).holds,
-        ]
+    def compare(self, handler: str, *told: Any) -> list[Store]:
+        """A handler leaves the same in both runs, but for the port's words and for loads."""
+        before = self.stage.store
+        (a, first), (b, second) = (
+            self.asked(store, handler, *told) for store in (before, self.forgotten(before))
+        )
+        state = self.same_state(a, b, self.may_differ)
+        same = (state, self.same_sent((a, first), (b, second)), self.same_drawn(first, second))
+        self.goals += [goal.holds for goal in same]
+        return [a, b]
 
     def may_differ(self, field: str, index: int | None) -> Term:
         """What is forgotten may differ: the port's words, and loads."""
@@ -165,39 +164,33 @@ class Runs:
 def _dead(known: dict[str, Any], rule: int, p: int, parent: int, why: str) -> Step:
     """What a dead port said decides nothing at a tick, and at no beacon."""
     two = Runs(known, rule, p, parent, why)
-    t, pair, cell = two.t, two.pair, two.cell
-    before = two.stage.store
-    view = pair.view(before)
+    t, view = two.t, two.view(two.stage.store)
     forgets = t.at_most(view.param("hold_periods"), t.add(view.hold, t.number(1)))
     now = two.dead(view.at("sq", p), view.at("dist", p), view.at("child", p))
-    ticks = [two.run(store, "on_timer", const.TICK) for store in (before, two.forgotten(before))]
-    two.compare(*ticks)
+    ticked = two.compare("on_timer", const.TICK)
     if why == REFUSED:
         two.goals = [t.any(forgets, one) for one in two.goals]
     if why == BROKEN:
-        works = t.any(*(pair.view(after).works(p) for after, _ in ticks))
+        works = t.any(*(two.view(after).works(p) for after in ticked))
         two.goals = [t.any(works, one) for one in two.goals]
     if p != parent:
-        two.compare(*(two.run(store, "on_timer", const.SOON)
-                      for store in (before, two.forgotten(before))))  # fmt: skip
+        two.compare("on_timer", const.SOON)
     for q in range(const.PORTS):
         if q != p:
-            two.compare(*(two.run(store, "on_frame", q, cell.frame)
-                          for store in (before, two.forgotten(before))))  # fmt: skip
+            two.compare("on_frame", q, "frame")
     two.goals = [t.implies(now, one) for one in two.goals]
     if p != parent:
         two.goals.append(_hears(two))
     words = f"a port {why}: {p}, the parent's {parent if parent >= 0 else 'none'}"
-    return pair.step(words, [Goal("it may be forgotten", t.all(*two.goals))])
+    return two.step(words, [Goal("it may be forgotten", t.all(*two.goals))])
 
 
 def _hears(two: Runs) -> Term:
     """A port that is not the parent's hears something dead: that is stored, and that is all."""
-    t, frame, before = two.t, two.cell.frame, two.stage.store
+    t, before = two.t, two.stage.store
     place = len(two.goals)
-    after, machine = two.run(before, "on_frame", two.p, frame)
+    after, machine = two.asked(before, "on_frame", two.p, "frame")
     asked, two.goals = two.goals[place:], two.goals[:place]
-    said = [before[frame, name, None] for name in ("sq", "dist", "parent")]
-    quiet = [t.negated(action.guard) for action in machine.out.actions]
-    same = two.pair.same_state(before, after, two.may_differ).holds
-    return t.implies(two.dead(*said), t.all(*asked, *quiet, same))
+    said = [before[two.frame, name, None] for name in ("sq", "dist", "parent")]
+    same = two.same_state(before, after, two.may_differ).holds
+    return t.implies(two.dead(*said), t.all(*asked, two.quiet(machine).holds, same))

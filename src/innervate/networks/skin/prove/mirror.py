@@ -16,11 +16,16 @@ from innervate.dialect.outbox import SEND, SET_TIMER
 from innervate.dialect.source import Change, Function
 from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import PORTS
-from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import ROOM
-from innervate.networks.skin.prove.reductions import HANDLERS, NOT_DRAWN, SAID, Bare
+from innervate.networks.skin.prove.neighbours import ENTRY, ROOM
+from innervate.networks.skin.prove.reductions import (
+    HANDLERS,
+    NOT_DRAWN,
+    Bare,
+    same_action,
+    same_state,
+)
 from innervate.prove.execute import Machine
-from innervate.prove.records import Action, Call, Demand, Outbox, Record, State, Store, name_of
+from innervate.prove.records import Call, Demand, Outbox, Record, State, Store, name_of
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
@@ -149,7 +154,7 @@ def _bare(known: dict[str, Any], rule: int) -> Bare:
     bare = Bare(known, rule)
     for p in range(PORTS):
         for field in ("load", "size"):  # none decides anything: reductions.py
-            bare.stage.fix(bare.cell.cell, field, 0, p)
+            bare.stage.fix(bare.cell, field, 0, p)
     return bare
 
 
@@ -158,18 +163,16 @@ def _choice(known: dict[str, Any], rule: int, how: str) -> Step:
     bare = _bare(known, rule)
     t, mirror, before = bare.t, Mirror(bare.t, ORDERS[how]), bare.stage.store
     first = First(known, t, True)
-    given = [bare.cell.cell, bare.cell.params, t.number(0)]
+    given = [bare.cell, bare.params, t.number(0)]
     after, _ = first.run(CHOICE, [*given, first.out], before, t.true)
     second = Second(first, mirror)
     image, _ = second.run(CHOICE, [*given, second.out], mirror.of_store(before), t.true)
     bare.machines = [first, second]
-    others = [t.same(before[key], after[key]) for key, _, _ in bare.cell.cell.places()
+    others = [t.same(before[key], after[key]) for key, _, _ in bare.cell.places()
               if key[1] not in (*CHOSEN, *NOT_DRAWN)]  # fmt: skip
     quiet = [t.negated(one.guard) for one in first.out.actions if one.kind in (SEND, SET_TIMER)]
     goals = [
-        Goal(MADE, _demanded(second)),
-        Goal("M2 the state is the image",
-             same_state(t, bare.cell.cell, mirror.of_store(after), image)),
+        *_image(bare, second, mirror.of_store(after), image),
         Goal("M4 a choice changes no more than the route, and sends nothing",
              t.all(*others, *quiet)),
     ]  # fmt: skip
@@ -179,33 +182,24 @@ def _choice(known: dict[str, Any], rule: int, how: str) -> Step:
 def _alike(known: dict[str, Any], rule: int, name: str, how: str) -> Step:
     """A handler, and the same with its ports in another order."""
     bare = _bare(known, rule)
-    t, mirror, before = bare.t, Mirror(bare.t, ORDERS[how]), bare.stage.store
-    handler, *told = HANDLERS[name]
-    images = {"port": mirror.of(bare.port), "frame": bare.cell.frame}
-    given = {"port": bare.port, "frame": bare.cell.frame}
-    first = First(known, t, False)
-    after, _ = bare.play(first, before, handler, *(given.get(one, one) for one in told))
-    second, other = Second(first, mirror), mirror.of_store(before)
-    image, _ = bare.play(second, other, handler, *(images.get(one, one) for one in told))
-    goals = [
-        Goal(MADE, _demanded(second)),
-        Goal("M2 the state is the image",
-             same_state(t, bare.cell.cell, mirror.of_store(after), image)),
-        Goal("M3 what is sent is the image", t.all(*_same_sent(t, mirror, (after, first),
-                                                               (image, second)))),
-    ]  # fmt: skip
+    mirror, before = Mirror(bare.t, ORDERS[how]), bare.stage.store
+    first = First(known, bare.t, False)
+    after, _ = bare.by(first, before, *HANDLERS[name])
+    second = Second(first, mirror)
+    bare.port = mirror.of(bare.port)
+    image, _ = bare.by(second, mirror.of_store(before), *HANDLERS[name])
+    sent = _same_sent(bare.t, mirror, (after, first), (image, second))
+    goals = [*_image(bare, second, mirror.of_store(after), image),
+             Goal("M3 what is sent is the image", bare.t.all(*sent))]  # fmt: skip
     return bare.step(f"{name}, where {how}", goals)
 
 
-def _demanded(second: Second) -> Term:
-    t = second.terms
-    return t.all(*(t.implies(one.guard, one.holds) for one in second.demands if one.what == MADE))
-
-
-def same_state(t: Terms, cell: Record, a: Store, b: Store) -> Term:
-    """A cell has the same values."""
-    return t.all(*(t.same(a[key], b[key]) for key, _, _ in cell.places()
-                   if key[1] not in NOT_DRAWN))  # fmt: skip
+def _image(bare: Bare, second: Second, wanted: Store, image: Store) -> list[Goal]:
+    """What was chosen, and all that is left behind, is the image."""
+    t = bare.t
+    demanded = [t.implies(one.guard, one.holds) for one in second.demands if one.what == MADE]
+    return [Goal(MADE, t.all(*demanded)),
+            Goal("M2 the state is the image", same_state(t, bare.cell, wanted, image))]  # fmt: skip
 
 
 def _same_sent(
@@ -223,16 +217,5 @@ def _same_sent(
             assert port is not None
             partner = images[place + mirror.order[port] - port]
             assert partner.a.value == mirror.order[port]
-        found.append(_same_action(t, (one[0], action), (other[0], partner)))
+        found.append(same_action(t, (one[0], action), (other[0], partner), any_port=True))
     return found
-
-
-def _same_action(t: Terms, a: tuple[Store, Action], b: tuple[Store, Action]) -> Term:
-    (store, one), (image, other) = a, b
-    alike = [t.same(one.b, other.b), t.same(one.c, other.c)]
-    if one.kind == SEND:
-        for name in SAID:
-            alike.append(t.same(store[one.frame, name, None], image[other.frame, name, None]))
-    else:
-        alike.append(t.same(one.a, other.a))
-    return t.all(t.same(one.guard, other.guard), t.implies(one.guard, t.all(*alike)))

@@ -5,20 +5,34 @@ one, and whether what this cell has of it may be older than that it forgot one. 
 how many cells there are, nor of how they are joined.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.dialect.arith import HALF16, MASK16
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.protocol.constants import INFINITY, NONE, ONE, PERIODIC, PORTS
+from innervate.prove.execute import Machine
 from innervate.prove.express import chosen
-from innervate.prove.records import Array, Record, Store, name_of
+from innervate.prove.records import Array, Outbox, Record, Store, name_of
 from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.terms import Term, Terms
 
+ENTRY = "innervate.networks.skin.protocol.cell"
 ROOM = 12  # a cell's outbox
 ANY_RULE = -1
+STARTS = "a cell is switched on"
+HEARS = "a cell hears a beacon"
+TICKS = "a cell's period ends"
+TELLS = "a cell announces what is new"
+# What the explorer has happen to a cell: a handler, and what it is told besides the time.
+EVENTS: dict[str, tuple[Any, ...]] = {
+    STARTS: ("on_start", "cause"),
+    HEARS: ("on_frame", "port", "frame"),
+    TICKS: ("on_timer", const.TICK),
+    TELLS: ("on_timer", const.SOON),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,8 +198,7 @@ def invariants(view: View) -> list[Goal]:
         Goal("I4 no route kept is nearer than its sender's fd", t.all(*kept)),
         Goal("I5 fd is strictly worse than the parent's", t.all(*behind)),
         Goal("I6 nothing is kept of who never had a route", t.all(*unheard)),
-        Goal("I7 the parent's port works",
-             t.implies(has, view.works(view.parent))),
+        Goal("I7 the parent's port works", t.implies(has, view.works(view.parent))),
     ]  # fmt: skip
 
 
@@ -213,7 +226,9 @@ class Cell:
     """A cell on a stage, with its parameters, a frame, a port and its neighbours."""
 
     def __init__(self, known: dict[str, Any], rule: int) -> None:
+        self.known = known
         self.stage = stage = Stage(known, fields.FRAME, ROOM)
+        self.t = stage.terms
         self.cell = stage.record("cell", fields.CELL)
         self.params = stage.record("params", fields.PARAMS)
         self.frame = stage.record("frame", fields.FRAME)
@@ -230,14 +245,72 @@ class Cell:
         """The cell with these values."""
         return View(self.stage.terms, self.cell, self.params, store, self.ghosts)
 
-    def play(self, name: str, handler: str, told: list[Any], facts: list[Term]) -> Step:
-        """Run a handler; "cause", "port" and "frame" among what it is told are any."""
-        stage = self.stage
-        cause = stage.terms.unknown("cause", 0, 1)
+    def arguments(self, told: Iterable[Any], out: Outbox) -> list[Any]:
+        """All that a handler is given; "cause", "port", "frame" among what it is told are any."""
+        cause = self.t.unknown("cause", 0, 1)
         given = {"cause": cause, "port": self.port, "frame": self.frame}
-        args = [given.get(one, one) for one in told]
-        whole = [self.cell, self.params, stage.clock(), *args, stage.out]
-        return stage.play(name, handler, whole, facts)
+        args = [self.t.number(one) if isinstance(one, int) else given.get(one, one) for one in told]
+        return [self.cell, self.params, self.stage.clock(), *args, out]
+
+    def asks(self, question: str, args: list[Any], store: Store) -> Term:
+        """What a function of the protocol answers, as a truth."""
+        _, answer = blank(self.known, self.t).run(question, args, store, self.t.true)
+        return self.t.as_truth(answer)
+
+
+def blank(functions: Any, terms: Terms) -> Machine:
+    """A machine with an empty outbox of a cell."""
+    return Machine(functions, terms, Outbox(fields.FRAME, ROOM))
+
+
+class Rule(NamedTuple):
+    """What is claimed of cells under a rule."""
+
+    number: int
+    invariants: Callable[[View], list[Goal]]  # hold of every cell between any two events
+    windowed: Callable[[View], Term]  # all numbers that may be compared are among those in use
+    said_by: Callable[[Cell], Term]  # what a beacon on the cell's port may say
+    always: Callable[[Cell, Step], list[Goal]]  # what every step has to leave behind
+
+    def facts(self, view: View) -> list[Term]:
+        """What is known of a cell before any event."""
+        held = [goal.holds for goal in self.invariants(view)]
+        return [*held, self.windowed(view), true_ghosts(view)]
+
+    def play(
+        self,
+        known: dict[str, Any],
+        name: str,
+        then: Callable[[Cell, Step], list[Goal]],
+        event: tuple[Any, ...] = (),
+        kinds: tuple[int, int] = (const.BEACON, const.BEACON),
+        more: Callable[[View], Term] | None = None,
+    ) -> Step:
+        """An event at a cell in any state.
+
+        Args:
+            known: the functions of the protocol.
+            name: of the step.
+            then: goals besides those of every step.
+            event: if it is none of EVENTS, such a one.
+            kinds: from which to which, of a frame that comes in.
+            more: what else is known before.
+        """
+        handler, *told = event or EVENTS[name]
+        cell = Cell(known, self.number)
+        view = cell.view(cell.stage.store)
+        if handler == "on_frame":
+            cell.stage.store[cell.frame, "kind", None] = cell.t.unknown("frame.kind", *kinds)
+        assumed = self.facts(view)
+        if handler == "on_start":
+            assumed = [self.windowed(view), true_ghosts(view)]
+        if handler == "on_frame" and kinds == (const.BEACON, const.BEACON):
+            assumed.append(self.said_by(cell))
+        if more is not None:
+            assumed.append(more(view))
+        step = cell.stage.play(name, handler, cell.arguments(told, cell.stage.out), assumed)
+        step.goals = [*self.always(cell, step), *then(cell, step)]
+        return step
 
 
 Moves = Callable[[View, Ghost, Ghost, int], Term]
@@ -259,18 +332,12 @@ def ghosts_after(cell: Cell, moves: Moves) -> tuple[list[Ghost], list[Term]]:
     return after, known
 
 
-def moved(
-    name: str,
-    rule: int,
-    moves: Moves,
-    facts: Callable[[View], list[Term]],
-    invariants: Callable[[View], list[Goal]],
-) -> Step:
+def moved(name: str, rule: Rule, moves: Moves) -> Step:
     """What some neighbour has moves: a rule's invariants of this cell stand."""
-    cell = Cell({}, rule)
+    cell = Cell({}, rule.number)
     stage = cell.stage
     after, known = ghosts_after(cell, moves)
     now = View(stage.terms, cell.cell, cell.params, stage.store, after)
-    goals = [*invariants(now), Goal("what neighbours have is true", true_ghosts(now))]
-    assumed = [*facts(cell.view(stage.store)), *known]
+    goals = [*rule.invariants(now), Goal("what neighbours have is true", true_ghosts(now))]
+    assumed = [*rule.facts(cell.view(stage.store)), *known]
     return Step(name, stage.machine, stage.records, stage.store, stage.store, assumed, goals)

@@ -6,18 +6,17 @@ changes nothing, and, by two runs of a handler side by side, that without balanc
 anything.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
 from innervate.dialect.outbox import SEND
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import constants as const
-from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.prove import feasible, strict
-from innervate.networks.skin.prove.neighbours import ROOM, Cell, View
+from innervate.networks.skin.prove.neighbours import ENTRY, Cell, blank
 from innervate.prove.execute import Machine
-from innervate.prove.records import Outbox, Store, name_of
+from innervate.prove.records import Action, Record, Store, name_of
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
@@ -28,59 +27,40 @@ HANDLERS = {"a beacon": ("on_frame", "port", "frame"), "a period": ("on_timer", 
             "the timer for news": ("on_timer", const.SOON)}  # fmt: skip
 NOT_DRAWN = frozenset({"rng", "choice", "asked"})
 SAID = ("kind", "dist", "sq", "load", "size", "parent")
+But = Callable[[str, int | None], Term]  # where a field, or an element of one, need not be equal
 
 
 def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """Every lemma that a reduced search under a rule rests on."""
-    known = source(feasible.ENTRY, change)
+    known = source(ENTRY, change)
     return (
         partial(_stored, known, rule),
         partial(_no_news, known, rule),
-        partial(_loads, known, rule, True),
-        partial(_loads, known, rule, False),
+        partial(_loads, known, rule, "a beacon"),
+        partial(_loads, known, rule, "a period"),
     )
 
 
-class Bare:
+class Bare(Cell):
     """A cell in any state, without balancing, that can be run twice."""
 
     def __init__(self, known: dict[str, Any], rule: int) -> None:
-        self.known = known
-        self.cell = Cell(known, rule)
-        self.stage = self.cell.stage
-        self.t = self.stage.terms
-        self.stage.fix(self.cell.frame, "kind", const.BEACON)
-        self.port = self.cell.port
-        self.clock = self.stage.clock()
+        super().__init__(known, rule)
+        self.rule = rule
+        self.stage.fix(self.frame, "kind", const.BEACON)
+        self.stage.fix(self.params, "balance_periods", 0)
         self.machines: list[Machine] = []
         self.facts: list[Term] = []
-        self.stage.fix(self.cell.params, "balance_periods", 0)
-
-    def view(self, store: Store) -> View:
-        """The cell with these values."""
-        return self.cell.view(store)
 
     def run(self, store: Store, handler: str, *told: Any) -> tuple[Store, Machine]:
         """The values after a handler, and the machine that ran it."""
-        return self.play(Machine(self.known, self.t, Outbox(fields.FRAME, ROOM)), store, handler,
-                         *told)  # fmt: skip
+        return self.by(blank(self.known, self.t), store, handler, *told)
 
-    def play(self, machine: Any, store: Store, handler: str, *told: Any) -> tuple[Store, Any]:
+    def by(self, machine: Any, store: Store, handler: str, *told: Any) -> tuple[Store, Any]:
         """The same by a machine of one's own."""
-        cell = self.cell
-        args = [self.t.number(one) if isinstance(one, int) else one for one in told]
-        given = [cell.cell, cell.params, self.clock, *args, machine.out]
-        after, _ = machine.run(handler, given, store, self.t.true)
+        after, _ = machine.run(handler, self.arguments(told, machine.out), store, self.t.true)
         self.machines.append(machine)
         return after, machine
-
-    def hear(self, store: Store) -> tuple[Store, Machine]:
-        """A beacon comes in on the port."""
-        return self.run(store, "on_frame", self.port, self.cell.frame)
-
-    def tick(self, store: Store) -> tuple[Store, Machine]:
-        """The cell's beacon period ends."""
-        return self.run(store, "on_timer", const.TICK)
 
     def step(self, name: str, goals: list[Goal], more: Iterable[Term] = ()) -> Step:
         """The runs as a step with goals."""
@@ -106,94 +86,104 @@ class Bare:
                  for (many, here), (others, there) in pairs]  # fmt: skip
         return Goal("as much is drawn", t.all(*parts))
 
-    def same_state(self, a: Store, b: Store, but: Callable[[str, int | None], Term]) -> Goal:
+    def same_sent(self, one: tuple[Store, Machine], other: tuple[Store, Machine]) -> Goal:
+        """All actions are equal, but for the loads that frames say."""
+        pairs = zip(one[1].out.actions, other[1].out.actions, strict=True)
+        said = [name for name in SAID if name not in LOADS]
+        alike = (same_action(self.t, (one[0], a), (other[0], b), said) for a, b in pairs)
+        return Goal("the same is sent", self.t.all(*alike))
+
+    def same_state(self, a: Store, b: Store, but: But) -> Goal:
         """All fields of the cell are equal, but where they need not be."""
-        t = self.t
-        parts = []
-        for key, _low, _high in self.cell.cell.places():
-            if key[1] not in NOT_DRAWN:
-                parts.append(t.any(but(key[1], key[2]), t.same(a[key], b[key])))
-        return Goal("the same state", t.all(*parts))
-
-    def same_sent(self, a: Machine, b: Machine, stores: tuple[Store, Store], but: Any) -> Goal:
-        """All actions are equal, but for some fields of frames."""
-        t = self.t
-        parts = []
-        for one, other in zip(a.out.actions, b.out.actions, strict=True):
-            parts.append(t.same(one.guard, other.guard))
-            alike = [t.same(one.a, other.a), t.same(one.b, other.b), t.same(one.c, other.c)]
-            if one.kind == SEND:
-                pairs = zip(one.frame.places(), other.frame.places(), strict=True)
-                alike += [t.same(stores[0][x], stores[1][y]) for (x, _, _), (y, _, _) in pairs
-                          if x[1] in SAID and x[1] not in but]  # fmt: skip
-            parts.append(t.implies(one.guard, t.all(*alike)))
-        return Goal("the same is sent", t.all(*parts))
+        return Goal("the same state", same_state(self.t, self.cell, a, b, but))
 
 
-def kept(bare: Bare, rule: int) -> list[Term]:
+def same_state(t: Terms, cell: Record, a: Store, b: Store, but: But | None = None) -> Term:
+    """A cell has the same values, but where it need not."""
+    return t.all(*(t.any(but(*key[1:]) if but else t.false, t.same(a[key], b[key]))
+                   for key, _, _ in cell.places() if key[1] not in NOT_DRAWN))  # fmt: skip
+
+
+def same_action(
+    t: Terms,
+    one: tuple[Store, Action],
+    other: tuple[Store, Action],
+    fields: Iterable[str] = SAID,
+    free: Mapping[str, Term] | None = None,
+    any_port: bool = False,
+) -> Term:
+    """Two actions, with the values behind them, are the same, and happen where the other does.
+
+    Of a frame those fields must be equal, but for where one of them is `free`; what is sent may go
+    to another port if it may to any.
+    """
+    (store, a), (image, b) = one, other
+    alike = [t.same(a.b, b.b), t.same(a.c, b.c)]
+    if not any_port or a.kind != SEND:
+        alike.append(t.same(a.a, b.a))
+    if a.kind == SEND:
+        for name in fields:
+            same = t.same(store[a.frame, name, None], image[b.frame, name, None])
+            alike.append(t.any((free or {}).get(name, t.false), same))
+    return t.all(t.same(a.guard, b.guard), t.implies(a.guard, t.all(*alike)))
+
+
+def kept(bare: Bare) -> list[Term]:
     """A rule's invariants of the cell's first state, and what it may be told on the port."""
-    view = bare.view(bare.stage.store)
-    if rule == const.RULE_FEASIBLE:
-        return [*feasible.facts(view), feasible.said_by(bare.cell, bare.port)]
-    return [*strict.facts(view), strict.said_by(bare.cell, bare.port)]
+    rule = feasible.RULE if bare.rule == const.RULE_FEASIBLE else strict.RULE
+    return [*rule.facts(bare.view(bare.stage.store)), rule.said_by(bare)]
 
 
 def _stored(known: dict[str, Any], rule: int) -> Step:
     """With periodic updates a beacon is stored, and that is all."""
-    pair = Bare(known, rule)
-    t, cell = pair.t, pair.cell
-    pair.stage.fix(cell.params, "updates", const.PERIODIC)
-    after, machine = pair.hear(pair.stage.store)
+    bare = Bare(known, rule)
+    t, before = bare.t, bare.stage.store
+    bare.stage.fix(bare.params, "updates", const.PERIODIC)
+    after, machine = bare.run(before, *HANDLERS["a beacon"])
 
     def may_differ(field: str, index: int | None) -> Term:
         if field in STORED and index is not None:
-            return t.same(pair.port, t.number(index))
+            return t.same(bare.port, t.number(index))
         return t.false
 
-    goals = [pair.same_state(pair.stage.store, after, may_differ), pair.quiet(machine)]
-    return pair.step("a beacon between ticks, periodic", goals)
+    goals = [bare.same_state(before, after, may_differ), bare.quiet(machine)]
+    return bare.step("a beacon between ticks, periodic", goals)
 
 
 def _no_news(known: dict[str, Any], rule: int) -> Step:
     """The timer for news that are none any more changes nothing but itself."""
-    pair = Bare(known, rule)
-    t = pair.t
-    view = pair.view(pair.stage.store)
-    after, machine = pair.run(pair.stage.store, "on_timer", const.SOON)
+    bare = Bare(known, rule)
+    t, before = bare.t, bare.stage.store
+    view = bare.view(before)
+    after, machine = bare.run(before, *HANDLERS["the timer for news"])
     own = t.pick(view.has_parent(), view.own_route()[1], t.number(const.INFINITY))
     more = [
         t.same(own, view.sent_dist),
         t.same(view.parent, view.sent_parent),
-        t.negated(view.is_(view.param("updates"), 2)),
+        t.negated(view.is_(view.param("updates"), const.WAVE)),
     ]
-    goals = [pair.same_state(pair.stage.store, after, lambda field, _: t.truth_of(field == "soon")),
-             pair.quiet(machine)]  # fmt: skip
-    return pair.step("the timer for news that are none", goals, more)
+    goals = [bare.same_state(before, after, lambda field, _: t.truth_of(field == "soon")),
+             bare.quiet(machine)]  # fmt: skip
+    return bare.step("the timer for news that are none", goals, more)
 
 
-def _loads(known: dict[str, Any], rule: int, hears: bool) -> Step:
+def _loads(known: dict[str, Any], rule: int, what: str) -> Step:
     """Without balancing no load and no size decides anything."""
-    pair = Bare(known, rule)
-    t, cell = pair.t, pair.cell
-    before = pair.stage.store
+    bare = Bare(known, rule)
+    t, before = bare.t, bare.stage.store
     other = {
         key: t.unknown(f"{name_of(key)}'", 0, 4095) if key[1] in LOADS else value
         for key, value in before.items()
     }
-    other[cell.cell, "own_load", None] = t.unknown("cell.own_load'", 1, 4095)
-    run = pair.hear if hears else pair.tick
-    (a, first), (b, second) = run(before), run(other)
-    goals = [pair.same_state(a, b, lambda field, _: t.truth_of(field in LOADS)),
-             pair.same_sent(first, second, (a, b), {"load", "size"}),
-             Goal("load 0 is the same", _none(t, (a, first), (b, second))),
-             pair.same_drawn(first, second)]  # fmt: skip
-    what = "a beacon" if hears else "a period"
-    return pair.step(f"{what} with other loads", goals, pair.drawn_alike(first, second))
-
-
-def _none(t: Terms, one: tuple[Store, Machine], other: tuple[Store, Machine]) -> Term:
-    """Beacons say load 0 in both runs, or in neither."""
+    other[bare.cell, "own_load", None] = t.unknown("cell.own_load'", 1, 4095)
+    (a, first), (b, second) = (bare.run(store, *HANDLERS[what]) for store in (before, other))
     none = [[t.same(store[action.frame, "load", None], t.number(0))
              for action in machine.out.actions if action.kind == SEND]
-            for store, machine in (one, other)]  # fmt: skip
-    return t.all(*(t.same(a, b) for a, b in zip(*none, strict=True)))
+            for store, machine in ((a, first), (b, second))]  # fmt: skip
+    goals = [
+        bare.same_state(a, b, lambda field, _: t.truth_of(field in LOADS)),
+        bare.same_sent((a, first), (b, second)),
+        Goal("load 0 is the same", t.all(*map(t.same, *none))),
+        bare.same_drawn(first, second),
+    ]
+    return bare.step(f"{what} with other loads", goals, bare.drawn_alike(first, second))

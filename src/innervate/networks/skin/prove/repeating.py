@@ -10,22 +10,13 @@ from typing import Any
 
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import constants as const
-from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import ROOM
-from innervate.networks.skin.prove.reductions import Bare, kept
-from innervate.prove.execute import Machine
-from innervate.prove.records import Outbox, Store
+from innervate.networks.skin.prove.neighbours import ENTRY, EVENTS, STARTS
+from innervate.networks.skin.prove.reductions import HANDLERS, Bare, kept
+from innervate.prove.records import Store
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
 
-EVENTS = {
-    "a cell is switched on": ("on_start", "cause"),
-    "a cell hears a beacon": ("on_frame", "port", "frame"),
-    "a cell's period ends": ("on_timer", const.TICK),
-    "a cell announces what is new": ("on_timer", const.SOON),
-}
 SAID = (("dist", "dist"), ("sq", "sq"), ("load", "load"), ("size", "size"), ("child", "parent"))
 
 
@@ -38,26 +29,23 @@ def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], 
     )
 
 
-def _pair(known: dict[str, Any], rule: int) -> Bare:
-    pair = Bare(known, rule)
-    pair.facts = kept(pair, rule)
-    any_ = pair.view(pair.stage.store).param("updates")  # what the facts speak of
-    pair.facts.append(pair.t.same(any_, pair.t.number(const.TRIGGERED)))
-    pair.stage.fix(pair.cell.params, "updates", const.TRIGGERED)
-    return pair
+def _triggered(known: dict[str, Any], rule: int) -> Bare:
+    """A cell with triggered updates of which the rule's invariants hold."""
+    bare = Bare(known, rule)
+    any_ = bare.view(bare.stage.store).param("updates")  # what the facts speak of
+    bare.facts = [*kept(bare), bare.t.same(any_, bare.t.number(const.TRIGGERED))]
+    bare.stage.fix(bare.params, "updates", const.TRIGGERED)
+    return bare
 
 
-def up_to_date(pair: Bare, store: Store, ports: Iterable[int] = range(const.PORTS)) -> list[Goal]:
+def up_to_date(bare: Bare, store: Store, ports: Iterable[int] = range(const.PORTS)) -> list[Goal]:
     """What holds of a cell's choice between any two events, as far as these ports go."""
-    t, view, cell = pair.t, pair.view(store), pair.cell
+    t, view = bare.t, bare.view(store)
 
     def asks(question: str, *args: Any) -> Term:
-        machine = Machine(pair.known, t, Outbox(fields.FRAME, ROOM))
-        _, answer = machine.run(question, [cell.cell, cell.params, *args], store, t.true)
-        return t.as_truth(answer)
+        return bare.asks(question, [bare.cell, bare.params, *args], store)
 
-    has, best = view.has_parent(), []
-    usable = []
+    has, best, usable = view.has_parent(), [], []
     for p in ports:
         can = t.all(asks("is_usable", t.number(p)), asks("is_allowed", t.number(p)))
         farther = t.all(has, t.at_most(view.at("dist", view.parent), view.at("dist", p)))
@@ -76,29 +64,24 @@ def up_to_date(pair: Bare, store: Store, ports: Iterable[int] = range(const.PORT
 
 def _kept(known: dict[str, Any], rule: int, name: str) -> Step:
     """A handler keeps the choice up to date."""
-    pair = _pair(known, rule)
-    before = pair.stage.store
-    handler, *told = EVENTS[name]
-    cause = pair.t.unknown("cause", 0, 1)
-    given = {"port": pair.port, "frame": pair.cell.frame, "cause": cause}
-    facts = [one.holds for one in up_to_date(pair, before) if handler != "on_start"]
-    after, _ = pair.run(before, handler, *(given.get(one, one) for one in told))
-    ports = range(
-        const.PORTS if handler == "on_start" else 1
-    )  # to all else ports are alike: mirror.py
-    return pair.step(name, up_to_date(pair, after, ports), facts)
+    bare = _triggered(known, rule)
+    before, starts = bare.stage.store, name == STARTS
+    facts = [] if starts else [one.holds for one in up_to_date(bare, before)]
+    after, _ = bare.run(before, *EVENTS[name])
+    ports = range(const.PORTS if starts else 1)  # to all else ports are alike: mirror.py
+    return bare.step(name, up_to_date(bare, after, ports), facts)
 
 
 def _repeated(known: dict[str, Any], rule: int) -> Step:
     """A beacon says what was heard last."""
     port = 0  # ports are alike (mirror.py)
-    pair = _pair(known, rule)
-    before, cell = pair.stage.store, pair.cell
-    pair.port = pair.t.number(port)
+    bare = _triggered(known, rule)
+    before = bare.stage.store
+    bare.port = bare.t.number(port)
     for field, said in SAID:
-        before[cell.frame, said, None] = before[cell.cell, field, port]
-    facts = [one.holds for one in up_to_date(pair, before)]
-    after, machine = pair.hear(before)
+        before[bare.frame, said, None] = before[bare.cell, field, port]
+    facts = [one.holds for one in up_to_date(bare, before)]
+    after, machine = bare.run(before, *HANDLERS["a beacon"])
     unread = {"heard"} if rule == const.RULE_FEASIBLE else {"heard", "fd_known", "fd_sq", "fd_dist"}
-    same = pair.same_state(before, after, lambda field, _: pair.t.truth_of(field in unread))
-    return pair.step("a port hears again what it heard last", [same, pair.quiet(machine)], facts)
+    same = bare.same_state(before, after, lambda field, _: bare.t.truth_of(field in unread))
+    return bare.step("a port hears again what it heard last", [same, bare.quiet(machine)], facts)

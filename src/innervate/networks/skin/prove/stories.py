@@ -13,8 +13,7 @@ from innervate.dialect.arith import HALF16, MASK16
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import fields
-from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import ROOM
+from innervate.networks.skin.prove.neighbours import ENTRY, ROOM
 from innervate.prove.records import Record, Store
 from innervate.prove.solve import Question
 from innervate.prove.steps import Goal, Stage, Step
@@ -43,14 +42,14 @@ def both_lose(change: Change | None = None, rule: int = const.RULE_PAPER) -> Cal
     return partial(_both_lose, source(ENTRY, change), rule)
 
 
-def goes_back(change: Change | None = None, rule: int = const.RULE_STRICT) -> Callable[[], Step]:
-    """B follows A and A the PC, whose next beacon has any number: then A's cable is cut."""
-    return partial(_goes_back, source(ENTRY, change), rule, False)
+def goes_back(
+    change: Change | None = None, rule: int = const.RULE_STRICT, only_rises: bool = False
+) -> Callable[[], Step]:
+    """B follows A and A the PC, whose next beacon has any number: then A's cable is cut.
 
-
-def rises(change: Change | None = None, rule: int = const.RULE_STRICT) -> Callable[[], Step]:
-    """The same where the PC's next number is no older."""
-    return partial(_goes_back, source(ENTRY, change), rule, True)
+    If it `only_rises`, that number is no older.
+    """
+    return partial(_goes_back, source(ENTRY, change), rule, only_rises)
 
 
 def _two(known: dict[str, Any], rule: int) -> Two:

@@ -11,8 +11,8 @@ from typing import Any
 
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol import constants as const
-from innervate.networks.skin.prove.feasible import ENTRY, forgotten
-from innervate.networks.skin.prove.neighbours import Cell, View, moved, true_ghosts
+from innervate.networks.skin.prove.feasible import forgotten
+from innervate.networks.skin.prove.neighbours import ENTRY, EVENTS, STARTS, Cell, Rule, View, moved
 from innervate.networks.skin.prove.system import again, forgets
 from innervate.prove.steps import Goal, Step, own_goals, sent
 from innervate.prove.terms import Term
@@ -21,15 +21,12 @@ from innervate.prove.theory import source
 
 def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """All that can happen to a cell, and to what it knows of its neighbours."""
-    known = source(ENTRY, change)
+    play = partial(RULE.play, source(ENTRY, change))
     moves = (("a neighbour's number rises", _rises), ("a neighbour loses its memory", forgets),
              ("a neighbour has a route again, after all gave it up", again))  # fmt: skip
     return (
-        partial(_play, known, "a cell is switched on", "on_start", ["cause"]),
-        partial(_play, known, "a cell hears a beacon", "on_frame", ["port", "frame"]),
-        partial(_play, known, "a cell's period ends", "on_timer", [const.TICK]),
-        partial(_play, known, "a cell announces what is new", "on_timer", [const.SOON]),
-        *(partial(moved, name, const.RULE_STRICT, how, facts, invariants) for name, how in moves),
+        *(partial(play, name, _started if name == STARTS else _kept) for name in EVENTS),
+        *(partial(moved, name, RULE, how) for name, how in moves),
     )
 
 
@@ -67,44 +64,25 @@ def windowed(view: View) -> Term:
     return view.windowed("sq_known", "sq_own")
 
 
-def facts(view: View) -> list[Term]:
-    """What is known of a cell before any event."""
-    return [goal.holds for goal in invariants(view)] + [windowed(view), true_ghosts(view)]
-
-
-def _play(known: dict[str, Any], name: str, handler: str, told: list[Any]) -> Step:
-    cell = Cell(known, const.RULE_STRICT)
-    stage, t = cell.stage, cell.stage.terms
-    stage.fix(cell.frame, "kind", const.BEACON)
-    view = cell.view(stage.store)
-    assumed = [windowed(view), true_ghosts(view)]
-    if handler != "on_start":
-        assumed = [*facts(view), *([said_by(cell, cell.port)] if "frame" in told else [])]
-    step = cell.play(name, handler, told, assumed)
-    step.goals = _goals(cell, step)
-    if handler == "on_start":
-        cause = t.unknown("cause", 0, 1)
-        waits = t.less(t.number(0), cell.view(step.after).wait)
-        step.goals += [Goal("W1 it waits after a restart",
-                            t.implies(view.is_(cause, const.MEMORY_LOST), waits))]  # fmt: skip
-    else:
-        step.goals += _kept(cell, step)
-    return step
-
-
-def said_by(cell: Cell, port: Term) -> Term:
-    """What a beacon on a port may say: nothing older than what was taken from there before."""
-    stage = cell.stage
-    t, view = stage.terms, cell.view(stage.store)
-    sq, dist = stage.store[cell.frame, "sq", None], stage.store[cell.frame, "dist", None]
+def said_by(cell: Cell) -> Term:
+    """What a beacon may say that comes in: nothing older than what was taken from there before."""
+    t, store, view = cell.t, cell.stage.store, cell.view(cell.stage.store)
+    sq, dist = store[cell.frame, "sq", None], store[cell.frame, "dist", None]
     finite = t.less(dist, t.number(const.INFINITY))
     parts = [t.implies(finite, view.in_window(sq))]
     for p, ghost in enumerate(cell.ghosts):
-        here = t.all(view.is_(port, p), finite)
+        here = t.all(view.is_(cell.port, p), finite)
         parts.append(t.implies(t.all(here, view.is_parent(p)), view.no_newer(view.sq_own, sq)))
         parts.append(t.implies(t.all(here, ghost.known), view.no_newer(sq, ghost.sq)))
         parts.append(t.implies(here, t.any(ghost.known, ghost.old)))
     return t.all(*parts)
+
+
+def _started(cell: Cell, step: Step) -> list[Goal]:
+    t, after = cell.t, cell.view(step.after)
+    again = after.is_(t.unknown("cause", 0, 1), const.MEMORY_LOST)
+    waits = t.less(t.number(0), after.wait)
+    return [Goal("W1 it waits after a restart", t.implies(again, waits))]
 
 
 def _goals(cell: Cell, step: Step) -> list[Goal]:
@@ -148,3 +126,6 @@ def _rises(view: View, old: Any, new: Any, p: int) -> Term:
     had = t.all(old.known, view.no_newer(old.sq, new.sq), t.same(old.old, new.old))
     had_none = t.all(t.negated(t.any(old.known, old.old)), t.negated(new.old))
     return t.all(new.known, t.any(had, had_none))
+
+
+RULE = Rule(const.RULE_STRICT, invariants, windowed, said_by, _goals)

@@ -12,8 +12,8 @@ from typing import Any
 from innervate.dialect.arith import MASK16
 from innervate.dialect.source import Change
 from innervate.networks.skin.protocol.constants import INFINITY, RULE_FEASIBLE
-from innervate.networks.skin.prove.feasible import ENTRY, facts
-from innervate.networks.skin.prove.neighbours import Cell, Ghost, View, invariants, moved, number
+from innervate.networks.skin.prove.feasible import RULE
+from innervate.networks.skin.prove.neighbours import ENTRY, Cell, Ghost, View, moved, number
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term
 from innervate.prove.theory import source
@@ -27,7 +27,7 @@ def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
              ("a neighbour has its first route", first),
              ("a neighbour has a route again, after all gave it up", again))  # fmt: skip
     return (
-        *(partial(moved, name, RULE_FEASIBLE, how, facts, invariants) for name, how in moves),
+        *(partial(moved, name, RULE, how) for name, how in moves),
         partial(compared, known),
         ring,
     )

@@ -20,7 +20,7 @@ from innervate.networks.skin.prove import (
 )
 from innervate.networks.skin.prove.faults import EXPLORERS
 from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
-from innervate.networks.skin.prove.neighbours import ANY_RULE, base_of
+from innervate.networks.skin.prove.neighbours import ANY_RULE, ENTRY, base_of
 from innervate.networks.skin.prove.words import tell
 from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
@@ -82,7 +82,7 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     Raises:
         ProveError: the mistake to plant is in none of the sources.
     """
-    if change is not None and not any(is_in(entry, change) for entry in (feasible.ENTRY, pc.ENTRY)):
+    if change is not None and not any(is_in(entry, change) for entry in (ENTRY, pc.ENTRY)):
         raise ProveError(f"{change[0]!r} is in no source that is proved")
     return [
         Theory("skin, the PC", "It announces distance 0 and its number, which only rises.",
@@ -135,7 +135,8 @@ def _stories(change: Change | None) -> list[Theory]:
         ("feasible, two cells", "both lose the PC and close no ring",
          stories.both_lose(change, const.RULE_FEASIBLE), ""),
         ("strict, the PC restarts", "two cells close no ring", stories.goes_back(change), back),
-        ("strict, the PC does not", "the same two close none", stories.rises(change), ""),
+        ("strict, the PC does not", "the same two close none",
+         stories.goes_back(change, only_rises=True), ""),
         ("feasible, the PC restarts", "the same two close none",
          stories.goes_back(change, const.RULE_FEASIBLE), ""),
     )  # fmt: skip

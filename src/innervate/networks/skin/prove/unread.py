@@ -11,19 +11,10 @@ from typing import Any
 
 from innervate.dialect.outbox import SEND, SET_TIMER
 from innervate.dialect.source import Change
-from innervate.networks.skin.protocol.constants import (
-    INFINITY,
-    NONE,
-    PERIODIC,
-    RULE_FEASIBLE,
-    RULE_STRICT,
-    TRIGGERED,
-    WAVE,
-)
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.prove import pc
-from innervate.networks.skin.prove.feasible import ENTRY
-from innervate.networks.skin.prove.neighbours import ANY_RULE, View
-from innervate.networks.skin.prove.reductions import HANDLERS, SAID, Bare, kept
+from innervate.networks.skin.prove.neighbours import ANY_RULE, ENTRY, View
+from innervate.networks.skin.prove.reductions import HANDLERS, Bare, kept, same_action
 from innervate.networks.skin.prove.repeating import up_to_date
 from innervate.prove.execute import Machine
 from innervate.prove.records import Store, name_of
@@ -46,22 +37,21 @@ class Twice(Bare):
     """
 
     def __init__(
-        self, known: dict[str, Any], rule: int, words: str, names: Iterable[str], port: int = NONE
+        self,
+        known: dict[str, Any],
+        rule: int,
+        words: str,
+        names: Iterable[str],
+        port: int = const.NONE,
     ) -> None:
         super().__init__(known, rule)
-        self.rule, self.words, self.names, self.dead = rule, words, frozenset(names), port
+        self.words, self.names, self.dead = words, frozenset(names), port
         self.store = dict(self.stage.store)
-        for key, low, high in self.cell.cell.places():
+        for key, low, high in self.cell.places():
             if key[1] in self.names and key[2] in (None, port):
                 self.store[key] = self.t.unknown(f"{name_of(key)}'", low, high)
         self.until = ""  # but for FREE, afterwards they may differ only where this is so
         self.unsent: frozenset[str] = frozenset()  # fields of beacons without a route
-
-    def played(self, handler: str, *told: Any) -> tuple[tuple[Store, Machine], ...]:
-        """A handler is run from both states."""
-        given = {"port": self.port, "frame": self.cell.frame}
-        args = [given.get(one, one) for one in told]
-        return tuple(self.run(store, handler, *args) for store in (self.stage.store, self.store))
 
     def may_differ(self, after: Store) -> Callable[[str, int | None], Term]:
         """What is different may stay so."""
@@ -73,7 +63,7 @@ class Twice(Bare):
         }[self.until]
 
         def says(field: str, index: int | None) -> Term:
-            if field in DISTANCE and self.rule == RULE_STRICT:
+            if field in DISTANCE and self.rule == const.RULE_STRICT:
                 return self.t.true
             if field not in self.names or index not in (None, self.dead):
                 return no
@@ -87,13 +77,11 @@ class Twice(Bare):
         for a, b in zip(one[1].out.actions, other[1].out.actions, strict=True):
             if a.kind not in (SEND, SET_TIMER) or (a.kind == SEND and a.a.value == self.dead):
                 continue
-            alike = [t.same(a.a, b.a), t.same(a.b, b.b), t.same(a.c, b.c)]
+            free: dict[str, Term] = {}
             if a.kind == SEND:
-                none = t.same(one[0][a.frame, "dist", None], t.number(INFINITY))
-                for name in SAID:
-                    same = t.same(one[0][a.frame, name, None], other[0][b.frame, name, None])
-                    alike.append(t.any(none, same) if name in self.unsent else same)
-            found.append(t.all(t.same(a.guard, b.guard), t.implies(a.guard, t.all(*alike))))
+                none = t.same(one[0][a.frame, "dist", None], t.number(const.INFINITY))
+                free = dict.fromkeys(self.unsent, none)
+            found.append(same_action(t, (one[0], a), (other[0], b), free=free))
         return t.all(*found)
 
 
@@ -103,11 +91,11 @@ Make = Callable[[dict[str, Any], int], Twice]
 def steps(rule: int, change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """Under any rule; or what more there is under one whose invariants hold."""
     known = source(ENTRY, change)
-    makes: list[Make] = [partial(_penalty, TRIGGERED)]
-    if rule == RULE_FEASIBLE:
+    makes: list[Make] = [partial(_penalty, const.TRIGGERED)]
+    if rule == const.RULE_FEASIBLE:
         makes += [_fields, _number]
     if rule == ANY_RULE:
-        makes = [_time, _fields, partial(_penalty, PERIODIC)]
+        makes = [_time, _fields, partial(_penalty, const.PERIODIC)]
     return (
         *(pc.unread(change) if rule == ANY_RULE else ()),
         *(partial(_same, make, known, rule, name) for make in makes for name in HANDLERS),
@@ -118,7 +106,9 @@ def _same(make: Make, known: dict[str, Any], rule: int, name: str) -> Step:
     """A handler does the same in both states."""
     twice = make(known, rule)
     t, before = twice.t, twice.view(twice.stage.store)
-    (a, first), (b, second) = twice.played(*HANDLERS[name])
+    (a, first), (b, second) = (
+        twice.run(store, *HANDLERS[name]) for store in (twice.stage.store, twice.store)
+    )
     goals = [
         twice.same_state(a, b, twice.may_differ(a)),
         Goal("the same is sent", twice.sent_alike((a, first), (b, second))),
@@ -146,18 +136,18 @@ def _fields(known: dict[str, Any], rule: int) -> Twice:
     twice = Twice(known, rule, "fields of other rules are other", [*DISTANCE, FREE])
     view = twice.view(twice.stage.store)
     twice.facts.append(not_wave(view))
-    if rule == RULE_FEASIBLE:
+    if rule == const.RULE_FEASIBLE:
         twice.facts.append(view.is_(view.fd_known, 0))
-        twice.store[twice.cell.cell, "fd_known", None] = view.fd_known
+        twice.store[twice.cell, "fd_known", None] = view.fd_known
         twice.until = NO_DISTANCE
     else:
-        twice.facts.append(view.t.negated(view.is_(view.param("rule"), RULE_FEASIBLE)))
+        twice.facts.append(view.t.negated(view.is_(view.param("rule"), const.RULE_FEASIBLE)))
     return twice
 
 
 def not_wave(view: View) -> Term:
     """The explorer's kinds of updates."""
-    return view.t.negated(view.is_(view.param("updates"), WAVE))
+    return view.t.negated(view.is_(view.param("updates"), const.WAVE))
 
 
 def _number(known: dict[str, Any], rule: int) -> Twice:
@@ -174,14 +164,15 @@ def _penalty(updates: int, known: dict[str, Any], rule: int) -> Twice:
     words = f"the penalty of a port is other, {('periodic', 'triggered')[updates]}"
     port, other = 0, 1  # ports are alike (mirror.py)
     twice = Twice(known, rule, words, ["pf", "heard"], port)
-    t, cell = twice.t, twice.cell.cell
+    t = twice.t
     twice.port = t.number(other)
     for store in (twice.stage.store, twice.store):
-        store[cell, "dist", port], store[cell, "child", port] = t.number(INFINITY), t.number(0)
+        store[twice.cell, "dist", port] = t.number(const.INFINITY)
+        store[twice.cell, "child", port] = t.number(0)
     view = twice.view(twice.stage.store)
     twice.facts.append(t.negated(view.is_parent(port)))
-    if updates == TRIGGERED:  # a choice is made anew, which is up to date
-        twice.facts += kept(twice, rule)
+    if updates == const.TRIGGERED:  # a choice is made anew, which is up to date
+        twice.facts += kept(twice)
         twice.facts += [one.holds for one in up_to_date(twice, twice.stage.store)]
     twice.facts.append(view.is_(view.param("updates"), updates))
     return twice

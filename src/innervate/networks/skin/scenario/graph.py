@@ -1,4 +1,6 @@
-"""From a scenario's tables to its graph."""
+"""From a scenario's tables to its graph, and to the nodes that they name."""
+
+from __future__ import annotations
 
 import re
 from collections.abc import Iterator
@@ -6,27 +8,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from innervate.networks.skin.scenario.model import (
-    BodyTable,
-    CellTable,
-    InterfaceTable,
-    SkinScenario,
-)
+from innervate import topology
+from innervate.networks.skin.scenario.model import BodyTable, CellTable, SkinScenario
+from innervate.scenario.errors import ScenarioError
 from innervate.scenario.lines import Key
 from innervate.scenario.load import Scenario
 from innervate.scenario.source import Source, dotted
-from innervate.topology import (
-    CELLS_MAX,
-    PORTS,
-    Graph,
-    TopologyError,
-    body_graph,
-    cells_from_urdf,
-    free_graph,
-    from_patches,
-    join_chain,
-    port_number,
-)
+from innervate.topology import PORTS, Graph, TopologyError
 
 WIRE_DEPTH = 254
 NAME_LENGTH = 300
@@ -48,19 +36,10 @@ def build_graph(scenario: Scenario) -> Graph:
         graph = _body(source, model.body)
     else:
         try:
-            graph = free_graph([(link.a, link.b) for link in model.link])
+            graph = topology.free_graph([(link.a, link.b) for link in model.link])
         except TopologyError as error:
             raise source.error(_key(error.subject), str(error)) from None
     return graph
-
-
-@contextmanager
-def _told_at(source: Source, key: Key, name: str = "") -> Iterator[None]:
-    """What the topology refuses inside is the error of a key; `name` if that is not the key's."""
-    try:
-        yield
-    except TopologyError as error:
-        raise source.error(key, f"{name or dotted(key)}: {error}") from None
 
 
 def check_reach(source: Source, graph: Graph, depths: list[int], max_depth: int) -> None:
@@ -95,42 +74,38 @@ def _key(subject: str) -> Key:
 
 def _patched(source: Source, model: SkinScenario) -> Graph:
     def shapes() -> Iterator[tuple[int, int, str]]:
-        cells = 0
+        cells, most = 0, topology.CELLS_MAX
         for index, patch in enumerate(model.patch):
             cells += patch.columns * patch.rows * patch.count
-            if cells > CELLS_MAX:
-                message = f"the skin has {cells:,} cells; at most {CELLS_MAX:,} can be simulated"
+            if cells > most:
+                message = f"the skin has {cells:,} cells; at most {most:,} can be simulated"
                 raise source.error(("patch", index), message)
             for _ in range(patch.count):
                 yield patch.columns, patch.rows, patch.wiring
 
-    graph = from_patches(shapes())
+    graph = topology.from_patches(shapes())
+    named = Named(source, graph)
     for index, cable in enumerate(model.cable):
         key: Key = ("cable", index)
-        a = end_at(source, graph, cable.a, (*key, "a"))
-        b = end_at(source, graph, cable.b, (*key, "b"))
-        with _told_at(source, key):
+        a, b = named.free_end(cable.a, (*key, "a")), named.free_end(cable.b, (*key, "b"))
+        with named.told_at(key):
             graph.connect(a, b)
     for index, interface in enumerate(model.interface):
-        _interface(source, graph, interface, ("interface", index))
-    _copies(source, graph, model)
+        key = ("interface", index)
+        cell = named.cell(interface, key)
+        with named.told_at(key, *(() if interface.port is None else ("port",))):
+            graph.add_interface(cell, interface.port)
+    _copies(named, model)
     return graph
 
 
-def _interface(source: Source, graph: Graph, interface: InterfaceTable, key: Key) -> None:
-    where = CellTable(patch=interface.patch, row=interface.row, column=interface.column)
-    cell = cell_at(source, graph, where, key)
-    with _told_at(source, key if interface.port is None else (*key, "port"), dotted(key)):
-        graph.add_interface(cell, interface.port)
-
-
-def _copies(source: Source, graph: Graph, model: SkinScenario) -> None:
+def _copies(named: Named, model: SkinScenario) -> None:
     """Join the copies that `count` makes, and give every n-th one an interface port."""
-    first = 0
+    graph, first = named.graph, 0
     for index, patch in enumerate(model.patch):
-        with _told_at(source, ("patch", index)):
+        with named.told_at(("patch", index)):
             if patch.joined:
-                join_chain(graph, first, patch.count)
+                topology.join_chain(graph, first, patch.count)
             for copy in range(0, patch.count, patch.interfaces_every or patch.count + 1):
                 if patch.interfaces_every:
                     there = graph.patches[first + copy]
@@ -140,9 +115,9 @@ def _copies(source: Source, graph: Graph, model: SkinScenario) -> None:
 
 def _body(source: Source, body: BodyTable) -> Graph:
     try:
-        names, places = cells_from_urdf(body.urdf, body.links, Path(source.folder), body.pitch_mm)
-        wanted = body.interfaces
-        return body_graph(names, places, body.reach_mm, wanted)
+        folder = Path(source.folder)
+        cells = topology.cells_from_urdf(body.urdf, body.links, folder, body.pitch_mm)
+        return topology.body_graph(*cells, body.reach_mm, body.interfaces)
     except TopologyError as error:
         key: Key = ("body", error.subject) if error.subject else ("body",)
         raise source.error(key, f"{dotted(key)}: {error}") from None
@@ -153,89 +128,99 @@ def numbered(what: str, count: int) -> str:
     return f"the only {what} is 0" if count == 1 else f"they are 0 to {count - 1}"
 
 
-def cell_at(source: Source, graph: Graph, where: CellTable | str, key: Key) -> int:
-    """Number of the cell that a table or a name means.
+class Named:
+    """The nodes and ports of a graph, as a scenario names them.
 
-    Raises:
-        ScenarioError: there is no such cell.
+    What is not there is a ScenarioError of the key that names it.
     """
-    if isinstance(where, str):
-        node, port = node_and_port(source, graph, where, key)
-        if node == graph.cells or port >= 0:
-            raise source.error(key, f'{dotted(key)}: "{where}" is not the name of a cell')
-        return node
-    if not graph.patches:
-        message = f'{dotted(key)}: this skin has no patches; name the cell, like node = "n1"'
-        raise source.error(key, message)
-    if where.patch >= len(graph.patches):
-        are = numbered("patch", len(graph.patches))
-        message = f"{dotted(key)}: there is no patch {where.patch}; {are}"
-        raise source.error((*key, "patch"), message)
-    try:
-        return graph.patches[where.patch].cell(where.row, where.column)
-    except TopologyError as error:
-        which = f" in patch {where.patch}" if len(graph.patches) > 1 else ""
-        raise source.error((*key, error.subject), f"{dotted(key)}{which}: {error}") from None
 
+    def __init__(self, source: Source, graph: Graph) -> None:
+        self.source, self.graph = source, graph
 
-def end_at(source: Source, graph: Graph, where: CellTable | str, key: Key) -> int:
-    """A free end to plug a cable into: the port named, or the cell's first free one."""
-    if isinstance(where, str):
-        node, port = node_and_port(source, graph, where, key)
-        if node == graph.cells:
-            message = f"{dotted(key)}: cables to the PC are [[interface]] tables"
-            raise source.error(key, message)
-    else:
-        node = cell_at(source, graph, where, key)
-        port = -1 if where.port is None else port_at(source, where.port, (*key, "port"))
-    if port >= 0:
-        return PORTS * node + port
-    with _told_at(source, key):
-        return graph.free_end(node)
+    def wrong(self, key: Key, message: str, *below: int | str) -> ScenarioError:
+        """The error of a key, which its message begins with; it may stand at a key below."""
+        return self.source.error((*key, *below), f"{dotted(key)}: {message}")
 
+    @contextmanager
+    def told_at(self, key: Key, *below: int | str) -> Iterator[None]:
+        """What the topology refuses inside is the error of a key, or of one below."""
+        try:
+            yield
+        except TopologyError as error:
+            raise self.wrong(key, str(error), *below) from None
 
-def port_at(source: Source, port: int | str, key: Key) -> int:
-    """0..3 from a port's number or name."""
-    with _told_at(source, key):
-        return port_number(port)
+    def cell(self, where: CellTable | str, key: Key) -> int:
+        """Number of the cell that a table or a name means."""
+        graph = self.graph
+        if isinstance(where, str):
+            node, port = self.node_and_port(where, key)
+            if node == graph.cells or port >= 0:
+                raise self.wrong(key, f'"{where}" is not the name of a cell')
+            return node
+        if not graph.patches:
+            raise self.wrong(key, 'this skin has no patches; name the cell, like node = "n1"')
+        if where.patch >= len(graph.patches):
+            are = numbered("patch", len(graph.patches))
+            raise self.wrong(key, f"there is no patch {where.patch}; {are}", "patch")
+        try:
+            return graph.patches[where.patch].cell(where.row, where.column)
+        except TopologyError as error:
+            which = f" in patch {where.patch}" if len(graph.patches) > 1 else ""
+            message = f"{dotted(key)}{which}: {error}"
+            raise self.source.error((*key, error.subject), message) from None
 
+    def port(self, port: int | str, key: Key) -> int:
+        """0..3 from a port's number or name."""
+        with self.told_at(key):
+            return topology.port_number(port)
 
-def node_and_port(source: Source, graph: Graph, text: str, key: Key) -> tuple[int, int]:
-    """(node, port) that a text means: "n1", "n1.2", "n1 E", "p0 r3 c4.W", "pc", "pc.0".
+    def cell_and_port(self, where: CellTable | str, key: Key) -> tuple[int, int]:
+        """The node that a table or a name means, and the port, -1 where none is named."""
+        if isinstance(where, str):
+            return self.node_and_port(where, key)
+        node = self.cell(where, key)
+        return node, -1 if where.port is None else self.port(where.port, (*key, "port"))
 
-    The port is -1 where the text names none.
+    def free_end(self, where: CellTable | str, key: Key) -> int:
+        """A free end to plug a cable into: the port named, or the cell's first free one."""
+        node, port = self.cell_and_port(where, key)
+        if node == self.graph.cells:
+            raise self.wrong(key, "cables to the PC are [[interface]] tables")
+        if port >= 0:
+            return PORTS * node + port
+        with self.told_at(key):
+            return self.graph.free_end(node)
 
-    Raises:
-        ScenarioError: no such node or port.
-    """
-    text = text.strip()[:NAME_LENGTH]
-    node = _node(source, graph, text, key)
-    if node is not None:
-        return node, -1
-    match = _SPLIT.fullmatch(text)
-    node = _node(source, graph, match[1].strip(), key) if match else None
-    if match is None or node is None:
-        some = graph.label(0) + (f", {graph.label(1)}" if graph.cells > 1 else "")
-        message = f'{dotted(key)}: no node is called "{text[:60]}"; they are {some}, ..., pc'
-        raise source.error(key, message)
-    if node < graph.cells:
-        return node, port_at(source, match[2], key)
-    if not match[2].isdecimal() or len(match[2]) > 8 or int(match[2]) >= graph.interfaces:
-        message = f"{dotted(key)}: the PC has the ports pc.0 to pc.{graph.interfaces - 1}"
-        raise source.error(key, message)
-    return node, int(match[2])
+    def node_and_port(self, text: str, key: Key) -> tuple[int, int]:
+        """(node, port) that a text means: "n1", "n1.2", "n1 E", "p0 r3 c4.W", "pc", "pc.0".
 
+        The port is -1 where the text names none.
+        """
+        graph, text = self.graph, text.strip()[:NAME_LENGTH]
+        node = self._node(text, key)
+        if node is not None:
+            return node, -1
+        match = _SPLIT.fullmatch(text)
+        node = self._node(match[1].strip(), key) if match else None
+        if match is None or node is None:
+            some = graph.label(0) + (f", {graph.label(1)}" if graph.cells > 1 else "")
+            raise self.wrong(key, f'no node is called "{text[:60]}"; they are {some}, ..., pc')
+        if node < graph.cells:
+            return node, self.port(match[2], key)
+        if not match[2].isdecimal() or len(match[2]) > 8 or int(match[2]) >= graph.interfaces:
+            raise self.wrong(key, f"the PC has the ports pc.0 to pc.{graph.interfaces - 1}")
+        return node, int(match[2])
 
-def _node(source: Source, graph: Graph, text: str, key: Key) -> int | None:
-    if text == "pc":
-        return graph.cells
-    if text in graph.names:
-        return graph.names.index(text)
-    match = _CELL.fullmatch(text) if graph.patches else None
-    if match is None:
-        return None
-    patch, row, column = (int(part) for part in match.groups())
-    return cell_at(source, graph, CellTable(patch=patch, row=row, column=column), key)
+    def _node(self, text: str, key: Key) -> int | None:
+        if text == "pc":
+            return self.graph.cells
+        if text in self.graph.names:
+            return self.graph.names.index(text)
+        match = _CELL.fullmatch(text) if self.graph.patches else None
+        if match is None:
+            return None
+        patch, row, column = (int(part) for part in match.groups())
+        return self.cell(CellTable(patch=patch, row=row, column=column), key)
 
 
 def anchor(tables: dict[str, Any], source: Source) -> None:

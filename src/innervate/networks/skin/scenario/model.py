@@ -56,13 +56,8 @@ CellOrName = Annotated[
 ]
 
 
-class InterfaceTable(keys.Table, frozen=True, kw_only=True):
+class InterfaceTable(CellTable, frozen=True, kw_only=True):
     """[[interface]]: one interface port of the PC, cabled to a cell."""
-
-    patch: Number = 0
-    row: Number
-    column: Number
-    port: Port | None = None
 
 
 class CableTable(keys.Table, frozen=True, kw_only=True):

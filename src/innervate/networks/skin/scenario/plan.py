@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil, floor
 
-from innervate.networks.skin.scenario.graph import build_graph, check_reach
+from innervate.networks.skin.scenario.graph import Named, build_graph, check_reach
 from innervate.networks.skin.scenario.model import ProtocolTable, SkinScenario
 from innervate.networks.skin.scenario.orders import Order, orders
 from innervate.networks.skin.scenario.rules import ONE
@@ -15,8 +15,6 @@ from innervate.scenario.actions.cables import ACTIONS
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.events import at_us, exact, micros
 from innervate.scenario.load import Scenario
-from innervate.scenario.source import Source
-from innervate.topology import Graph
 from innervate.trace.streams import stream
 
 K = 5
@@ -58,7 +56,7 @@ def plan(scenario: Scenario) -> Plan:
     if model.data.rate_hz and graph.cells > DATA_CELLS_MAX:
         message = f"{graph.cells:,} cells cannot send data: a data frame numbers {DATA_CELLS_MAX:,}"
         raise source.error(("data", "rate_hz"), f"{message}; set data.rate_hz = 0")
-    params = parameters(model.protocol, max(depths))
+    params, named = parameters(model.protocol, max(depths)), Named(source, graph)
     return Plan(
         scenario=scenario,
         graph=graph,
@@ -74,10 +72,10 @@ def plan(scenario: Scenario) -> Plan:
         data_period_us=_period_us(model.data.rate_hz) if model.data.rate_hz else 0,
         queue_frames=model.data.queue,
         loss_q15=round(exact(model.timing.loss) * LOSS_ONE),
-        faults=_faults(source, graph, model),
+        faults=_faults(named, model),
         touch=sample(model.touch, graph, model.duration_s) if model.touch is not None else None,
-        script=steps(source, graph, model.script) if model.script is not None else (),
-        orders=orders(source, graph, model),
+        script=steps(named, model.script) if model.script is not None else (),
+        orders=orders(named, model),
         depths=depths,
     )
 
@@ -112,15 +110,15 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
     }
 
 
-def _faults(source: Source, graph: Graph, model: SkinScenario) -> list[Fault]:
+def _faults(named: Named, model: SkinScenario) -> list[Fault]:
     draws = [stream(model.seed, f"event/{index}") for index in range(len(model.event))]
     times = [at_us(event, draw) for event, draw in zip(model.event, draws, strict=True)]
     damage = Damage()
     faults = []
     for index in sorted(range(len(times)), key=lambda i: (times[i], i)):
         event = model.event[index]
-        end, node = target(source, graph, index, event, draws[index], damage)
-        damage.note(graph, event.action, end, node)
+        end, node = target(named, index, event, draws[index], damage)
+        damage.note(named.graph, event.action, end, node)
         loss_q15 = round(exact(event.loss or 0.0) * LOSS_ONE)
         frames = (event.frames or 1) if event.action == "lose" else 0
         action = ACTIONS.index(event.action)

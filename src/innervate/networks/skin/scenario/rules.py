@@ -57,15 +57,7 @@ def _findings(source: Source, model: SkinScenario) -> Iterator[Finding]:
 
 def _origin(model: SkinScenario) -> Iterator[Finding]:
     """Exactly one of patches, a free graph and a body; tables of the others stay away."""
-    given = [
-        name
-        for name, there in (
-            ("patch", model.patch),
-            ("link", model.link),
-            ("body", model.body is not None),
-        )
-        if there
-    ]
+    given = [name for name in ("patch", "link", "body") if getattr(model, name)]
     if not given:
         yield (), "there is no skin; add a [[patch]], [[link]]s or a [body]"
     if len(given) > 1:
@@ -83,12 +75,10 @@ def _protocol(source: Source, model: SkinScenario) -> Iterator[Finding]:
         key = "r_f" if ("protocol", "r_f") not in source.sets else "k"
         message = "protocol.k and protocol.r_f say the same thing twice; leave one out"
         yield ("protocol", key), message
-    if not protocol.balancing and protocol.balance_periods is not None:
-        message = "protocol.balance_periods has no effect with balancing = false; leave one out"
-        yield ("protocol", "balance_periods"), message
-    if not protocol.balancing and protocol.balance_rule != "even":
-        message = "protocol.balance_rule has no effect with balancing = false; leave one out"
-        yield ("protocol", "balance_rule"), message
+    for key, usual in (("balance_periods", None), ("balance_rule", "even")):
+        if not protocol.balancing and getattr(protocol, key) != usual:
+            message = f"protocol.{key} has no effect with balancing = false; leave one out"
+            yield ("protocol", key), message
     yield from in_order(("protocol", "forward_us"), protocol.forward_us)
 
 

@@ -15,12 +15,10 @@ With `keepalive` every cable that `detect` does not name has brought something b
 
 from dataclasses import dataclass
 
-from innervate.networks.skin.scenario.graph import node_and_port
+from innervate.networks.skin.scenario.graph import Named
 from innervate.networks.skin.scenario.model import ScriptTable
 from innervate.networks.skin.scenario.targets import find_link
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, dotted
-from innervate.topology import Graph
 
 TICK, DELIVER, STEP_LOSE, DETECT, DRAW, SOON, STEP_CUT, STEP_RESTORE, STEP_RESTART = range(9)
 STEP_NAMES = (
@@ -43,46 +41,43 @@ class Step:
     value: int = 0  # what the draw returns, 0 .. 2^30-1
 
 
-def steps(source: Source, graph: Graph, script: ScriptTable) -> tuple[Step, ...]:
+def steps(named: Named, script: ScriptTable) -> tuple[Step, ...]:
     """The steps of a script.
 
     Raises:
         ScenarioError: a step that cannot be read, or names what is not there.
     """
     return tuple(
-        _step(source, graph, text, ("script", "steps", index))
-        for index, text in enumerate(script.steps)
+        _step(named, text, ("script", "steps", index)) for index, text in enumerate(script.steps)
     )
 
 
-def _step(source: Source, graph: Graph, text: str, key: Key) -> Step:
+def _step(named: Named, text: str, key: Key) -> Step:
     verb, _, rest = text.strip().partition(" ")
     rest = rest.strip()
     if verb not in STEP_NAMES or not rest:
-        message = f'{dotted(key)}: "{text[:60]}" is no step; they are tick n, soon n, deliver a->b'
+        message = f'"{text[:60]}" is no step; they are tick n, soon n, deliver a->b'
         others = "cut a->b, restore a->b, restart n"
-        raise source.error(key, f"{message}, lose a->b, detect n.port, draw v, {others}")
+        raise named.wrong(key, f"{message}, lose a->b, detect n.port, draw v, {others}")
     action = STEP_NAMES.index(verb)
     if action == DRAW:
         if not (rest.isascii() and rest.isdigit() and len(rest) < 11 and int(rest) <= DRAW_MAX):
-            raise source.error(key, f"{dotted(key)}: draw takes a whole number below 2^30")
+            raise named.wrong(key, "draw takes a whole number below 2^30")
         return Step(DRAW, value=int(rest))
     if action in ON_CABLE:
         a, arrow, b = rest.partition("->")
         if not arrow:
-            raise source.error(key, f"{dotted(key)}: {verb} takes two nodes, like {verb} n1->n2")
-        there = node_and_port(source, graph, b, key)
-        end = find_link(graph, node_and_port(source, graph, a, key), there)
+            raise named.wrong(key, f"{verb} takes two nodes, like {verb} n1->n2")
+        there = named.node_and_port(b, key)
+        end = find_link(named.graph, named.node_and_port(a, key), there)
         if end < 0:
-            raise source.error(key, f"{dotted(key)}: no cable leads from {a[:60]} to {b[:60]}")
+            raise named.wrong(key, f"no cable leads from {a[:60]} to {b[:60]}")
         return Step(action, there[0], end)
-    node, port = node_and_port(source, graph, rest, key)
+    node, port = named.node_and_port(rest, key)
     if action in (TICK, SOON, STEP_RESTART):
         if port >= 0:
-            raise source.error(
-                key, f"{dotted(key)}: {verb} takes a node, not a port; leave the port out"
-            )
+            raise named.wrong(key, f"{verb} takes a node, not a port; leave the port out")
         return Step(action, node)
-    if port < 0 or node == graph.cells:
-        raise source.error(key, f"{dotted(key)}: detect takes a cell's port, like detect n1.2")
-    return Step(DETECT, node, graph.end(node, port))
+    if port < 0 or node == named.graph.cells:
+        raise named.wrong(key, "detect takes a cell's port, like detect n1.2")
+    return Step(DETECT, node, named.graph.end(node, port))

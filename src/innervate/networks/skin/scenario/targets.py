@@ -2,11 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from innervate.networks.skin.scenario.graph import cell_at, node_and_port, numbered, port_at
+from innervate.networks.skin.scenario.graph import Named, numbered
 from innervate.networks.skin.scenario.model import CellTable, EventTable
 from innervate.networks.skin.scenario.rules import TARGET_OF
 from innervate.scenario.lines import Key
-from innervate.scenario.source import Source, dotted
 from innervate.topology import PORT_NAMES, PORTS, Graph
 from innervate.trace.streams import Stream
 
@@ -34,7 +33,7 @@ class Damage:
 
 
 def target(
-    source: Source, graph: Graph, index: int, event: EventTable, draw: Stream, damage: Damage
+    named: Named, index: int, event: EventTable, draw: Stream, damage: Damage
 ) -> tuple[int, int]:
     """(end, node) of event `index`; the one that does not apply is -1.
 
@@ -45,49 +44,44 @@ def target(
         ScenarioError: no such interface, cell, port or cable, or nothing left to draw from.
     """
     key: Key = ("event", index)
+    graph = named.graph
     if event.random is not None:
-        return _drawn(source, graph, index, event, draw, damage)
+        return _drawn(named, key, event, draw, damage)
     if TARGET_OF[event.action] != "cable":
-        return NONE, _node(source, graph, event, key)
+        return NONE, _node(named, event, key)
     if event.interface is not None:
         if event.interface >= graph.interfaces:
             are = numbered("interface", graph.interfaces)
-            message = f"{dotted(key)}: there is no interface {event.interface}; {are}"
-            raise source.error((*key, "interface"), message)
+            message = f"there is no interface {event.interface}; {are}"
+            raise named.wrong(key, message, "interface")
         return PORTS * graph.cells + event.interface, NONE
     if event.link is not None:
-        return _link(source, graph, event.link, (*key, "link")), NONE
-    return _cable_of(source, graph, event, key), NONE
+        return _link(named, event.link, (*key, "link")), NONE
+    return _cable_of(named, event, key), NONE
 
 
-def _node(source: Source, graph: Graph, event: EventTable, key: Key) -> int:
+def _node(named: Named, event: EventTable, key: Key) -> int:
     if event.pc:
-        return graph.cells
+        return named.graph.cells
     if event.cell is not None:
         if event.cell.port is not None:
-            message = f'{dotted(key)}: "{event.action}" acts on the whole cell; leave port out'
-            raise source.error((*key, "cell"), message)
-        return cell_at(source, graph, event.cell, (*key, "cell"))
+            message = f'"{event.action}" acts on the whole cell; leave port out'
+            raise named.wrong(key, message, "cell")
+        return named.cell(event.cell, (*key, "cell"))
     assert event.node is not None
     if event.node.strip() == "pc" and event.action == "restart":
-        return graph.cells
-    return cell_at(source, graph, event.node, (*key, "node"))
+        return named.graph.cells
+    return named.cell(event.node, (*key, "node"))
 
 
-def _cable_of(source: Source, graph: Graph, event: EventTable, key: Key) -> int:
+def _cable_of(named: Named, event: EventTable, key: Key) -> int:
     """The end of a cell's cable: that of the port named, or of its only cabled one."""
-    key = (*key, "cell" if event.cell is not None else "node")
-    port = NONE
-    if event.cell is not None:
-        node = cell_at(source, graph, event.cell, key)
-        if event.cell.port is not None:
-            port = port_at(source, event.cell.port, (*key, "port"))
-    else:
-        node, port = node_and_port(source, graph, event.node or "", key)
-        if node == graph.cells and port < 0:
-            raise source.error(key, f"{dotted(key)}: name a port of the PC, like pc.0")
+    graph, where = named.graph, "cell" if event.cell is not None else "node"
+    node, port = named.cell_and_port(event.cell or event.node or "", (*key, where))
+    if node == graph.cells and port < 0:
+        raise named.wrong((*key, where), "name a port of the PC, like pc.0")
     if event.port is not None:
-        port = port_at(source, event.port, (*key[:2], "port"))
+        port = named.port(event.port, (*key, "port"))
     cabled = [end for end in graph.ends_of(node) if graph.peer[end] >= 0]
     if port < 0 and len(cabled) == 1:
         return cabled[0]
@@ -98,27 +92,16 @@ def _cable_of(source: Source, graph: Graph, event: EventTable, key: Key) -> int:
     which = f"port {PORT_NAMES[port]} of {graph.label(node)} has no cable"
     if port < 0:
         which = f"{graph.label(node)} has {len(cabled)} cables; say which with port"
-    message = f"{dotted(key[:2])}: {which}; cabled are {names}"
-    raise source.error(key, message)
+    raise named.wrong(key, f"{which}; cabled are {names}", where)
 
 
-def _link(
-    source: Source, graph: Graph, pair: tuple[CellTable | str, CellTable | str], key: Key
-) -> int:
+def _link(named: Named, pair: tuple[CellTable | str, CellTable | str], key: Key) -> int:
     """The end, at the first node, of the cable between two nodes."""
-    sides = []
-    for index, where in enumerate(pair):
-        if isinstance(where, str):
-            sides.append(node_and_port(source, graph, where, (*key, index)))
-        else:
-            at = (*key, index)
-            port = NONE if where.port is None else port_at(source, where.port, at)
-            sides.append((cell_at(source, graph, where, at), port))
-    end = find_link(graph, sides[0], sides[1])
+    sides = [named.cell_and_port(where, (*key, index)) for index, where in enumerate(pair)]
+    end = find_link(named.graph, *sides)
     if end < 0:
-        a, b = (graph.label(node) for node, _ in sides)
-        message = f"{dotted(key)}: no cable joins {a} and {b} there; name two neighbours"
-        raise source.error(key, message)
+        a, b = (named.graph.label(node) for node, _ in sides)
+        raise named.wrong(key, f"no cable joins {a} and {b} there; name two neighbours")
     return end
 
 
@@ -137,13 +120,13 @@ def find_link(graph: Graph, a: tuple[int, int], b: tuple[int, int]) -> int:
 
 
 def _drawn(
-    source: Source, graph: Graph, index: int, event: EventTable, draw: Stream, damage: Damage
+    named: Named, key: Key, event: EventTable, draw: Stream, damage: Damage
 ) -> tuple[int, int]:
     """A random target. Repairs choose among what is broken, everything else among what is whole.
 
     "link" means cables between two cells; those to the PC are "interface".
     """
-    mending = event.action in ("restore", "revive")
+    graph, mending = named.graph, event.action in ("restore", "revive")
     if event.random == "cell":
         nodes = [c for c in range(graph.cells) if (c in damage.dead) == mending]
         if nodes:
@@ -161,5 +144,5 @@ def _drawn(
         if ends:
             return ends[draw.draw(len(ends))], NONE
     state = "broken" if mending else "whole"
-    message = f"event.{index}: no {event.random} is {state} at that time to {event.action}"
-    raise source.error(("event", index, "random"), message)
+    message = f"no {event.random} is {state} at that time to {event.action}"
+    raise named.wrong(key, message, "random")

@@ -106,11 +106,8 @@ def _watch(tables: Tables, cells: int, orders: bool) -> Watch:
 
 def _touch(tables: Tables, plan: Any) -> Touch:
     touch = plan.touch
-    span = (touch.radius_um, touch.force_mn, touch.step_us) if touch else (0, 0, 1)
-    places = [round(1000 * x) for place in cell_places(plan.graph) for x in place] if touch else ()
-    return Touch(
-        x=tables.given(touch.x_um if touch else ()),
-        y=tables.given(touch.y_um if touch else ()),
-        span=tables.given(span),
-        place=tables.given(places),
-    )
+    if not touch:
+        return Touch(*map(tables.given, ((), (), (0, 0, 1), ())))
+    span = (touch.radius_um, touch.force_mn, touch.step_us)
+    places = [round(1000 * x) for place in cell_places(plan.graph) for x in place]
+    return Touch(*map(tables.given, (touch.x_um, touch.y_um, span, places)))

@@ -5,23 +5,14 @@ cables join it with the PC at all. A change of a parent costs as much as the cel
 that it can stay on at any size; one of the cables costs as much as there are cells.
 """
 
-from innervate.networks.skin.protocol.constants import (
-    DROP_NO_ROUTE,
-    NONE,
-    PORTS,
-    REPORT_BALANCE,
-    REPORT_BROKEN,
-    REPORT_DROP,
-    REPORT_PARENT,
-    RULE_FEASIBLE,
-    RULE_STRICT,
-)
+from innervate.networks.skin.protocol import constants as const
+from innervate.networks.skin.protocol.constants import NONE, PORTS
 from innervate.networks.skin.sim.counters import EARLY, NO_ROUTE
 from innervate.scenario.actions.cables import GIVE
 from innervate.sim.cables.world import DEAD
 from innervate.sim.rows import record_row as note
 
-DROPS = NO_ROUTE - DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
+DROPS = NO_ROUTE - const.DROP_NO_ROUTE  # the counter of a reason to drop stands this far from it
 
 # Codes of the observer's own rows; those below 100 are the protocol's reports.
 UNROUTED = 100  # a = connected cells without a route, from now on
@@ -42,17 +33,17 @@ BROKEN_FEASIBLE = 2
 
 def on_report(world, time, node, code, a, b):
     """Count what a node reports, and judge what follows from it for routes."""
-    if code == REPORT_DROP:
+    if code == const.REPORT_DROP:
         world.counters[DROPS + a] += 1
-        if a == DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:
+        if a == const.DROP_NO_ROUTE and world.run[0].observe and world.watch.had[node] == 0:
             world.counters[EARLY] += 1
         return
     if world.run[0].observe == 0:
         return
-    if code == REPORT_BROKEN and world.ends[4 * node + a].peer < 0:
+    if code == const.REPORT_BROKEN and world.ends[4 * node + a].peer < 0:
         return
     note(world, time, node, code, a, b)
-    if code == REPORT_PARENT or code == REPORT_BALANCE:
+    if code == const.REPORT_PARENT or code == const.REPORT_BALANCE:
         follow(world, time, node, b)
         note_unrouted(world, time, node)
 
@@ -60,13 +51,9 @@ def on_report(world, time, node, code, a, b):
 def next_hop(world, cell):
     """The node a cell's data goes to over a live cable, or NONE."""
     port = world.watch.port[cell]
-    if port == NONE:
+    if port != NONE and world.epoch[4 * cell + port] & 1:
         return NONE
-    end = 4 * cell + port
-    peer = world.ends[end].peer
-    if peer < 0 or world.epoch[end] & 1:
-        return NONE
-    return min(peer >> 2, world.run[0].cells)
+    return peer_of_parent(world, cell)
 
 
 def follow(world, time, cell, port):
@@ -147,7 +134,7 @@ def open_loop(world, time, cell):
     run.loops_open += 1
     note(world, time, cell, LOOP_OPEN, length, 0)
     rule = world.params[0].rule
-    loop_free = rule == RULE_FEASIBLE or rule == RULE_STRICT
+    loop_free = rule == const.RULE_FEASIBLE or rule == const.RULE_STRICT
     if loop_free and run.checks and run.broken == 0:
         run.broken = BROKEN_LOOP
         run.broken_node = cell
@@ -277,20 +264,20 @@ def trace_cables(world):
         watch.joined[cell] = 0
     count = 0
     for end in range(4 * run.cells, len(world.ends)):
-        peer = world.ends[end].peer
-        if peer >= 0 and (world.epoch[end] & 1) == 0 and watch.joined[peer >> 2] == 0:
-            watch.joined[peer >> 2] = 1
-            watch.stack[count] = peer >> 2
-            count += 1
+        count = join(world, end, count)
     while count > 0:
         count -= 1
-        node = watch.stack[count]
-        for p in range(PORTS):
-            end = 4 * node + p
-            peer = world.ends[end].peer
-            if peer >= 0 and peer >> 2 < run.cells and (world.epoch[end] & 1) == 0:
-                other = peer >> 2
-                if watch.joined[other] == 0:
-                    watch.joined[other] = 1
-                    watch.stack[count] = other
-                    count += 1
+        first = 4 * watch.stack[count]
+        for end in range(first, first + PORTS):
+            count = join(world, end, count)
+
+
+def join(world, end, count):
+    """A live cable joins the cell behind it: it is on the stack now, if it was not before."""
+    watch = world.watch
+    cell = world.ends[end].peer >> 2
+    if cell < 0 or cell >= world.run[0].cells or world.epoch[end] & 1 or watch.joined[cell]:
+        return count
+    watch.joined[cell] = 1
+    watch.stack[count] = cell
+    return count + 1

@@ -7,15 +7,8 @@ the same two ends for ever, the medium of cables cannot do otherwise.
 """
 
 from innervate.dialect.arith import HALF16, MASK16, later
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    INFINITY,
-    NONE,
-    ONE,
-    PORTS,
-    RULE_FEASIBLE,
-    RULE_STRICT,
-)
+from innervate.networks.skin.protocol import constants as const
+from innervate.networks.skin.protocol.constants import INFINITY, NONE, ONE, PORTS
 from innervate.sim.cables.wires import URGENT_BLOCK
 from innervate.sim.cables.world import ALIVE
 from innervate.sim.rows import record_row as note
@@ -39,7 +32,7 @@ COUNTS = 4096
 def is_proved(world):
     """True under a rule of which something is proved."""
     rule = world.params[0].rule
-    return rule == RULE_FEASIBLE or rule == RULE_STRICT
+    return rule == const.RULE_FEASIBLE or rule == const.RULE_STRICT
 
 
 def leave(world, time, node, what, other):
@@ -55,7 +48,7 @@ def on_started(world, time, node, cause):
     run = world.run[0]
     if node == run.cells:
         run.counted = NONE
-        if cause != COLD and world.params[0].rule == RULE_STRICT:
+        if cause != COLD and world.params[0].rule == const.RULE_STRICT:
             leave(world, time, node, PC_STAYS, NONE)
         return
     if cause == COLD and world.watch.was_on[node] and is_proved(world):
@@ -125,7 +118,7 @@ def is_route(world, slot):
     if event.epoch != world.epoch[event.target]:
         return False
     frame = world.frames[slot - world.run[0].pool_slots]
-    return frame.kind == BEACON and frame.dist < INFINITY
+    return frame.kind == const.BEACON and frame.dist < INFINITY
 
 
 def on_counted(world, time):
@@ -162,7 +155,7 @@ def span(world, node, of):
     """How far the numbers that a cell uses are ahead of another: the least and the greatest."""
     cell = world.cells[node]
     low = high = 0
-    if world.params[0].rule == RULE_STRICT:
+    if world.params[0].rule == const.RULE_STRICT:
         if cell.sq_known:
             low = high = ahead_of(cell.sq_own, of)
     elif cell.fd_known:

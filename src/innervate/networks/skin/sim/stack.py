@@ -2,19 +2,10 @@
 
 from innervate.dialect.arith import MASK30
 from innervate.networks.skin.protocol import cell as skin
+from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.protocol import sink as skin_sink
 from innervate.networks.skin.protocol.cell import copy_frame
-from innervate.networks.skin.protocol.constants import (
-    BEACON,
-    COMMAND,
-    DATA,
-    NONE,
-    REPORT_BALANCE,
-    REPORT_FORGET,
-    REPORT_PARENT,
-    RULE_STRICT,
-    TICK,
-)
+from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.sim import observer, orders, proved
 from innervate.networks.skin.sim.checks import check_route
 from innervate.networks.skin.sim.counters import COMMAND_BLOCK
@@ -48,8 +39,8 @@ def on_frame(world, node, time, port, frame):
     params, out = world.params[0], world.out
     if node == world.run[0].cells:
         skin_sink.on_frame(world.pc, params, local(world, node, time), port, frame, out)
-    elif frame.kind == BEACON:
-        if params.rule == RULE_STRICT and world.run[0].checks:
+    elif frame.kind == const.BEACON:
+        if params.rule == const.RULE_STRICT and world.run[0].checks:
             proved.on_beacon(world, time, node, port, frame)
         if skin.hear(world.cells[node], params, port, frame, out):
             skin.announce_soon(world.cells[node], params, local(world, node, time), out)
@@ -66,7 +57,7 @@ def on_timer(world, node, now, timer):
     """A timer of a cell or the PC fires at its own clock's `now`, us."""
     if node == world.run[0].cells:
         skin_sink.on_timer(world.pc, world.params[0], now, timer, world.out)
-        if timer == TICK and world.run[0].checks:
+        if timer == const.TICK and world.run[0].checks:
             proved.on_counted(world, world.wheel.clock[NOW])
     else:
         skin.on_timer(world.cells[node], world.params[0], now, timer, world.out)
@@ -83,7 +74,7 @@ def on_input(world, node, now, kind):
 
 def block_of(frame):
     """The block of counters of a frame that is not urgent."""
-    return COMMAND_BLOCK if frame.kind == COMMAND else 0
+    return COMMAND_BLOCK if frame.kind == const.COMMAND else 0
 
 
 def is_off(world, end):
@@ -93,11 +84,11 @@ def is_off(world, end):
 
 def digest(frame):
     """A frame in one word, for the fingerprint."""
-    if frame.kind == DATA:
+    if frame.kind == const.DATA:
         word = frame.cell | (frame.seq << 16) | (frame.hops << 24) | (frame.proximity << 32)
         word ^= frame.force[0] * 1000003 + frame.force[1] * 70001 + frame.force[2] * 5003
         return word ^ (frame.accel[2] << 40) ^ (frame.temperature << 20)
-    if frame.kind == COMMAND:
+    if frame.kind == const.COMMAND:
         word = frame.cell | (frame.sq << 16) | (frame.hops << 32) | (frame.kind << 40)
         return word ^ (frame.dist << 44) ^ (frame.proximity << 48)
     word = frame.dist | (frame.sq << 8) | (frame.load << 24) | (frame.size << 36)
@@ -109,11 +100,11 @@ def on_report(world, time, node, code, a, b):
     observer.on_report(world, time, node, code, a, b)
     if world.run[0].checks == 0:
         return
-    if code <= REPORT_BALANCE:
+    if code <= const.REPORT_BALANCE:
         check_route(world, node)
-        if code == REPORT_PARENT and b != NONE and world.watch.forgot[node] != NONE:
+        if code == const.REPORT_PARENT and b != NONE and world.watch.forgot[node] != NONE:
             proved.on_routed(world, time, node)
-    elif code == REPORT_FORGET:
+    elif code == const.REPORT_FORGET:
         proved.on_forgotten(world, node, proved.HOLD)
 
 
@@ -132,7 +123,7 @@ def check(world, node):
 
 def on_deliver(world, time, node, port, frame):
     """The PC's user gets a tactile sample, or a cell's a command."""
-    if frame.kind == COMMAND:
+    if frame.kind == const.COMMAND:
         orders.reach(world, time, node, frame)
         return
     world.counters[DELIVERED] += 1

@@ -86,7 +86,7 @@ def refuted(rule: str, change: Change | None = None) -> str:
         return ""
     if change is not None:
         return _refuted(rule, change)
-    from innervate.networks.skin.prove import feasible, pc
+    from innervate.networks.skin.prove import neighbours, pc
     from innervate.prove import kept
     from innervate.prove.theory import source
 
@@ -99,7 +99,7 @@ def refuted(rule: str, change: Change | None = None) -> str:
     asks = Path(__file__).resolve()  # which lemmas are needed, and for which rule
     home = asks.parent.parent
     parts = home / "protocol", home / "prove", asks
-    known = {**source(pc.ENTRY, None), **source(feasible.ENTRY, None)}
+    known = {**source(pc.ENTRY, None), **source(neighbours.ENTRY, None)}
     held = kept.holds(f"skin, reduced, {rule}", known, parts, attempt)
     return "" if held else found[0]
 

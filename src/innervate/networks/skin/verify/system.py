@@ -13,13 +13,8 @@ from innervate.kernel import records
 from innervate.networks.skin.protocol import cell as skin
 from innervate.networks.skin.protocol import fields as skin_fields
 from innervate.networks.skin.protocol import sink as skin_sink
-from innervate.networks.skin.protocol.constants import (
-    ONE,
-    RULE_FEASIBLE,
-    RULE_PAPER,
-    RULE_PAPER_LAX,
-    RULE_STRICT,
-)
+from innervate.networks.skin.scenario.model import ProtocolTable
+from innervate.networks.skin.scenario.plan import parameters
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import moves as skin_moves
 from innervate.networks.skin.verify import reduction
@@ -35,7 +30,6 @@ from innervate.verify.table import row
 
 RULES = ("feasible", "strict", "paper", "paper-lax")
 UPDATES = ("periodic", "triggered")
-_NUMBERS = dict(zip(RULES, (RULE_FEASIBLE, RULE_STRICT, RULE_PAPER, RULE_PAPER_LAX), strict=True))
 ANY = w.ANY
 FAULTS = ("loss", "cut", "heal", "false", "restart")
 SETTLED_M = 3  # the fair schedule counts the PC's number every so many rounds
@@ -120,14 +114,10 @@ class SkinModel:
         cells = tables.states(skin_fields.CELL, 2)
         low, high = records.bounds(skin_fields.CELL)
         moves, graph = lay.moves(), self.graph
+        places = ("cell_at", "port_at", "out_way", "in_way", "way_end", "queue_at")
         world = w.SkinWorld(
             at=numbers(lay.settings()),
-            cell_at=numbers(lay.cell_at),
-            port_at=numbers(lay.port_at),
-            out_way=numbers(lay.out_way),
-            in_way=numbers(lay.in_way),
-            way_end=numbers(lay.way_end),
-            queue_at=numbers(lay.queue_at),
+            **{name: numbers(getattr(lay, name)) for name in places},
             depth=tables.numbers(graph.nodes),
             orders=numbers([]),
             move_kind=numbers([kind for kind, _ in moves]),
@@ -191,21 +181,6 @@ def compiled_parts() -> System:
 
 
 def _parameters(model: SkinModel, seq_every: int) -> dict[str, int]:
-    return {
-        "rule": _NUMBERS[model.rule],
-        "updates": UPDATES.index(model.updates),
-        "beacon_us": 4000,
-        "r_f": ONE,
-        "r_r": ONE,
-        "k": 1,
-        "max_depth": 64,
-        "seq_every": seq_every,
-        "balance_periods": 0,
-        "balance_rule": 0,
-        "hold_periods": hold_periods(model),
-        "gap_us": 500,
-        "skip_us": 2400,
-        "restart_us": 0,
-        "forward_min_us": 0,
-        "forward_max_us": 0,
-    }
+    asked: Any = {"rule": model.rule, "updates": model.updates}
+    table = ProtocolTable(**asked, k=1, m=seq_every, balancing=False)
+    return {**parameters(table, model.graph.cells), "hold_periods": hold_periods(model)}
