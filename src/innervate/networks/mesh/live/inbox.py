@@ -23,11 +23,6 @@ class Inbox:
         orderly: puts them in order.
         acknowledge: is told sender and number of each that may be acknowledged.
         outcomes: how many came is counted here, by words.
-
-    Attributes:
-        arrivals: hands up messages as they come.
-        refuse: is told sender, number and content of a last piece whose message is not whole.
-        refused: is told who cannot have one of ours whole, and the refusal.
     """
 
     def __init__(
@@ -38,7 +33,9 @@ class Inbox:
         self.orderly.on_up = acknowledge
         self.outcomes = outcomes
         self.pieces = Pieces()
+        # Is told sender, number and content of a last piece whose message is not whole.
         self.refuse: Callable[[int, int, Piece], None] = lambda *_: None
+        # Is told who cannot have one of ours whole, and the refusal.
         self.refused: Callable[[int, Piece], None] = lambda *_: None
         self._acknowledge = acknowledge
         self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before

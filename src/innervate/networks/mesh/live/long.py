@@ -34,10 +34,6 @@ class Long:
         payload: what it says.
         room: bytes of a packet's payload.
         chains: those in order that have no end yet, where it has its turn among them; else None.
-
-    Attributes:
-        receipt: the user's.
-        on_end: is told its state and why, once.
     """
 
     def __init__(
@@ -45,7 +41,8 @@ class Long:
     ) -> None:
         self.dest, self.flags, self.payload = dest, flags, payload
         self.in_order = chains is not None
-        self.receipt = Receipt()
+        self.receipt = Receipt()  # the user's
+        # Is told its state and why, once.
         self.on_end: Callable[[str, str], None] = lambda _state, _reason: None
         self._chains = chains
         self._room = room - HEAD_BYTES
@@ -137,17 +134,13 @@ class Refusal:
 
 
 class PieceReceipt(Receipt):
-    """What becomes of a piece: its message hears of it.
-
-    Attributes:
-        long: the message, or what takes the place of one.
-        at: where the piece begins.
-        is_last: it is sent when all others are acknowledged.
-    """
+    """What becomes of a piece: its message, or what takes the place of one, hears of it."""
 
     def __init__(self, long: Long | Refusal, at: int = 0, is_last: bool = False) -> None:
         super().__init__()
-        self.long, self.at, self.is_last = long, at, is_last
+        self.long = long
+        self.at = at  # where the piece begins
+        self.is_last = is_last  # it is sent when all others are acknowledged
 
     def move(self, state: str, reason: str = "") -> None:
         """Its state changes, and its message hears of that."""

@@ -18,13 +18,7 @@ from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
 from innervate.sim.status import ON_FRAME
-from innervate.topology.placement import (
-    UNREACHABLE,
-    distance_cm,
-    distances,
-    neighbours,
-    path_loss_cdb,
-)
+from innervate.topology import placement
 from innervate.trace.streams import stream
 
 TITLE = "2.1, 2.2: a robot crosses the fence"
@@ -129,13 +123,15 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
     links = [link for link in plan.good if way.node not in link]
     for node, place in enumerate(plan.positions_cm):
         if node != way.node:
-            loss = path_loss_cdb(distance_cm(here, place), radio.exponent_c)
+            loss = placement.path_loss_cdb(placement.distance_cm(here, place), radio.exponent_c)
             there, back = way.node * count + node, node * count + way.node
             least = min(radio.base_cdb[there], radio.base_cdb[back])
             if least >= radio.rssi50_cdb + GOOD_CDB + loss:
                 links.append((node, way.node))
-    near = neighbours(count, [(a, b) for a, b in links if a not in gone and b not in gone])
-    return bool(distances(near, beds.GATEWAY)[way.node] != UNREACHABLE)
+    near = placement.neighbours(
+        count, [(a, b) for a, b in links if a not in gone and b not in gone]
+    )
+    return bool(placement.distances(near, beds.GATEWAY)[way.node] != placement.UNREACHABLE)
 
 
 def point(scheme: Scheme, dead: int, quick: bool) -> Point:

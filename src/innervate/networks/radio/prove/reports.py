@@ -71,16 +71,13 @@ class Report:
     Args:
         stage: with both, and parameters.
         alike: both have the same record of the round.
-
-    Attributes:
-        after: the values behind it.
-        machines: that heard it.
     """
 
     def __init__(self, known: Source, stage: Stage, alike: bool) -> None:
         self.t, self.before, self.alike = stage.terms, dict(stage.store), alike
         self.a, self.b, self.frame = (stage.records[name] for name in ("a", "b", "frame"))
-        self.after, self.machines = dict(self.before), []
+        self.after = dict(self.before)  # the values behind it
+        self.machines = []  # that heard it
         for one in (self.a, self.b):
             machine = Hearing(known, self.t, one, "round" if alike else one.name)
             self.after, _ = hear(stage, machine, one, self.after)

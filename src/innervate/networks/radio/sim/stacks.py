@@ -29,17 +29,11 @@ from innervate.sim.handlers import handlers
 
 
 class Protocol(NamedTuple):
-    """What the simulator needs of a medium access protocol.
+    """What the simulator needs of a medium access protocol."""
 
-    Attributes:
-        entry: the module with the five functions.
-        modules: all it consists of, callees first.
-        fields: declaration of a station's own state.
-    """
-
-    entry: ModuleType
-    modules: tuple[ModuleType, ...]
-    fields: Any
+    entry: ModuleType  # the module with the five functions
+    modules: tuple[ModuleType, ...]  # all it consists of, callees first
+    fields: Any  # declaration of a station's own state
 
 
 # One stack for all baselines; a parameter says which.
