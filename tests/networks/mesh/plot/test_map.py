@@ -6,7 +6,7 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.mesh.analysis.alarms import Crossing
-from innervate.networks.mesh.analysis.fence import position_cm
+from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.analysis.way import Hop
 from innervate.networks.mesh.plot import map as mesh_map

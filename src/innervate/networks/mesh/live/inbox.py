@@ -19,10 +19,7 @@ HAD_US = 30_000_000  # a packet is tried for 26 s at most
 class Inbox:
     """Messages that came, until they are handed up.
 
-    Args:
-        orderly: puts them in order.
-        acknowledge: is told sender and number of each that may be acknowledged.
-        outcomes: how many came is counted here, by words.
+    `acknowledge` is told sender and number of each that may be; `outcomes` counts them, by words.
     """
 
     def __init__(

@@ -109,11 +109,9 @@ class Long:
 
 
 class Refusal:
-    """Tells the sender of a long message that it cannot be whole here.
+    """Tells the sender of a long message, by its name as in its pieces, that it cannot be whole.
 
-    Args:
-        message, size: its name, as in its pieces.
-        on_end: is told the state of what tells it, once.
+    `on_end` is told the state of that, once.
     """
 
     in_order = False

@@ -31,11 +31,7 @@ FEW = 512  # by who was just switched on: 7 restarts one after the other lead le
 
 
 class MeshNode(LiveNode):
-    """A node of a mesh: sends and receives messages.
-
-    Args as of any node, and:
-        orderly: how messages are put in order.
-    """
+    """A node of a mesh: sends and receives messages, puts them in order if that is asked for."""
 
     stack: MeshStack
 

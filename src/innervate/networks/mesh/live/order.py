@@ -169,12 +169,7 @@ class Order:
 
 
 class Orderly:
-    """Hands messages up in order, sender by sender.
-
-    Args:
-        wait_us: how long a message waits for one before it.
-        buffer: how many may wait, per sender.
-    """
+    """Hands messages up in order, sender by sender; each waits as in an Order."""
 
     def __init__(self, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
         # Is told sender and number of each that was handed up.

@@ -24,13 +24,10 @@ REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 
 class Outgoing:
-    """Messages on their way.
+    """Messages on their way: `hand_down` gives the router one.
 
-    Args:
-        stack: the router.
-        hand_down: gives it a message.
-        hand_up: takes a long message to ourselves: our number, and what it says.
-        outcomes: what became of them is counted here, by words.
+    `hand_up` takes a long one to ourselves: our number, and what it says. `outcomes` counts what
+    became of them, by words.
     """
 
     def __init__(

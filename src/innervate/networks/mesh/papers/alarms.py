@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.alarms import all_crossings
-from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
+from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.networks.mesh.scenario.profiles import FAST, GOOD_CDB
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing

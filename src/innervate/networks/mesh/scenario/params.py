@@ -58,13 +58,9 @@ def parameters(
 ) -> dict[str, Any]:
     """The protocol's parameters without a fence and standby gateways.
 
-    Args:
-        profile: the radio's.
-        settings: a MeshProtocolTable; what it leaves out comes from the profile.
-        nodes: 1 .. 254.
-        degree: most neighbours of a node, as far as is known.
-        monitor: its number, 254 = whoever is gateway.
-        min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
+    What `settings`, a MeshProtocolTable, leave out comes from the radio's profile. `degree`: most
+    neighbours of a node, as far as is known. `monitor`: its number, 254 = whoever is gateway.
+    `min_rssi_dbm`: of the weakest link that is reported; None = 2 dB above the 50 % point.
 
     Raises:
         ValueError: a parameter leaves its range; the message is "key:what is wrong".

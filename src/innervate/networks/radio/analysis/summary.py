@@ -23,11 +23,9 @@ PAIRS_FROM = 20_000  # successes whose order is looked at
 
 
 def summarize(result: Any, name: str | None = None) -> RadioSummary:
-    """The summary of a run; what never happened is None.
+    """The summary of a run whose rows were kept; what never happened is None.
 
-    Args:
-        result: of `sim.radio.simulate`, with its rows kept.
-        name: what to call it, where its plan has no scenario.
+    `name` is what to call it, where its plan has no scenario.
     """
     plan, counts = result.plan, result.counts
     found, steady = packets.successes(result), packets.settled(result)

@@ -40,11 +40,9 @@ class Ending(Induction):
 
 
 class Hearing(Ending):
-    """Hears a report by any of its minislots.
+    """A station hears a report by any of its minislots.
 
-    Args:
-        one: the station.
-        shared: how the round's record is called, so that stations may have the same.
+    `shared` is how the round's record is called, so that stations may have the same.
     """
 
     looped = "hear_report"
@@ -68,9 +66,7 @@ class Hearing(Ending):
 class Report:
     """Stations a and b of a stage hear its frame as a report.
 
-    Args:
-        stage: with both, and parameters.
-        alike: both have the same record of the round.
+    `alike`: both have the same record of the round.
     """
 
     def __init__(self, known: Source, stage: Stage, alike: bool) -> None:
