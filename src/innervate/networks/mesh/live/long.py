@@ -28,12 +28,8 @@ Maker = Callable[["PieceReceipt"], tuple[int, Any]]
 class Long:
     """A message that goes in pieces; to those who give out turns it is an item as any other.
 
-    Args:
-        dest: its recipient, known by its own number.
-        flags: of its packets.
-        payload: what it says.
-        room: bytes of a packet's payload.
-        chains: those in order that have no end yet, where it has its turn among them; else None.
+    A packet has `room` bytes for a payload; `chains` are those in order that have no end yet,
+    where it has its turn among them, else None.
     """
 
     def __init__(

@@ -50,19 +50,12 @@ class Held(NamedTuple):
 
 
 class Order:
-    """Puts the messages of one sender in order.
-
-    Args:
-        last: the newest one that was handed up already, None = nothing was heard of this sender.
-        wait_us: how long a message waits for one before it.
-        buffer: how many may wait.
-        now: when that one was handed up, us.
-    """
+    """Puts the messages of one sender in order; up to `buffer` wait `wait_us` for one before."""
 
     def __init__(
         self, last: int | None, wait_us: int = WAIT_US, buffer: int = BUFFER, now: int = 0
     ) -> None:
-        self.last = last
+        self.last = last  # newest one that was handed up; None = nothing was heard of this sender
         self.last_at = now  # when it was handed up, us
         self.wait_us = wait_us
         self.buffer = buffer

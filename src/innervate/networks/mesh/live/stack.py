@@ -37,14 +37,10 @@ Params = plain.make("Params", fields.PARAMS)
 
 
 class MeshStack:
-    """One node of a mesh.
+    """One node of a mesh; a robot moves, has a fence and tells where it is.
 
-    Args:
-        number: its id, 0 .. nodes - 1.
-        rank: 0 gateway, 1.. standby, -1 neither.
-        params: the protocol's parameters by name (`mesh_fields.PARAMS`).
-        seed: any whole number; nodes must have different ones.
-        robot: True = it moves, has a fence and tells where it is.
+    Its `rank` is 0 for a gateway, 1.. for a standby, -1 for others; `params` are named as
+    `mesh_fields.PARAMS`, and no two nodes may have the same `seed`.
     """
 
     timers = const.TIMERS

@@ -27,13 +27,7 @@ def place_at(way: Walk, time_us: int) -> tuple[Point, Point]:
 async def walk(plan: Any, way: Walk, where: Path) -> None:
     """Tell a robot's node where it is, so often as the scenario says; seldom where it stands.
 
-    Args:
-        plan: of the scenario.
-        way: the robot's.
-        where: the node's status socket.
-
-    Raises:
-        LiveError: the node is no robot.
+    `where` is the node's status socket. Raises LiveError: the node is no robot.
     """
     loop = asyncio.get_running_loop()
     began, period_s = loop.time(), plan.sample_us / 1e6

@@ -23,10 +23,8 @@ TIMING = ("slot_us", "packet_slots", "ta_us", "dmax_us")
 class StationStack(CabledStack):
     """One station with practical CSMA/CD-R; what it sends goes to its radio, not out of a port.
 
-    Args:
-        number: in its data frames, 0 .. 1023.
-        params: the protocol's parameters by name (`radio_fields.PARAMS`).
-        seed: any whole number; stations must have different ones.
+    Its `number` in data frames is 0 .. 1023, `params` are named as `radio_fields.PARAMS`, and no
+    two stations may have the same `seed`.
     """
 
     timers = TIMERS

@@ -98,9 +98,8 @@ class Setting:
     # p-persistent with an infinite population.
     p: float | None = None
     reading: str = "A"  # "A" or "B"
-    window: int | None = (
-        None  # slots of the reservation window; T (T - Tc0 at Tc0 = 0) if not given
-    )
+    # Slots of the reservation window; T (T - Tc0 at Tc0 = 0) if it is not given.
+    window: int | None = None
     backoff: str = "binary"  # or "linear": k + 1 values after k collisions [radio Q15]
     backoff_slots: int = 1  # how long a slot of the backoff is
     # A packet is on air that long after its decision; carriers that come up meanwhile go unnoticed.
