@@ -8,8 +8,7 @@ from innervate.live import identity
 from innervate.live.enrolment import Authority
 from innervate.live.errors import LiveError
 from innervate.networks.mesh.verify import model as mesh_model
-from innervate.networks.radio.slotted.drive import Options
-from innervate.networks.radio.slotted.model import Setting
+from innervate.networks.radio.slotted.drive import Setting
 from innervate.networks.skin.verify import graphs
 from innervate.scenario import ScenarioError, loads
 from innervate.scenario.source import Source, check_plain
@@ -37,10 +36,6 @@ def nested(depth):
 def slotted(**changes):
     Setting(**{"mac": "slotted-aloha", "stations": 2, "packet_slots": 5, "traffic": "saturated",
                **changes}).check()  # fmt: skip
-
-
-def options(**changes):
-    Options(**changes).check()
 
 
 def key_of(parts):
@@ -86,14 +81,14 @@ BOTH_SIDES = {
     "slotted slots at least": (lambda n: slotted(packet_slots=n), 1, 0),
     "slotted successes": (lambda n: slotted(packets=n), 50_000_000, 50_000_001),
     "slotted load": (lambda n: slotted(traffic="poisson", load=n), 50.0, 50.0001),
-    "a backoff slot": (lambda n: options(backoff_slots=n), 10_000, 10_001),
-    "a backoff slot at least": (lambda n: options(backoff_slots=n), 1, 0),
-    "turnaround": (lambda n: options(turnaround_slots=n), 10_000, 10_000.1),
-    "turnaround at least": (lambda n: options(turnaround_slots=n), 0, -0.1),
-    "return": (lambda n: options(return_slots=n), 10_000, 10_000.1),
-    "return at least": (lambda n: options(return_slots=n), 0, -0.1),
-    "a probability": (lambda n: options(p=n), 1, 1.001),
-    "a window at least": (lambda n: options(window=n), 0, -1),
+    "a backoff slot": (lambda n: slotted(backoff_slots=n), 10_000, 10_001),
+    "a backoff slot at least": (lambda n: slotted(backoff_slots=n), 1, 0),
+    "turnaround": (lambda n: slotted(turnaround_slots=n), 10_000, 10_000.1),
+    "turnaround at least": (lambda n: slotted(turnaround_slots=n), 0, -0.1),
+    "return": (lambda n: slotted(return_slots=n), 10_000, 10_000.1),
+    "return at least": (lambda n: slotted(return_slots=n), 0, -0.1),
+    "a probability": (lambda n: slotted(p=n), 1, 1.001),
+    "a window at least": (lambda n: slotted(window=n), 0, -1),
     "certificates put out": (revoked, 64, 65),
     "speed": (playback.Playback, 1_000_000, 1_000_001),
     "speed at least": (playback.Playback, 0.001, 0.0009),

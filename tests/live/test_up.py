@@ -14,6 +14,7 @@ from innervate.live import play, status
 from innervate.live.errors import LiveError
 from innervate.live.up import Processes
 from innervate.networks.mesh.live import walks
+from innervate.networks.mesh.scenario.plan import Walk
 from tests.live.net import until
 
 FIRST_S = 40.0
@@ -93,8 +94,8 @@ def test_what_real_cables_do_by_themselves_is_not_played_and_what_is_not_there_i
 
 @pytest.mark.parametrize("time_us", [0, 1_000_000, 1_500_000, 3_000_000])
 def test_a_walk_is_straight_between_its_points(time_us):
-    points = ((1_000_000, 0, 0), (2_000_000, 100, -200))
-    at, speed = walks.place_at(points, time_us)
+    way = Walk(0, ((1_000_000, 0, 0), (2_000_000, 100, -200)))
+    at, speed = walks.place_at(way, time_us)
     share = min(1.0, max(0.0, time_us / 1e6 - 1.0))
     assert at == (100 * share, -200 * share)
     assert speed == ((100.0, -200.0) if 0 <= time_us - 1_000_000 < 1_000_000 else (0.0, 0.0))

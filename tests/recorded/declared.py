@@ -20,8 +20,7 @@ from innervate.network import Network, networks
 from innervate.networks.mesh.live.parameters import fence_parameters, mesh_parameters
 from innervate.networks.mesh.verify.model import MeshBudget
 from innervate.networks.radio.live.parameters import radio_parameters
-from innervate.networks.radio.slotted.drive import Options
-from innervate.networks.radio.slotted.model import Setting
+from innervate.networks.radio.slotted.drive import Setting
 from innervate.networks.radio.verify.grid import Grid
 from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.sizing import Question
@@ -41,7 +40,7 @@ UP = ("mesh-grid", "mesh-near", "mesh-fence", "mesh-links", "radio-few", "radio-
 OURS = ("skin", "radio", "mesh")
 DECLARED = {"cables": CablesScenario, "channel": ChannelScenario, "field": FieldScenario}
 # What a user or a proof leaves out is as these have it.
-ASKED = (MeshBudget, SkinBudget, Budget, Grid, Question, Options, Setting)
+ASKED = (MeshBudget, SkinBudget, Budget, Grid, Question, Setting)
 FENCE = [[(0, 0), (900, 0), (23_000, 800), (0, 800)], [(50, 50), (60, 50), (60, 60)]]
 
 

@@ -9,18 +9,8 @@ from innervate.live.parameters import check_parameters
 from innervate.networks.mesh import frames, payloads
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import CLASSES
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import csma_fields, fields
-from innervate.networks.mesh.protocol.constants import (
-    ACK,
-    ACK_MORE_BYTES,
-    BODY,
-    DETOURED,
-    MONITOR,
-    MTU,
-    PATH_MAX,
-    SOURCE_ROUTE,
-    TIMERS,
-)
 from innervate.wire.layout import REST
 
 # Acks to as many as are gathered; a whole queue, and what is handed up.
@@ -32,13 +22,13 @@ BODY_OF = ("body", REST, 8, 0)
 CODED = Coded(
     (frames.VERSION, 2), 6,
     (
-        Form({ACK: "ack"}, (*frames.HOP_ACK, BODY_OF), {"body": (BODY, "length")}, "length",
-             ACK_MORE_BYTES, same={"dest": "link_dst"}),
+        Form({const.ACK: "ack"}, (*frames.HOP_ACK, BODY_OF), {"body": (const.BODY, "length")},
+             "length", const.ACK_MORE_BYTES, same={"dest": "link_dst"}),
         Form(payloads.NAMES, (*frames.COMMON, ("path", "path_len", 8, 0), BODY_OF),
-             {"path": (PATH_MAX, "path"), "body": (BODY, "length")}, "length",
+             {"path": (const.PATH_MAX, "path"), "body": (const.BODY, "length")}, "length",
              payloads=payloads.FIELDS),
     ),
-    frames.REASONS, MTU, SOURCE_ROUTE, DETOURED,
+    frames.REASONS, const.MTU, const.SOURCE_ROUTE, const.DETOURED,
 )  # fmt: skip
 RUN = Watched("mesh", "innervate.networks.mesh.sim.simulate:simulation", node=3)
 HERE = "innervate.networks.mesh.board"
@@ -63,15 +53,15 @@ def node_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dic
     count = wanted.pop("nodes", nodes)
     if not 1 <= count <= nodes:
         raise LiveError(f"{where}: {count} nodes do not fit into a class of {nodes}")
-    if count <= wanted.get("monitor", MONITOR) < MONITOR:
+    if count <= wanted.get("monitor", const.MONITOR) < const.MONITOR:
         raise LiveError(f"{where}: monitor={wanted['monitor']} is none of {count} nodes")
     for name in ("queue", "kept"):
         if wanted[name] > small[name]:
             raise LiveError(
                 f"{where}: {name}={wanted[name]} does not fit into {small[name]} places"
             )
-    if wanted.get("mtu", MTU) > MTU:
-        raise LiveError(f"{where}: mtu={wanted['mtu']} is more than a board's {MTU} bytes")
+    if wanted.get("mtu", const.MTU) > const.MTU:
+        raise LiveError(f"{where}: mtu={wanted['mtu']} is more than a board's {const.MTU} bytes")
     own = {"width": nodes, "row": fields.row_bytes(nodes), "places": fields.places(nodes)}
     return {**mesh_parameters(count, wanted, where), **own}
 
@@ -122,10 +112,10 @@ def node(nodes: int) -> Role:
         raise LiveError(f"{nodes} nodes: a node's arrays hold 1 to {CLASSES[-1]}")
     return Role(
         "mesh", "innervate.networks.mesh.protocol.node",
-        _state(size, fields.QUEUE, fields.WAITING, MTU, 0),
+        _state(size, fields.QUEUE, fields.WAITING, const.MTU, 0),
         _params(size, fields.QUEUE, fields.WAITING, 0), fields.FRAME, fields.ITEM,
-        {ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
-        room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=TIMERS,
+        {const.ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
+        room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=const.TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
         watched=RUN._replace(table="nodes"), coded=CODED, frame_bytes=FRAME_BYTES,
         hooks="innervate.networks.mesh:board_links", live=f"{HERE}:live_node",

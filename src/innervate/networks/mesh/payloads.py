@@ -1,19 +1,6 @@
 """Payloads of the mesh's packets [mesh 2], by type, and what forwarding puts around them."""
 
-from innervate.networks.mesh.protocol.constants import (
-    ACTIVATE,
-    ALARM,
-    DATA,
-    DETOURED,
-    E2E_ACK,
-    GRAPH,
-    POSITION,
-    REQUEST,
-    RESPONSE,
-    SOURCE_ROUTE,
-    TABLE,
-    TABLE_ACK,
-)
+from innervate.networks.mesh.protocol import constants as const
 from innervate.wire.layout import PAIRS, REST, is_fixed, read, width
 
 NEIGHBOUR = (("id", 0, 8, 0), ("rssi", 0, 8, 1))
@@ -47,16 +34,16 @@ RAISED = (("robot", 0, 8, 0), ("fence", 0, 8, 0), ("number", 0, 8, 0), ("alarm",
 
 # A payload: value of the type, name, fields (see layout.py).
 LAYOUTS = (
-    (REQUEST, "request", ASKING),
-    (RESPONSE, "response", ANSWERING),
-    (TABLE, "table", ROUTE + PART + (("groups", REST, GROUP, 0),)),
-    (TABLE_ACK, "table ack", VERSION + (("parts", 0, 16, 0),)),
-    (ACTIVATE, "activate", VERSION),
-    (DATA, "data", (("data", REST, 8, 0),)),
-    (E2E_ACK, "end-to-end ack", (("acked", REST, 16, 0),)),
-    (ALARM, "alarm", RAISED + MOVING + (("time", 0, 32, 0), ("margin", 0, 16, 1))),
-    (POSITION, "position", (("robot", 0, 8, 0),) + MOVING + (("said", 0, 8, 0),)),
-    (GRAPH, "graph", PART + (("part", REST, 8, 0),)),
+    (const.REQUEST, "request", ASKING),
+    (const.RESPONSE, "response", ANSWERING),
+    (const.TABLE, "table", ROUTE + PART + (("groups", REST, GROUP, 0),)),
+    (const.TABLE_ACK, "table ack", VERSION + (("parts", 0, 16, 0),)),
+    (const.ACTIVATE, "activate", VERSION),
+    (const.DATA, "data", (("data", REST, 8, 0),)),
+    (const.E2E_ACK, "end-to-end ack", (("acked", REST, 16, 0),)),
+    (const.ALARM, "alarm", RAISED + MOVING + (("time", 0, 32, 0), ("margin", 0, 16, 1))),
+    (const.POSITION, "position", (("robot", 0, 8, 0),) + MOVING + (("said", 0, 8, 0),)),
+    (const.GRAPH, "graph", PART + (("part", REST, 8, 0),)),
 )
 # The payload of an ORDERED packet that is a piece of a message: no message is PIECE_AHEAD numbers
 # ahead of the one before it, which is what stands there else.
@@ -81,7 +68,7 @@ SIZES = {kind: (width(fields) + 7) // 8 for kind, _name, fields in LAYOUTS if is
 
 def begin_of(flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> int:
     """Where the origin's own payload begins: behind a source route [mesh 8]."""
-    return at + 1 + data[at] if flags & SOURCE_ROUTE and at < end else at
+    return at + 1 + data[at] if flags & const.SOURCE_ROUTE and at < end else at
 
 
 def end_of(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> int:
@@ -90,7 +77,7 @@ def end_of(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int,
     With tables DETOURED is a mark and nothing else. No frame says whether there are tables: where
     both can be, we take the last bytes for failed nodes.
     """
-    if flags & DETOURED and at < end and data[end - 1] > 0:
+    if flags & const.DETOURED and at < end and data[end - 1] > 0:
         stop = end - 1 - data[end - 1]
         if is_whole(kind, data, at, stop):
             return stop
@@ -101,7 +88,7 @@ def is_whole(kind: int, data: bytes | bytearray | memoryview, at: int, end: int)
     """True if bytes `at` to `end` are exactly a payload of this kind."""
     if kind in SIZES:
         return end - at == SIZES[kind]
-    if kind == E2E_ACK:  # the most frequent of them
+    if kind == const.E2E_ACK:  # the most frequent of them
         return at <= end and (end - at) % 2 == 0
     return at <= end and read(FIELDS[kind], data, 8 * at, 8 * end, []) == 8 * end
 
@@ -109,13 +96,13 @@ def is_whole(kind: int, data: bytes | bytearray | memoryview, at: int, end: int)
 def fits(kind: int, flags: int, data: bytes | bytearray | memoryview, at: int, end: int) -> bool:
     """True if bytes `at` to `end` are a payload of this kind and what forwarding puts around."""
     begin = begin_of(flags, data, at, end)
-    if kind == DATA:
+    if kind == const.DATA:
         return begin <= end
     return is_whole(kind, data, begin, end_of(kind, flags, data, begin, end))
 
 
 def is_piece(flags: int, seq: int, data: bytes) -> bool:
     """True if the payload of ORDERED packet `seq` to one recipient is a piece of a message."""
-    if flags & SOURCE_ROUTE or 8 * len(data) <= width(PIECE):
+    if flags & const.SOURCE_ROUTE or 8 * len(data) <= width(PIECE):
         return False
     return int.from_bytes(data[:2], "big") == (seq + PIECE_AHEAD) & 65_535

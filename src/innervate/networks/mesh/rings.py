@@ -1,7 +1,8 @@
 """Areas that are bounded by rings of corners, in whole numbers: an outer one, with holes."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations
+from typing import Any
 
 Point = tuple[int, int]
 Ring = Sequence[Point]
@@ -12,12 +13,33 @@ def opened(ring: Ring) -> list[Point]:
     return list(ring[:-1] if len(ring) > 1 and ring[0] == ring[-1] else ring)
 
 
+def table(rings: Sequence[Ring], room: int) -> dict[str, Any]:
+    """All rings' corners in one table of so much room, each with the place of the next one."""
+    px, py, after = ([0] * room for _ in range(3))
+    at = 0
+    for ring in rings:
+        for i, (x, y) in enumerate(ring):
+            px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
+        at += len(ring)
+    return {"points": at, "px": px, "py": py, "after": after}
+
+
+def of_table(found: Mapping[str, Any]) -> list[list[Point]]:
+    """The rings that `table` made one of; none if there is no fence."""
+    rings: list[list[Point]] = []
+    start = 0
+    for i in range(found["points"]):
+        if found["after"][i] != i + 1:  # the last corner of a ring leads back to its first
+            ends = slice(start, i + 1)
+            rings.append(list(zip(found["px"][ends], found["py"][ends], strict=True)))
+            start = i + 1
+    return rings
+
+
 def mistake(rings: Sequence[Ring], names: Sequence[str]) -> tuple[int, str] | None:
     """Why no area is inside, or nobody could say which: at which ring, and in words.
 
-    Args:
-        rings: the outer one, then its holes.
-        names: what each is called.
+    The outer ring is the first, then its holes.
     """
     for index, (ring, name) in enumerate(zip(rings, names, strict=True)):
         if len(ring) < 3:

@@ -1,6 +1,5 @@
 """What is particular to mesh runs: the simulation, the summary, the tables."""
 
-from collections.abc import Callable
 from typing import Any
 
 from innervate.networks.mesh import tables as mesh_tables
@@ -19,16 +18,9 @@ __all__ = ["call_words", "columns", "simulate", "summarize", "tables_of", "trail
 Columns = dict[str, Any]
 
 
-def simulate(
-    plan: Any,
-    *,
-    plain: bool,
-    checks: bool,
-    received: bool | None,
-    progress: Callable[[int, int], None] | None,
-) -> Any:
+def simulate(plan: Any, *, received: bool | None, **how: Any) -> Any:
     """Run a mesh plan; `received` is for skins."""
-    return simulator.simulate(plan, plain=plain, checks=checks, progress=progress)
+    return simulator.simulate(plan, **how)
 
 
 def tables_of(_result: Any) -> tuple[Table, ...]:

@@ -1,6 +1,6 @@
 """What is particular to radio runs: the simulation, the summary, the tables."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from innervate.dialect.access import CLOCK, LEAVE, RESULT
@@ -16,18 +16,11 @@ from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.trace.tables import Table, taken
 
 
-def simulate(
-    plan: Any,
-    *,
-    plain: bool,
-    checks: bool,
-    received: bool | None,
-    progress: Callable[[int, int], None] | None,
-) -> Any:
+def simulate(plan: Any, *, received: bool | None, **how: Any) -> Any:
     """Run a radio plan, on the level it asks for; `received` is for skins."""
     if _is_slotted(plan):
-        return radio_slotted.simulate(plan, plain)
-    return simulator.simulate(plan, plain=plain, checks=checks, progress=progress)
+        return radio_slotted.simulate(plan, how["plain"])
+    return simulator.simulate(plan, **how)
 
 
 def _is_slotted(plan: Any) -> bool:

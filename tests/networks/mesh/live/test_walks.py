@@ -8,9 +8,10 @@ import pytest
 
 from innervate.live.errors import LiveError
 from innervate.networks.mesh.live.walks import STANDING_S, place_at, walk
+from innervate.networks.mesh.scenario.plan import Walk
 from tests.live import time_by_hand
 
-POINTS = [(1_000_000, 100, 100), (2_000_000, 300, 0), (4_000_000, 500, 400)]
+WAY = Walk(0, ((1_000_000, 100, 100), (2_000_000, 300, 0), (4_000_000, 500, 400)))
 PLAN = SimpleNamespace(sample_us=250_000, origin_cm=(100, -50))
 
 
@@ -28,7 +29,7 @@ PLAN = SimpleNamespace(sample_us=250_000, origin_cm=(100, -50))
     ],
 )
 def test_where_it_is_and_how_fast(at_us, place, speed):
-    assert place_at(POINTS, at_us) == (place, speed)
+    assert place_at(WAY, at_us) == (place, speed)
 
 
 def told(folder, until_s, answer=lambda _: {"ok": True}):
@@ -48,7 +49,7 @@ def told(folder, until_s, answer=lambda _: {"ok": True}):
 
     async def main():
         server = await asyncio.start_unix_server(serve, folder / "r.sock")
-        task = asyncio.ensure_future(walk(PLAN, POINTS, folder / "r.sock"))
+        task = asyncio.ensure_future(walk(PLAN, WAY, folder / "r.sock"))
         await asyncio.wait([task], timeout=until_s)
         task.cancel()
         over.set()

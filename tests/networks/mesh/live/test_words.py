@@ -8,8 +8,9 @@ from innervate import scenario as scenarios
 from innervate.live.machine import Machine, on
 from innervate.networks.mesh.live import alarms, words
 from innervate.networks.mesh.live.alarms import Alarm, Alarms, read_alarm
-from innervate.networks.mesh.live.deployment import MeshDeployment, rings_of
+from innervate.networks.mesh.live.deployment import MeshDeployment
 from innervate.networks.mesh.live.parameters import fence_parameters
+from innervate.networks.mesh.rings import of_table
 from innervate.wire.layout import width
 
 TOLD = {"gateway": None, "epoch": 3, "table": 7, "neighbours": [], "routes": {}}
@@ -100,7 +101,7 @@ def test_a_nodes_file_has_its_role_its_rank_and_the_fence():
     params = {**made.plan.params, **fence_parameters([fence["polygon"], *fence["holes"]])}
     for name in ("points", "px", "py", "after"):
         assert params[name] == made.plan.params[name]
-    assert rings_of({"points": 0}) == []
+    assert of_table({"points": 0}) == []
 
 
 def test_robots_of_a_plan_are_walked_by_the_nodes_that_bear_them():

@@ -6,7 +6,6 @@ import pytest
 
 from innervate import scenario
 from innervate.networks.mesh.analysis.alarms import Crossing
-from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.analysis.way import Hop
 from innervate.networks.mesh.plot import map as mesh_map
@@ -23,6 +22,7 @@ from innervate.networks.mesh.plot.map import (
 )
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR
+from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.plot import svg
 
 NODES = "".join(f"[[node]]\nx_m = {10 * i}\ny_m = 0\n" for i in range(5))

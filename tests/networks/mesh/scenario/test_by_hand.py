@@ -297,7 +297,7 @@ def test_a_robot_without_a_place_is_refused():
      "before that nobody responds"),
 ])  # fmt: skip
 def test_what_is_out_of_range_is_told_by_the_key_that_a_scenario_has(name, value, says):
-    fine = {one: low for one, _, low, *_ in params.PARAMS} | {
+    fine = {one: low for one, _, low, *_ in params.fields.PARAMS} | {
         "tick_us": 500_000, "period": 10, "period_max": 20, "listen_us": 1_000_000,
         "collect_us": 2_000_000,
     }  # fmt: skip

@@ -7,8 +7,8 @@ import pytest
 
 from innervate.networks.radio.slotted import chance, contend, drive, turns
 from innervate.networks.radio.slotted.draws import UNIT, choose, draw, generator
-from innervate.networks.radio.slotted.drive import Dcf, Job, Options, dcf_here, poisson_table
-from innervate.networks.radio.slotted.model import Setting, _measure, _Times
+from innervate.networks.radio.slotted.drive import Dcf, Job, Setting, dcf_here, poisson_table
+from innervate.networks.radio.slotted.model import _measure
 from innervate.networks.radio.slotted.recorder import (
     COLLISIONS,
     DISASTER,
@@ -24,6 +24,7 @@ from innervate.networks.radio.slotted.recorder import (
 )
 
 LATE = 10**6
+TIMES = Dcf(slot_us=50, payload_us=8184, success_us=8982, collision_us=8713, window=32, stages=5)
 
 
 def offered(*arrivals, traffic=POISSON):
@@ -206,8 +207,9 @@ def measured(until=None, warmup=0.0, stations=2):
         made.counts[COLLISIONS] = 10 * (k + 1)
         deliver(made, k % 2 if k < 4 else 0, 100 * (k + 1))
     made.counts[COLLISIONS] = 99
-    setting = Setting("csma-cd-d2", stations, 4, "saturated", warmup=warmup, until_slots=until)
-    return _measure(made, setting, _Times(10, 40, 10))
+    times = replace(TIMES, slot_us=10, payload_us=40)
+    return _measure(made, Setting("dcf", stations, 4, "saturated", warmup=warmup,
+                                  until_slots=until, dcf=times), gap=10)  # fmt: skip
 
 
 def test_all_of_a_run_counts_up_to_the_idle_slot_of_its_last_packet():
@@ -236,6 +238,7 @@ def test_the_warm_up_ends_with_the_idle_slot_of_its_last_packet():
     assert (nothing.throughput, nothing.duration_slots, nothing.order) == (0.0, 0.0, [])
 
 
+USUAL = {"mac": "tdma", "stations": 2, "packet_slots": 5, "traffic": "saturated"}
 EDGES = [  # of an option: what is taken, and what is not any more
     ("p", (1e-9, 1), (0, -0.1, 1.001)), ("reading", ("A", "B"), ("C", "")),
     ("window", (0, 1, 500), (-1,)), ("backoff", ("binary", "linear"), ("cubic",)),
@@ -248,13 +251,10 @@ EDGES = [  # of an option: what is taken, and what is not any more
 @pytest.mark.parametrize(("name", "taken", "refused"), EDGES)
 def test_an_option_is_taken_up_to_its_edge_and_no_further(name, taken, refused):
     for value in taken:
-        Options(**{name: value}).check()
+        Setting(**USUAL, **{name: value}).check()
     for value in refused:
         with pytest.raises(ValueError, match=name if name != "p" else "p is a probability"):
-            Options(**{name: value}).check()
-
-
-TIMES = Dcf(slot_us=50, payload_us=8184, success_us=8982, collision_us=8713, window=32, stages=5)
+            Setting(**USUAL, **{name: value}).check()
 
 
 @pytest.mark.parametrize(
@@ -271,10 +271,10 @@ def test_times_of_a_dcf_are_sound_up_to_their_edges(changes, sound):
     made = replace(TIMES, **changes)
     assert made.sound == sound
     if sound:
-        Options(dcf=made).check()
+        Setting(**USUAL, dcf=made).check()
     else:
         with pytest.raises(ValueError, match="dcf needs times > 0"):
-            Options(dcf=made).check()
+            Setting(**USUAL, dcf=made).check()
 
 
 def test_a_dcf_on_the_papers_channel_ends_with_a_slot_an_answer_and_a_slot():
@@ -303,17 +303,16 @@ SETTINGS = [
 
 @pytest.mark.parametrize(("taken", "refused"), SETTINGS)
 def test_a_setting_is_taken_up_to_its_edge_and_no_further(taken, refused):
-    usual = {"mac": "tdma", "stations": 2, "packet_slots": 5, "traffic": "saturated"}
-    Setting(**usual | taken).check()
+    Setting(**USUAL | taken).check()
     with pytest.raises(ValueError, match=r"are|is|belongs|needs"):
-        Setting(**usual | refused).check()
+        Setting(**USUAL | refused).check()
 
 
 def driven(mac, traffic=SATURATED, stations=3, load=None, **options):
     """What a protocol's loop is called with, and the idle time of its last packet."""
     called = []
-    made = Job(mac, new_recorder(traffic, stations, 4, generator(1, "x")), 5, load,
-               Options(**options), plain=True)  # fmt: skip
+    setting = Setting(mac, 0 if load else stations, 5, "poisson", load=load, **options)
+    made = Job(setting, new_recorder(traffic, stations, 4, generator(1, "x")), plain=True)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(drive, "loop", lambda function, plain: lambda recorder, *values:
                         called.append((function.__name__, *values)))  # fmt: skip

@@ -4,17 +4,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.networks.mesh.analysis.fence import (
-    Edge,
-    crossings,
-    edges_of,
-    margin_cm,
-    overrun_cm,
-    position_cm,
-)
+from innervate.networks.mesh.analysis.fence import Edge, crossings, edges_of, margin_cm, overrun_cm
 from innervate.networks.mesh.analysis.messages import NEVER, percentiles, timeout_us
 from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
+from innervate.networks.mesh.scenario.plan import position_cm
 
 # A place is rounded along each axis, by half a cm and by half a unit: at most so far away.
 ROUNDED_UNITS = 2**0.5

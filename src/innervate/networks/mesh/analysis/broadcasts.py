@@ -14,15 +14,10 @@ from innervate.scenario.actions.field import KILL, RESTART, REVIVE
 def missed(
     result: Any, at: Numbers, node: Numbers, those: Numbers, of: Numbers, window_us: int
 ) -> Flags:
-    """Per broadcast, whether somebody missed it who was on for as long as it could take.
+    """Per broadcast, whether somebody missed it who was on for `window_us` after its offer.
 
-    Args:
-        result: of a run.
-        at: when each message of the run was offered.
-        node: to whom.
-        those: which of the messages are the broadcasts, in order.
-        of: per delivery of a message which message it is of.
-        window_us: for how long after its offer a message may come.
+    `at` and `node` say when and to whom each message of the run was offered, `those` which of them
+    are broadcasts, in order, and `of` which message each delivery is of.
     """
     if not len(those):
         return np.zeros(0, np.bool_)

@@ -1,15 +1,14 @@
 """How far a walk leads out of a fence, and when it crosses; floats, cm and us of true time."""
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from heapq import heappop, heappush
 from itertools import pairwise
 from math import hypot
 from typing import Any, NamedTuple
 
-from innervate.networks.mesh.scenario.plan import Walk
+from innervate.networks.mesh.rings import of_table
+from innervate.networks.mesh.scenario.plan import Point, Walk, position_cm
 
-Point = tuple[float, float]
 Edge = tuple[Point, Point]
 CLOSE_CM = 1e-3  # overruns are right to this
 
@@ -21,32 +20,15 @@ class Crossing(NamedTuple):
     outward: bool  # True = it leaves, False = it comes back
 
 
+def rings_of(plan: Any) -> list[list[Point]]:
+    """The rings of a mesh plan's fence, cm in the world; none without a fence."""
+    unit, (x0, y0) = plan.params["unit_cm"], plan.origin_cm
+    return [[(x0 + unit * x, y0 + unit * y) for x, y in ring] for ring in of_table(plan.params)]
+
+
 def edges_of(plan: Any) -> list[Edge]:
-    """The edges of a mesh plan's fence, all rings, cm in the world; empty without a fence."""
-    params, unit = plan.params, plan.params["unit_cm"]
-    count = params["points"]
-    corners = [
-        (plan.origin_cm[0] + unit * x, plan.origin_cm[1] + unit * y)
-        for x, y in zip(params["px"][:count], params["py"][:count], strict=True)
-    ]
-    return [(corners[i], corners[params["after"][i]]) for i in range(count)]
-
-
-def position_cm(walk: Walk, time_us: float) -> Point:
-    """Where the robot is: straight between its points, standing before the first and at the last.
-
-    Raises:
-        ValueError: the walk has no points.
-    """
-    if not walk.points:
-        raise ValueError("a walk needs at least one point")
-    behind = bisect_right(walk.points, time_us, key=lambda point: point[0])
-    if behind in (0, len(walk.points)):
-        _, x, y = walk.points[max(0, behind - 1)]
-        return (x, y)
-    (t0, x0, y0), (t1, x1, y1) = walk.points[behind - 1], walk.points[behind]
-    share = (time_us - t0) / (t1 - t0)
-    return (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
+    """The edges of all its rings; empty without a fence."""
+    return [edge for ring in rings_of(plan) for edge in pairwise([*ring, ring[0]])]
 
 
 def margin_cm(edges: Sequence[Edge], place: Point) -> float:

@@ -33,17 +33,12 @@ NOTHING_KNOWN = Traffic()
 
 
 def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") -> Headline:
-    """The state of a mesh.
+    """The state of a mesh; of nodes that are missing it says `absent`: "off", "silent".
 
     degraded: a message or an alarm was lost or came twice, a broadcast missed somebody, a packet
     met a node twice, a node is off, cut off or without a way, the network is in parts. down:
     nobody's messages get through to a gateway, nor did anything come to anybody else since.
     no data: nobody has heard a gateway yet.
-
-    Args:
-        ways: who reaches the gateway now.
-        traffic: what became of what was sent.
-        absent: what is said of nodes that are missing: "off", "silent".
     """
     lost = traffic.crossings + traffic.decided - traffic.learned - traffic.delivered
     if not (ways.on & ways.joined).any() and not ways.off.any() and not lost:

@@ -76,15 +76,7 @@ class Ways(NamedTuple):
 
 
 def ways(known: Choices, carries: Flags, on: Flags, off: Flags, leads: Flags) -> Ways:
-    """Who reaches a gateway now.
-
-    Args:
-        known: what the nodes know.
-        carries: (n, n) flags, sender by receiver: messages get over this link.
-        on: see Ways; so are the next two.
-        off: ...
-        leads: ...
-    """
+    """Who reaches a gateway now; `carries`, (n, n) flags: from whom to whom messages get over."""
     count = len(on)
     nodes = np.arange(count)
     live = carries & on[:, None] & on[None, :]

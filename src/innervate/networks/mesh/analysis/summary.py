@@ -21,11 +21,7 @@ NONE = 255  # no next hop, no alternate
 
 
 def summarize(result: Any) -> keys.MeshSummary:
-    """The summary of a run; what never happened is None.
-
-    Args:
-        result: of `sim.mesh.simulate`, with its rows kept.
-    """
+    """The summary of a run whose rows were kept; what never happened is None."""
     plan, counts = result.plan, result.counts
     found, kinds = messages.messages(result), network.acked_kinds(result.sent)
     led, ground = network.gateways(result), Ground(plan)

@@ -38,19 +38,10 @@ def copies(result: Any, crossing: Crossing) -> list[Hop]:
         mine &= sent["time"] < crossing.raised_us + 2_000_000
     else:
         mine = np.zeros(len(sent), np.bool_)
-    rows = np.sort(sent[mine], order="time")
-    return [
-        Hop(
-            start_us=int(row["time"]),
-            end_us=int(row["end"]),
-            node=int(row["node"]),
-            to=int(row["link_dst"]),
-            flooded=bool(row["flags"] & FLOOD),
-            path_len=int(row["path_len"]),
-            receivers=int(row["receivers"]),
-        )
-        for row in rows
-    ]
+    names = ["time", "end", "node", "link_dst", "flags", "path_len", "receivers"]
+    rows = np.sort(sent[mine], order="time")[names].tolist()
+    return [Hop(start, end, node, to, bool(flags & FLOOD), length, heard)
+            for start, end, node, to, flags, length, heard in rows]  # fmt: skip
 
 
 def way(result: Any, crossing: Crossing, sent: list[Hop] | None = None) -> list[Hop]:

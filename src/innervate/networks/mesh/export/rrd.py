@@ -7,7 +7,7 @@ import numpy as np
 
 from innervate.export.recording import INFORMATION, WARNING
 from innervate.export.rrd_parts import ALARM, GREY, INK, PORTS, Column, Log, Parts
-from innervate.networks.mesh.analysis.fence import position_cm
+from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.scenario.actions.field import KILL, REVIVE
 
 STEP_US = 100_000  # between two places of a robot

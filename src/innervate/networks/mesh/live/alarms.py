@@ -17,27 +17,17 @@ SPEED_MAX = 127
 
 
 class Alarm(NamedTuple):
-    """An alarm.
+    """An alarm of the virtual fence."""
 
-    Attributes:
-        kind: "predict" (it is about to cross), "cross", "lost" (not heard any more) or "clear".
-        robot: whom it is about.
-        reporter: who raised it: the robot, a witness or the monitor.
-        fence: the fence's number.
-        number: counts its reporter's alarms, modulo 256.
-        x_cm: where the robot was, from the fence's origin.
-        y_cm: the same.
-        margin_cm: how far inside, negative outside.
-    """
-
-    kind: str
-    robot: int
-    reporter: int
-    fence: int
-    number: int
+    kind: str  # "predict" (it is about to cross), "cross", "lost" (not heard any more) or "clear"
+    robot: int  # whom it is about
+    reporter: int  # who raised it: the robot, a witness or the monitor
+    fence: int  # the fence's number
+    number: int  # counts its reporter's alarms, modulo 256
+    # x_cm, y_cm: where the robot was, from the fence's origin
     x_cm: int
     y_cm: int
-    margin_cm: int
+    margin_cm: int  # how far inside, negative outside
 
 
 def read_alarm(reporter: int, body: bytes, unit_cm: int) -> Alarm | None:
@@ -68,15 +58,11 @@ def _bound(value: float, most: int) -> int:
 
 
 class Alarms:
-    """Alarms that came in.
-
-    Attributes:
-        arrivals: hands them up.
-        recent: the newest, with the second of the epoch at which they came.
-    """
+    """Alarms that came in, and who waits for them."""
 
     def __init__(self) -> None:
         self.arrivals: Arrivals[Alarm] = Arrivals()
+        # The newest, with the second of the epoch at which they came.
         self.recent: deque[tuple[float, Alarm]] = deque(maxlen=SHOWN)
 
     def note(self, alarm: Alarm) -> None:

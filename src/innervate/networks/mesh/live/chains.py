@@ -12,14 +12,10 @@ from innervate.networks.mesh.live.order import BOOTS
 
 
 class Chains:
-    """Our messages that are to come in order and have no end yet, by recipient.
-
-    Args:
-        boot: of this machine, 0 to 127, where our numbers were drawn; None = they go on behind
-            those that we had.
-    """
+    """Our messages that are to come in order and have no end yet, by recipient."""
 
     def __init__(self, boot: int | None = None) -> None:
+        # Of this machine, 0 to 127, where our numbers were drawn; None = they go on behind others.
         self._boot = boot
         self._reached: set[int] = set()  # recipients that had one from us
         self._open: defaultdict[int, list[int]] = defaultdict(list)  # numbers, the newest last

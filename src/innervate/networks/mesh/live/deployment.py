@@ -6,6 +6,7 @@ from typing import Any
 from innervate.live.deployment import Stage, Table
 from innervate.live.in_field import FieldDeployment
 from innervate.networks.mesh.live import walks
+from innervate.networks.mesh.rings import of_table
 
 # They follow from the file itself, stand in its [fence], or are of live links and no simulation.
 NOT_IN_FILES = ("nodes", "width", "row", "told", "places", "points", "px", "py", "after",
@@ -28,7 +29,7 @@ class MeshDeployment(FieldDeployment):
         if plan.robots[number]:
             head["robot"] = True
         tables = {"protocol": {k: v for k, v in plan.params.items() if k not in NOT_IN_FILES}}
-        rings = rings_of(plan.params)
+        rings = [[list(corner) for corner in ring] for ring in of_table(plan.params)]
         if rings:
             tables["fence"] = {"polygon": rings[0], "holes": rings[1:]}
         return head, tables
@@ -36,18 +37,4 @@ class MeshDeployment(FieldDeployment):
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
         """Robots say where they are; that has no end."""
         plan = self.plan
-        return [
-            walks.walk(plan, walk.points, stage.socket(self.names[walk.node]))
-            for walk in plan.walks
-        ]
-
-
-def rings_of(params: dict[str, Any]) -> list[list[list[int]]]:
-    """The polygon of a fence and its holes; none if there is no fence."""
-    rings: list[list[list[int]]] = []
-    start = 0
-    for i in range(params["points"]):
-        if params["after"][i] != i + 1:  # the last corner of a ring leads back to its first
-            rings.append([[params["px"][k], params["py"][k]] for k in range(start, i + 1)])
-            start = i + 1
-    return rings
+        return [walks.walk(plan, walk, stage.socket(self.names[walk.node])) for walk in plan.walks]

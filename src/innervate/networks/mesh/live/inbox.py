@@ -19,15 +19,7 @@ HAD_US = 30_000_000  # a packet is tried for 26 s at most
 class Inbox:
     """Messages that came, until they are handed up.
 
-    Args:
-        orderly: puts them in order.
-        acknowledge: is told sender and number of each that may be acknowledged.
-        outcomes: how many came is counted here, by words.
-
-    Attributes:
-        arrivals: hands up messages as they come.
-        refuse: is told sender, number and content of a last piece whose message is not whole.
-        refused: is told who cannot have one of ours whole, and the refusal.
+    `acknowledge` is told sender and number of each that may be; `outcomes` counts them, by words.
     """
 
     def __init__(
@@ -38,7 +30,9 @@ class Inbox:
         self.orderly.on_up = acknowledge
         self.outcomes = outcomes
         self.pieces = Pieces()
+        # Is told sender, number and content of a last piece whose message is not whole.
         self.refuse: Callable[[int, int, Piece], None] = lambda *_: None
+        # Is told who cannot have one of ours whole, and the refusal.
         self.refused: Callable[[int, Piece], None] = lambda *_: None
         self._acknowledge = acknowledge
         self._came: list[tuple[Message, Piece | None, bool]] = []  # True = it came before

@@ -28,16 +28,8 @@ Maker = Callable[["PieceReceipt"], tuple[int, Any]]
 class Long:
     """A message that goes in pieces; to those who give out turns it is an item as any other.
 
-    Args:
-        dest: its recipient, known by its own number.
-        flags: of its packets.
-        payload: what it says.
-        room: bytes of a packet's payload.
-        chains: those in order that have no end yet, where it has its turn among them; else None.
-
-    Attributes:
-        receipt: the user's.
-        on_end: is told its state and why, once.
+    A packet has `room` bytes for a payload; `chains` are those in order that have no end yet,
+    where it has its turn among them, else None.
     """
 
     def __init__(
@@ -45,7 +37,8 @@ class Long:
     ) -> None:
         self.dest, self.flags, self.payload = dest, flags, payload
         self.in_order = chains is not None
-        self.receipt = Receipt()
+        self.receipt = Receipt()  # the user's
+        # Is told its state and why, once.
         self.on_end: Callable[[str, str], None] = lambda _state, _reason: None
         self._chains = chains
         self._room = room - HEAD_BYTES
@@ -112,11 +105,9 @@ class Long:
 
 
 class Refusal:
-    """Tells the sender of a long message that it cannot be whole here.
+    """Tells the sender of a long message, by its name as in its pieces, that it cannot be whole.
 
-    Args:
-        message, size: its name, as in its pieces.
-        on_end: is told the state of what tells it, once.
+    `on_end` is told the state of that, once.
     """
 
     in_order = False
@@ -137,17 +128,13 @@ class Refusal:
 
 
 class PieceReceipt(Receipt):
-    """What becomes of a piece: its message hears of it.
-
-    Attributes:
-        long: the message, or what takes the place of one.
-        at: where the piece begins.
-        is_last: it is sent when all others are acknowledged.
-    """
+    """What becomes of a piece: its message, or what takes the place of one, hears of it."""
 
     def __init__(self, long: Long | Refusal, at: int = 0, is_last: bool = False) -> None:
         super().__init__()
-        self.long, self.at, self.is_last = long, at, is_last
+        self.long = long
+        self.at = at  # where the piece begins
+        self.is_last = is_last  # it is sent when all others are acknowledged
 
     def move(self, state: str, reason: str = "") -> None:
         """Its state changes, and its message hears of that."""

@@ -21,23 +21,7 @@ from innervate.networks.mesh.live.order import Callback, Orderly
 from innervate.networks.mesh.live.outgoing import Outgoing, refused
 from innervate.networks.mesh.live.pieces import Piece
 from innervate.networks.mesh.live.stack import TOO_LONG, MeshStack
-from innervate.networks.mesh.protocol.constants import (
-    AGAIN,
-    ALARM,
-    ALL,
-    DATA,
-    END_TO_END,
-    HANDED_UP,
-    MESSAGE,
-    MONITOR,
-    ORDERED,
-    PRIORITY,
-    REPORT_ACCEPTED,
-    REPORT_ALARM,
-    REPORT_FULL,
-    REPORT_GATEWAY,
-    SAMPLE,
-)
+from innervate.networks.mesh.protocol import constants as const
 
 if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
@@ -47,14 +31,7 @@ FEW = 512  # by who was just switched on: 7 restarts one after the other lead le
 
 
 class MeshNode(LiveNode):
-    """A node of a mesh: sends and receives messages.
-
-    Args as of any node, and:
-        orderly: how messages are put in order.
-
-    Attributes:
-        in_order: True = send and receive in order if nothing else is said.
-    """
+    """A node of a mesh: sends and receives messages, puts them in order if that is asked for."""
 
     stack: MeshStack
 
@@ -69,7 +46,7 @@ class MeshNode(LiveNode):
     ) -> None:
         super().__init__(name, stack, links, sealer, state)
         stack.epoch = self.state.epoch
-        self.in_order = False
+        self.in_order = False  # True = send and receive in order if nothing else is said
         self._ahead = -1  # numbers that were kept last; -1 = none in this life
         self.inbox = Inbox(orderly or Orderly(), self._acknowledge, self.outcomes)
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
@@ -133,12 +110,12 @@ class MeshNode(LiveNode):
             raise TypeError(f"recipient must be a node's number, not {recipient!r}")
         check_bytes(payload)
         chained = self.in_order if in_order is None else in_order
-        chained = chained and recipient not in (ALL, self.stack.node.number)
+        chained = chained and recipient not in (const.ALL, self.stack.node.number)
         nodes = self.stack.params.nodes
-        if not (0 <= recipient < nodes or recipient in (ALL, MONITOR)):
+        if not (0 <= recipient < nodes or recipient in (const.ALL, const.MONITOR)):
             raise ValueError(f"recipient must be 0 to {nodes - 1}, 254 or 255, not {recipient}")
-        flags = (END_TO_END if reliable else 0) | (PRIORITY if priority else 0)
-        flags |= ORDERED if chained else 0
+        flags = (const.END_TO_END if reliable else 0) | (const.PRIORITY if priority else 0)
+        flags |= const.ORDERED if chained else 0
         most = self.outgoing.check(recipient, flags, len(payload))
         self.outcomes["messages accepted"] += 1
         if self.idle():
@@ -195,7 +172,7 @@ class MeshNode(LiveNode):
         item = self._place
         unit_cm = self.stack.params.unit_cm
         item.x, item.y, item.vx, item.vy = place_of(at_cm, speed_cm_s, unit_cm)
-        engine.input(SAMPLE, item)
+        engine.input(const.SAMPLE, item)
 
     def receive_alarms(
         self, callback: Callable[[Alarm], None] | None = None
@@ -241,24 +218,24 @@ class MeshNode(LiveNode):
         }
 
     def _deliver(self, kind: int, frame: Any) -> None:
-        if kind == ALARM:
+        if kind == const.ALARM:
             body, unit_cm = bytes(frame.body[: frame.length]), self.stack.params.unit_cm
             alarm = read_alarm(frame.origin, body, unit_cm)
             if alarm is not None:
                 self.outcomes[f"alarms received: {alarm.kind}"] += 1
                 self.alarms.note(alarm)
-        if kind in (DATA, AGAIN):
+        if kind in (const.DATA, const.AGAIN):
             self.outgoing.turns.heard(frame.origin)
             self.arrived_by[frame.origin] = [*frame.path[: frame.path_len], frame.dest]
-            self.inbox.note(frame, kind == AGAIN)
+            self.inbox.note(frame, kind == const.AGAIN)
 
     def _reported(self, code: int, a: int, b: int) -> None:
-        if code == REPORT_GATEWAY and b != self.state.epoch:
+        if code == const.REPORT_GATEWAY and b != self.state.epoch:
             self.state.epoch = b
             self.save()
-        if code == REPORT_ALARM:
+        if code == const.REPORT_ALARM:
             self.outcomes["alarms raised"] += 1
-        if not REPORT_ACCEPTED <= code <= REPORT_FULL:
+        if not const.REPORT_ACCEPTED <= code <= const.REPORT_FULL:
             return
         self.outgoing.told(code, a, b)
 
@@ -286,7 +263,7 @@ class MeshNode(LiveNode):
         """A message was handed up in its turn: its sender may know."""
         if self.engine is not None:
             self._ending.dest, self._ending.handle = sender, seq
-            self.engine.input(HANDED_UP, self._ending)
+            self.engine.input(const.HANDED_UP, self._ending)
 
     def _refuse(self, sender: int, seq: int, piece: Piece) -> None:
         """The last piece of a message that is not whole came: its sender is to know."""
@@ -294,4 +271,4 @@ class MeshNode(LiveNode):
 
     def _hand_down(self, item: Any) -> None:
         assert self.engine is not None
-        self.engine.input(MESSAGE, item)
+        self.engine.input(const.MESSAGE, item)

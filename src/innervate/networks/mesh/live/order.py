@@ -28,65 +28,43 @@ Callback = Callable[[int, bytes], None]
 
 
 class Message(NamedTuple):
-    """A message that was received.
-
-    Attributes:
-        sender: who sent it.
-        seq: its number.
-        before: the number of the one before it, `seq` = there is none; None = order is no matter.
-        payload: what it says.
-        boot: of its sender's machine, 0 to 127, where that drew its numbers and does not know that
-            we had one of them; None = else. In one boot those drawn later are higher.
-    """
+    """A message that was received."""
 
     sender: int
     seq: int
+    # The number of the one before it, `seq` = there is none; None = order is no matter.
     before: int | None
     payload: bytes
+    # Of its sender's machine, 0 to 127, where that drew its numbers and does not know that we had
+    # one of them; None = else. In one boot those drawn later are higher.
     boot: int | None = None
 
 
 class Held(NamedTuple):
-    """A message that waits for one before it.
-
-    Attributes:
-        seq: its number.
-        before: the number of the one before it.
-        due: when it waits no longer, us.
-        payload: what it says.
-    """
+    """A message that waits for one before it."""
 
     seq: int
-    before: int
-    due: int
+    before: int  # the number of the one that it waits for
+    due: int  # when it waits no longer, us
     payload: bytes
 
 
 class Order:
-    """Puts the messages of one sender in order.
-
-    Args:
-        last: the newest one that was handed up already, None = nothing was heard of this sender.
-        wait_us: how long a message waits for one before it.
-        buffer: how many may wait.
-        now: when that one was handed up, us.
-
-    Attributes:
-        late: messages that came when those behind them had been handed up: they are dropped.
-        ended: numbers of those that were handed up, until somebody takes note.
-        dropped: numbers of the newest ones that were not, and never will be.
-    """
+    """Puts the messages of one sender in order; up to `buffer` wait `wait_us` for one before."""
 
     def __init__(
         self, last: int | None, wait_us: int = WAIT_US, buffer: int = BUFFER, now: int = 0
     ) -> None:
-        self.last = last
+        self.last = last  # newest one that was handed up; None = nothing was heard of this sender
         self.last_at = now  # when it was handed up, us
         self.wait_us = wait_us
         self.buffer = buffer
+        # Messages that came when those behind them had been handed up: they are dropped.
         self.late = 0
         self.held: list[Held] = []
+        # Numbers of those that were handed up, until somebody takes note.
         self.ended: list[int] = []
+        # Numbers of the newest ones that were not, and never will be.
         self.dropped: deque[int] = deque(maxlen=REMEMBERED)
         self._boot: int | None = None  # in which the sender last drew its numbers
 
@@ -184,18 +162,10 @@ class Order:
 
 
 class Orderly:
-    """Hands messages up in order, sender by sender.
-
-    Args:
-        wait_us: how long a message waits for one before it.
-        buffer: how many may wait, per sender.
-
-    Attributes:
-        arrivals: hands them up.
-        on_up: is told sender and number of each that was handed up.
-    """
+    """Hands messages up in order, sender by sender; each waits as in an Order."""
 
     def __init__(self, wait_us: int = WAIT_US, buffer: int = BUFFER) -> None:
+        # Is told sender and number of each that was handed up.
         self.on_up: Callable[[int, int], None] = lambda _sender, _seq: None
         self.wait_us = wait_us
         self.buffer = buffer

@@ -13,40 +13,21 @@ from innervate.networks.mesh.live.order import BEFORE_BYTES, NEW_AHEAD
 from innervate.networks.mesh.live.pieces import HEAD_BYTES, SIZE_MAX, Name, Piece
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.live.turns import Turns
-from innervate.networks.mesh.protocol.constants import (
-    ALL,
-    END_TO_END,
-    IDS,
-    NO_ACK,
-    NO_ROUTE,
-    ORDERED,
-    REPORT_ACCEPTED,
-    REPORT_ARRIVED,
-    REPORT_EXPIRED,
-    REPORT_HOP,
-)
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol.messages import payload_limit, resolve
 
 HANDLES = 65_536
-IN_VAIN = (NO_ROUTE, NO_ACK)
+IN_VAIN = (const.NO_ROUTE, const.NO_ACK)
 REFUSALS = 16  # under way at the same time
 FORGOTTEN = "its recipient no longer has its beginning"
 REASONS = {1: "no route", 2: "no acknowledgement", 3: "path full", 4: "no room"}
 
 
 class Outgoing:
-    """Messages on their way.
+    """Messages on their way: `hand_down` gives the router one.
 
-    Args:
-        stack: the router.
-        hand_down: gives it a message.
-        hand_up: takes a long message to ourselves: our number, and what it says.
-        outcomes: what became of them is counted here, by words.
-
-    Attributes:
-        chains: which messages others come after.
-        turns: those that wait for a place in the router.
-        receipts: by the router's name for them; pieces of long ones have their own.
+    `hand_up` takes a long one to ourselves: our number, and what it says. `outcomes` counts what
+    became of them, by words.
     """
 
     def __init__(
@@ -58,10 +39,11 @@ class Outgoing:
     ) -> None:
         self._stack = stack
         self._hand_down, self._hand_up = hand_down, hand_up
-        self.turns = Turns(stack, self._new_item)
+        self.turns = Turns(stack, self._new_item)  # those that wait for a place in the router
+        # By the router's name for them; pieces of long ones have their own.
         self.receipts: dict[int, Receipt] = {}
         self._outcomes = outcomes
-        self.chains = Chains()
+        self.chains = Chains()  # which messages others come after
         self._handle = 0
         self._long_bytes = 0  # of long messages
         self._refusals: set[Name] = set()  # under way
@@ -74,11 +56,11 @@ class Outgoing:
             ValueError: it is too long for pieces, or nobody would acknowledge them.
         """
         params = self._stack.params
-        most: int = payload_limit(params) - (BEFORE_BYTES if flags & ORDERED else 0)
+        most: int = payload_limit(params) - (BEFORE_BYTES if flags & const.ORDERED else 0)
         if size <= most:
             return most
-        if recipient == ALL or not (flags & END_TO_END and params.reliable):
-            who = "to all" if recipient == ALL else "that is not reliable"
+        if recipient == const.ALL or not (flags & const.END_TO_END and params.reliable):
+            who = "to all" if recipient == const.ALL else "that is not reliable"
             raise ValueError(f"payload of {size} bytes; a message {who} holds at most {most}")
         if size > SIZE_MAX:
             raise ValueError(f"payload of {size} bytes; a message holds at most {SIZE_MAX}")
@@ -93,7 +75,7 @@ class Outgoing:
         receipt = Receipt()
         handle, item = self._new_item(receipt)
         item.dest, item.flags = recipient, flags
-        if flags & ORDERED:
+        if flags & const.ORDERED:
             payload = bytes(BEFORE_BYTES) + payload  # which one is before it is known when it goes
         item.length = len(payload)
         item.body[: len(payload)] = payload
@@ -105,12 +87,12 @@ class Outgoing:
         """A message that goes in pieces."""
         node, params = self._stack.node, self._stack.params
         dest = resolve(node, params, recipient)
-        if dest == ALL:
-            return refused(REASONS[NO_ROUTE])
+        if dest == const.ALL:
+            return refused(REASONS[const.NO_ROUTE])
         if self._long_bytes + len(payload) > WAITING_MAX:
             return refused("queue full")
-        chains = self.chains if flags & ORDERED else None
-        long = Long(dest, flags | ORDERED, payload, payload_limit(params), chains)
+        chains = self.chains if flags & const.ORDERED else None
+        long = Long(dest, flags | const.ORDERED, payload, payload_limit(params), chains)
         handle = self._take_handle(long.receipt)
         self._long_bytes += len(payload)
         long.on_end = partial(self._end_long, handle, long)
@@ -142,7 +124,7 @@ class Outgoing:
                 then()
 
         handle, item = self._new_item(PieceReceipt(Refusal(piece.message, piece.size, end)))
-        item.dest, item.flags = sender, ORDERED | END_TO_END
+        item.dest, item.flags = sender, const.ORDERED | const.END_TO_END
         item.length = HEAD_BYTES + 1  # no piece is without data
         item.body[HEAD_BYTES] = 0
         self._refusals.add(name)
@@ -163,13 +145,13 @@ class Outgoing:
         receipt = self.receipts.get(handle)
         if receipt is None:
             return
-        if code == REPORT_ACCEPTED:
+        if code == const.REPORT_ACCEPTED:
             receipt.seq = detail
-        elif code == REPORT_HOP:
+        elif code == const.REPORT_HOP:
             receipt.move(HOP_ACKED)
-        elif code == REPORT_ARRIVED:
+        elif code == const.REPORT_ARRIVED:
             self._end(handle, DELIVERED, is_there=True)
-        elif code == REPORT_EXPIRED:
+        elif code == const.REPORT_EXPIRED:
             is_there = False if detail in IN_VAIN else None
             self._end(handle, EXPIRED, REASONS.get(detail, ""), is_there)
         else:
@@ -188,13 +170,13 @@ class Outgoing:
     def _feed(self) -> None:
         while (waiting := self.turns.take()) is not None:
             handle, item = waiting
-            chained = self._head(handle, item) if item.flags & ORDERED else None
+            chained = self._head(handle, item) if item.flags & const.ORDERED else None
             self._hand_down(item)
             if chained is not None and chained[1] == self._stack.node.seq:
-                self.chains.sent(handle, *chained, bool(item.flags & END_TO_END))
+                self.chains.sent(handle, *chained, bool(item.flags & const.END_TO_END))
             if resolve(self._stack.node, self._stack.params, item.dest) == self._stack.node.number:
                 self._end(handle, DELIVERED)  # to ourselves: it was handed up
-            elif not item.flags & END_TO_END or item.dest == ALL:
+            elif not item.flags & const.END_TO_END or item.dest == const.ALL:
                 self.receipts.pop(handle, None)  # nobody will tell us more
                 self.turns.ended(handle, None)
 
@@ -239,7 +221,8 @@ class Outgoing:
         return item.handle, item
 
     def _take_handle(self, receipt: Receipt) -> int:
-        while self._handle in self.receipts or self._handle < IDS:  # alarms bear robots' numbers
+        # Alarms bear robots' numbers.
+        while self._handle in self.receipts or self._handle < const.IDS:
             self._handle = (self._handle + 1) % HANDLES
         handle = self._handle
         self._handle = (self._handle + 1) % HANDLES

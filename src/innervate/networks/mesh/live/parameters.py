@@ -7,7 +7,7 @@ from innervate.live.parameters import check_parameters
 from innervate.networks.mesh.live.stack import CLASSES
 from innervate.networks.mesh.protocol.constants import LIST, MONITOR, SEARCH, TABLES
 from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, row_bytes
-from innervate.networks.mesh.rings import mistake, opened
+from innervate.networks.mesh.rings import mistake, opened, table
 
 IP: dict[str, int] = {
     "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
@@ -37,21 +37,17 @@ def fence_parameters(found: list[list[tuple[int, int]]], where: str = "") -> dic
     count = sum(len(ring) for ring in rings)
     if count > POINTS:
         raise LiveError(f"{where}: the fence has {count} corners, more than {POINTS}")
-    px, py, after = ([0] * POINTS for _ in range(3))
-    at = 0
     names = ["fence.polygon", *(f"fence.holes.{i}" for i in range(len(rings) - 1))]
     for name, ring in zip(names, rings, strict=True):
-        for i, (x, y) in enumerate(ring):
+        for x, y in ring:
             if not (0 <= x <= EXTENT_MAX and 0 <= y <= EXTENT_MAX):
                 raise LiveError(
                     f"{where}: {name}: corner [{x}, {y}] must be 0 to {EXTENT_MAX} units both "
                     "ways; raise protocol.unit_cm, or move the origin"
                 )
-            px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
-        at += len(ring)
     if wrong := mistake(rings, names):
         raise LiveError(f"{where}: {wrong[1]}")
-    return {"points": count, "px": px, "py": py, "after": after}
+    return table(rings, POINTS)
 
 
 def mesh_parameters(nodes: int, changes: dict[str, int], where: str = "") -> dict[str, Any]:

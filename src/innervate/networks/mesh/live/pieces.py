@@ -28,20 +28,12 @@ Name = tuple[int, int, int]  # of a message: its sender, the number of its first
 
 
 class Piece(NamedTuple):
-    """A piece of a message.
+    """A piece of a message."""
 
-    Attributes:
-        message: the number of the packet that its first piece was in.
-        turn: NO_TURN, TURN, NEW and a boot, or REFUSAL.
-        at: its place in the message, in bytes.
-        size: bytes of the whole.
-        data: its bytes.
-    """
-
-    message: int
-    turn: int
-    at: int
-    size: int
+    message: int  # the number of the packet that its first piece was in
+    turn: int  # NO_TURN, TURN, NEW and a boot, or REFUSAL
+    at: int  # its place in the message, in bytes
+    size: int  # bytes of the whole
     data: bytes
 
     @property
@@ -59,19 +51,13 @@ def read_piece(seq: int, body: bytes) -> Piece | None:
 
 
 class Open:
-    """A message of which pieces are here.
-
-    Attributes:
-        places: where the pieces begin that are here.
-        missing: bytes that are not.
-        heard_at: when the newest came, us.
-    """
+    """A message of which pieces are here."""
 
     def __init__(self, size: int, now: int) -> None:
         self.data = bytearray(size)
-        self.places: set[int] = set()
-        self.missing = size
-        self.heard_at = now
+        self.places: set[int] = set()  # where the pieces begin that are here
+        self.missing = size  # bytes that are not
+        self.heard_at = now  # when the newest came, us
 
     def put(self, piece: Piece, now: int) -> None:
         """Enter a piece; what is here already changes nothing."""
@@ -83,16 +69,11 @@ class Open:
 
 
 class Pieces:
-    """All messages of which pieces are here.
-
-    Attributes:
-        held: bytes of them, those still to come included.
-        forgotten: how many were never whole.
-    """
+    """All messages of which pieces are here."""
 
     def __init__(self) -> None:
-        self.held = 0
-        self.forgotten = 0
+        self.held = 0  # bytes of them, those still to come included
+        self.forgotten = 0  # how many were never whole
         self._open: dict[Name, Open] = {}  # the oldest first
         self._had: dict[int, deque[tuple[Name, int]]] = {}  # by sender: which, and when, us
 

@@ -9,19 +9,9 @@ from innervate.dialect import plain
 from innervate.dialect.rng import seeded
 from innervate.live.stack import filled
 from innervate.networks.mesh import frames as wire
+from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
-from innervate.networks.mesh.protocol.constants import (
-    ACK,
-    ACK_WANTED,
-    ALL,
-    ALTERNATE,
-    MTU_MAX,
-    SEARCH,
-    TABLE_FREE,
-    TABLES,
-    TIMERS,
-)
 from innervate.networks.mesh.protocol.frames import is_sound
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
@@ -47,17 +37,13 @@ Params = plain.make("Params", fields.PARAMS)
 
 
 class MeshStack:
-    """One node of a mesh.
+    """One node of a mesh; a robot moves, has a fence and tells where it is.
 
-    Args:
-        number: its id, 0 .. nodes - 1.
-        rank: 0 gateway, 1.. standby, -1 neither.
-        params: the protocol's parameters by name (`mesh_fields.PARAMS`).
-        seed: any whole number; nodes must have different ones.
-        robot: True = it moves, has a fence and tells where it is.
+    Its `rank` is 0 for a gateway, 1.. for a standby, -1 for others; `params` are named as
+    `mesh_fields.PARAMS`, and no two nodes may have the same `seed`.
     """
 
-    timers = TIMERS
+    timers = const.TIMERS
     reasons: tuple[str, ...] = (*wire.REASONS, TOO_LONG)
 
     def __init__(
@@ -113,13 +99,13 @@ class MeshStack:
         if not is_sound(self.params, frame):
             return "unsound"
         what = (frame.link_src, frame.origin, frame.seq)
-        is_ack = frame.kind == ACK and frame.link_dst == self.node.number
+        is_ack = frame.kind == const.ACK and frame.link_dst == self.node.number
         return "ack of nothing" if is_ack and what not in self._unanswered else ""
 
     def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received, and there is no objection to it."""
         self._place(self.inbox.link_src, port)
-        if self.inbox.kind != ACK:  # acks tell how loud the frame was that they are for
+        if self.inbox.kind != const.ACK:  # acks tell how loud the frame was that they are for
             self.inbox.rssi = RSSI
         elif self.inbox.link_dst == self.node.number:
             for origin, seq in wire.acked(self.inbox):
@@ -160,7 +146,7 @@ class MeshStack:
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
         mtu = self.params.mtu
-        if len(data) > mtu and wire.reason_of(data, MTU_MAX) == wire.OK:
+        if len(data) > mtu and wire.reason_of(data, const.MTU_MAX) == wire.OK:
             return LONG
         reason: int = self.coder.decode(data, self.inbox)
         return reason
@@ -170,9 +156,9 @@ class MeshStack:
 
         Tried again, it leaves wherever its receiver was ever heard.
         """
-        if frame.link_dst == ALL:
+        if frame.link_dst == const.ALL:
             return None
-        if frame.flags & ACK_WANTED:
+        if frame.flags & const.ACK_WANTED:
             self._note_question((frame.link_dst, frame.origin, frame.seq))
         known = self.places.get(frame.link_dst)
         if known is None:
@@ -206,14 +192,14 @@ class MeshStack:
             "number": node.number,
             **self._robot_status(),
             "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
-            "gateway": node.gateway if node.known and node.gateway != ALL else None,
+            "gateway": node.gateway if node.known and node.gateway != const.ALL else None,
             "epoch": node.epoch,
             "round": node.round,
             "table": node.version,
             "neighbours": neighbours,
             "routes": routes,
             "onward": self._onward(),
-            "gives_back": params.mode != TABLE_FREE and params.failover == SEARCH,
+            "gives_back": params.mode != const.TABLE_FREE and params.failover == const.SEARCH,
             "queue": sum(state != 0 for state in node.q_state),
             "round_trip_ms": round(node.round_trip / 1000, 3),
         }
@@ -222,16 +208,21 @@ class MeshStack:
         """Whom a message for the gateway goes to, and to whom next if that one is silent."""
         node, params = self.node, self.params
         dest = node.gateway
-        if not node.known or dest in (ALL, node.number):  # started again, the epoch is all we know
+        if not node.known or dest in (
+            const.ALL,
+            node.number,
+        ):  # started again, the epoch is all we know
             return []
         strong = is_strong(node, params, place_of(node, params, dest))
-        tables = params.mode == TABLES
+        tables = params.mode == const.TABLES
         up = [k for k in range(params.places) if is_uplink(node, k)]
         order = functools.cmp_to_key(lambda a, b: -1 if is_better(node, params, a, b) else 1)
         found = [
             dest if strong else FREE,
             planned(node, params, dest) if tables else FREE,
-            alternate(node, params, dest) if tables and params.failover >= ALTERNATE else FREE,
+            alternate(node, params, dest)
+            if tables and params.failover >= const.ALTERNATE
+            else FREE,
             *(node.neighbour[k] for k in sorted(up, key=order)),
         ]
         answering = [who for who in found if who != FREE and not is_suspect(node, params, who)]

@@ -36,12 +36,7 @@ Waiting = tuple[int, Any]
 
 
 class Turns:
-    """Messages that wait for a place in the router.
-
-    Args:
-        stack: the router.
-        make: gives a piece of a message the handle and the item that it goes by.
-    """
+    """Messages that wait for a place in the router; `make` makes what a piece of one goes by."""
 
     def __init__(self, stack: MeshStack, make: Maker) -> None:
         self._stack = stack
@@ -160,14 +155,7 @@ class Turns:
 
 
 class Places:
-    """The router's places at this moment.
-
-    Args:
-        stack: the router.
-        gone: recipients to whom the newest messages were in vain.
-        all_wait: True = a message to all waits, which cannot go while one is long under way.
-        most: how many places a recipient may have.
-    """
+    """The router's places at this moment; see Turns for `gone` and `most`."""
 
     def __init__(
         self, stack: MeshStack, gone: set[int], all_wait: bool, most: dict[int, int]
@@ -187,7 +175,7 @@ class Places:
         after = node.seq + 1
         ages = [(after - seq) & MASK16 for seq in compress(node.wait_seq[:], kinds)]
         self._is_near = max(ages, default=0) <= AHEAD_MAX
-        self._all_wait = all_wait
+        self._all_wait = all_wait  # one to all waits, which cannot go while one is long under way
 
     def takes(self, item: Any) -> bool:
         """True if the router has a place for a message, with all others in mind."""

@@ -8,34 +8,26 @@ from typing import Any
 
 from innervate.live.deployment import sleep_until
 from innervate.live.errors import LiveError
+from innervate.networks.mesh.scenario.plan import Point, Walk, position_cm
 
 ANSWER_S = 5.0
 STANDING_S = 0.5
 
-Pair = tuple[float, float]
 
-
-def place_at(points: Any, time_us: int) -> tuple[Pair, Pair]:
-    """Place (cm) and speed (cm/s) of a walk at a time; it stands before its first point."""
-    for (t0, x0, y0), (t1, x1, y1) in pairwise(points):
+def place_at(way: Walk, time_us: int) -> tuple[Point, Point]:
+    """Place (cm) and speed (cm/s) of a walk at a time."""
+    speed = (0.0, 0.0)
+    for (t0, x0, y0), (t1, x1, y1) in pairwise(way.points):
         if t0 <= time_us < t1:
-            share, took_s = (time_us - t0) / (t1 - t0), (t1 - t0) / 1e6
-            at = (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
-            return at, ((x1 - x0) / took_s, (y1 - y0) / took_s)
-    _, x, y = points[0] if time_us < points[0][0] else points[-1]
-    return (x, y), (0.0, 0.0)
+            took_s = (t1 - t0) / 1e6
+            speed = ((x1 - x0) / took_s, (y1 - y0) / took_s)
+    return position_cm(way, time_us), speed
 
 
-async def walk(plan: Any, points: Any, where: Path) -> None:
+async def walk(plan: Any, way: Walk, where: Path) -> None:
     """Tell a robot's node where it is, so often as the scenario says; seldom where it stands.
 
-    Args:
-        plan: of the scenario.
-        points: of its walk: (time us, x cm, y cm).
-        where: the node's status socket.
-
-    Raises:
-        LiveError: the node is no robot.
+    `where` is the node's status socket. Raises LiveError: the node is no robot.
     """
     loop = asyncio.get_running_loop()
     began, period_s = loop.time(), plan.sample_us / 1e6
@@ -44,9 +36,9 @@ async def walk(plan: Any, points: Any, where: Path) -> None:
     x0, y0 = plan.origin_cm
     try:
         while True:
-            at, speed = place_at(points, round((due - began) * 1e6))
+            at, speed = place_at(way, round((due - began) * 1e6))
             await robot.locate((at[0] - x0, at[1] - y0), speed)
-            ended = due - began > points[-1][0] / 1e6
+            ended = due - began > way.points[-1][0] / 1e6
             # Late once, no burst after it; at rest only for a robot that starts anew.
             due = max(due + (STANDING_S if ended else period_s), loop.time() - period_s)
             await sleep_until(due)
@@ -61,7 +53,7 @@ class Robot:
         self.where = where
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
-    async def locate(self, at_cm: Pair, speed_cm_s: Pair) -> None:
+    async def locate(self, at_cm: Point, speed_cm_s: Point) -> None:
         """Say where it is; LiveError if the node is no robot."""
         request = {"do": "locate", "at_cm": at_cm, "speed_cm_s": speed_cm_s}
         try:

@@ -6,25 +6,19 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from innervate.networks.mesh.analysis.alarms import all_crossings
-from innervate.networks.mesh.analysis.fence import position_cm
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
 from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
+from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.networks.mesh.scenario.profiles import FAST, GOOD_CDB
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
 from innervate.sim.status import ON_FRAME
-from innervate.topology.placement import (
-    UNREACHABLE,
-    distance_cm,
-    distances,
-    neighbours,
-    path_loss_cdb,
-)
+from innervate.topology import placement
 from innervate.trace.streams import stream
 
 TITLE = "2.1, 2.2: a robot crosses the fence"
@@ -129,13 +123,15 @@ def _joined(plan: Any, gone: list[int], at_us: int) -> bool:
     links = [link for link in plan.good if way.node not in link]
     for node, place in enumerate(plan.positions_cm):
         if node != way.node:
-            loss = path_loss_cdb(distance_cm(here, place), radio.exponent_c)
+            loss = placement.path_loss_cdb(placement.distance_cm(here, place), radio.exponent_c)
             there, back = way.node * count + node, node * count + way.node
             least = min(radio.base_cdb[there], radio.base_cdb[back])
             if least >= radio.rssi50_cdb + GOOD_CDB + loss:
                 links.append((node, way.node))
-    near = neighbours(count, [(a, b) for a, b in links if a not in gone and b not in gone])
-    return bool(distances(near, beds.GATEWAY)[way.node] != UNREACHABLE)
+    near = placement.neighbours(
+        count, [(a, b) for a, b in links if a not in gone and b not in gone]
+    )
+    return bool(placement.distances(near, beds.GATEWAY)[way.node] != placement.UNREACHABLE)
 
 
 def point(scheme: Scheme, dead: int, quick: bool) -> Point:

@@ -4,11 +4,12 @@ from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple
 
 from innervate.networks.mesh.analysis.alarms import Crossing
-from innervate.networks.mesh.analysis.fence import edges_of, position_cm
+from innervate.networks.mesh.analysis.fence import rings_of
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.way import Hop
 from innervate.networks.mesh.plot.sheet import Labels, Sheet
 from innervate.networks.mesh.protocol.constants import MONITOR
+from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.plot import svg
 from innervate.plot.charts import ticks
 from innervate.plot.svg import Drawing, Point
@@ -84,7 +85,7 @@ def field_map(
     for hop in way:
         to = hop.to if hop.to < plan.nodes else _next_of(way, hop, monitor_of(plan))
         names.block_line([places[hop.node], places[to]])
-        arrow(drawing, places[hop.node], places[to], sheet.dot + 3, "way")
+        drawing.path(svg.arrow(places[hop.node], places[to], sheet.dot + 3), "way")
     pins = _pins(field, crossings)
     for x, y in pins:
         names.block((x, y - 8), 8.0)
@@ -111,34 +112,19 @@ def robot_places(plan: Any, sheet: Sheet, at_us: int | None) -> dict[int, Point]
 def ground(field: Field) -> None:
     """Fence, links between nodes that stay where they are, and a scale."""
     drawing, plan, sheet, names, on = field
-    edges = edges_of(plan) if sheet.metres else []
-    if edges:
-        rings = _rings(plan, sheet)
+    found = rings_of(plan) if sheet.metres else []
+    rings = [[sheet.of_cm(corner) for corner in ring] for ring in found]
+    if rings:
         drawing.path("".join(svg.polyline(ring) + "z" for ring in rings), "zone")
     links = [(a, b) for a, b in plan.good if not (plan.robots[a] or plan.robots[b])]
     for a, b in links:
         drawing.line(*sheet.between(a, b), "mesh" if on[a] and on[b] else "mesh gone")
     names.avoid(sheet.between(a, b) for a, b in links)
-    for ring in _rings(plan, sheet) if edges else ():
+    for ring in rings:
         drawing.path(svg.polyline(ring) + "z", "fence")
         names.block_line([*ring, ring[0]])
     if sheet.metres:
         _measure(drawing, sheet)
-
-
-def _rings(plan: Any, sheet: Sheet) -> list[list[Point]]:
-    """The fence's rings as places on the drawing."""
-    edges, after = edges_of(plan), plan.params["after"]
-    rings, seen = [], set()
-    for first in range(len(edges)):
-        ring, i = [], first
-        while i not in seen:
-            seen.add(i)
-            ring.append(sheet.of_cm(edges[i][0]))
-            i = after[i]
-        if ring:
-            rings.append(ring)
-    return rings
 
 
 def _measure(drawing: Drawing, sheet: Sheet) -> None:
@@ -231,11 +217,6 @@ def symbol(drawing: Drawing, at: Point, dot: float, role: str, on: bool, tip: st
         drawing.path(svg.cross(x, y, dot + 2), "struck")
 
 
-def arrow(drawing: Drawing, start: Point, end: Point, gap: float, kind: str) -> None:
-    """An arrow between two nodes."""
-    drawing.path(svg.arrow(start, end, gap), kind)
-
-
 def _off_words(ground: Ground, at_us: int) -> str:
     """Why those are off that are off at a moment; "" if nobody is."""
     plan = ground.plan
@@ -277,7 +258,7 @@ def legend(
     if crossings:
         entry("crossing", lambda icon: icon.path(pin((13, 16)), "warn"))
     if way:
-        entry("how the alarm came", lambda icon: arrow(icon, (0, 9), (26, 9), 1, "way"))
+        entry("how the alarm came", lambda icon: icon.path(svg.arrow((0, 9), (26, 9), 1), "way"))
         if any(hop.flooded for hop in way) or crossings:
             entry("flooded it", lambda icon: icon.circle((13, 9), 7.5, "flooder"))
     return entries

@@ -79,20 +79,9 @@ def parameters(
         "clear_margin": round(100 * fence.clear_m / unit),
         "predict_ms": round(1000 * fence.predict_s),
         "unit_cm": unit,
-        **_corners(scaled),
+        **rings.table(scaled, POINTS),
         "fence": fence.number,
     }
-
-
-def _corners(found: list[list[tuple[int, int]]]) -> dict[str, Any]:
-    """All rings' corners in one table, each with the place of the next one."""
-    px, py, after = ([0] * POINTS for _ in range(3))
-    at = 0
-    for ring in found:
-        for i, (x, y) in enumerate(ring):
-            px[at + i], py[at + i], after[at + i] = x, y, at + (i + 1) % len(ring)
-        at += len(ring)
-    return {"points": at, "px": px, "py": py, "after": after}
 
 
 def _unit_cm(source: Source, fence: FenceTable, points: list[Point]) -> int:

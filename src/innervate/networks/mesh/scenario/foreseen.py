@@ -1,17 +1,15 @@
 """What a mesh's own events, messages and robots will do to it, as far as a plan alone tells."""
 
-from bisect import bisect_right
 from collections.abc import Iterator
 from heapq import heappop, heappush
 from itertools import pairwise
 from math import dist, log10
-from operator import itemgetter
 
 from innervate.networks.mesh.protocol.constants import ACK_BYTES, ALL, MONITOR
 from innervate.networks.mesh.protocol.link_quality import ALL_ACKED, RATIO_MIN
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.params import sent_at_most
-from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk
+from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk, position_cm
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.topology.placement import distances, neighbours
 
@@ -199,9 +197,9 @@ def _out_of_reach(made: MeshPlan) -> list[str]:
     for walk in made.walks:
         others = [node for node in range(made.nodes) if node != walk.node]
         for at_us in _moments(walk, made.duration_us):
-            here = _place(walk, at_us)
+            here = position_cm(walk, at_us)
             places = (
-                _place(ways[node], at_us) if node in ways else made.positions_cm[node]
+                position_cm(ways[node], at_us) if node in ways else made.positions_cm[node]
                 for node in others
             )  # fmt: skip
             pairs = zip(others, places, strict=True)
@@ -227,14 +225,3 @@ def _moments(walk: Walk, until_us: int) -> list[int]:
     for a, b in pairwise(times):
         found |= {a + (b - a) * k // ON_A_LEG for k in range(ON_A_LEG)}
     return sorted(found)[:: max(1, len(found) // MOMENTS_MAX)]
-
-
-def _place(walk: Walk, at_us: int) -> tuple[float, float]:
-    """Where a robot is at a moment, cm."""
-    after = bisect_right(walk.points, at_us, key=itemgetter(0))
-    _, *here = walk.points[max(after - 1, 0)]
-    if after in (0, len(walk.points)):
-        return here[0], here[1]
-    (since, *_), (until, *there) = walk.points[after - 1 : after + 1]
-    part = (at_us - since) / (until - since)
-    return here[0] + part * (there[0] - here[0]), here[1] + part * (there[1] - here[1])

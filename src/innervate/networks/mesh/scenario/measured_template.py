@@ -55,15 +55,9 @@ def measured(name: str, network: str, wanted: dict[str, Any], folder: str) -> tu
     Where nothing is said of its size, what fits is chosen: links of 0.3 and better, better ones
     if those leave too many nodes, or the nodes about the best connected one.
 
-    Args:
-        name: of the scenario.
-        network: a file as the scenario's folder sees it, a bundled one like "freifunk/leipzig", or
-            "topohub:" and a name.
-        wanted: what was chosen of it: types, min_tq, around, nodes; gateways, for clusters.
-        folder: the scenario's.
-
-    Raises:
-        ScenarioError: it cannot be read, or there is nothing as it was chosen.
+    `network` is a file as the scenario's folder sees it, a bundled one like "freifunk/leipzig", or
+    "topohub:" and a name; `wanted` has what was chosen of it: types, min_tq, around, nodes;
+    gateways, for clusters. Raises ScenarioError: it cannot be read, or nothing is as it was chosen.
     """
     wanted = {"types": ["wifi"], **wanted}
     first = loads(_text(name, network, wanted), folder=folder)

@@ -116,13 +116,11 @@ def _spread(model: MeshScenario, profile: Profile) -> tuple[int, int]:
     A grid and an ideal medium are as regular as they can be, unless something else is asked for.
     """
     regular = not profile.collisions or (model.placement.layout != "random" and not model.node)
-    radio = model.radio
-    shadowing = (0.0 if regular else SHADOWING_DB) if radio.shadowing_db is None else (
-        radio.shadowing_db
-    )  # fmt: skip
-    direction = (0.0 if regular else DIRECTION_DB) if radio.direction_db is None else (
-        radio.direction_db
-    )  # fmt: skip
+    shadowing, direction = (0.0, 0.0) if regular else (SHADOWING_DB, DIRECTION_DB)
+    if model.radio.shadowing_db is not None:
+        shadowing = model.radio.shadowing_db
+    if model.radio.direction_db is not None:
+        direction = model.radio.direction_db
     return round(100 * shadowing), round(100 * direction)
 
 

@@ -4,14 +4,7 @@ from math import ceil
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as w
-from innervate.networks.mesh.protocol.fields import (
-    PARAMS,
-    POINTS,
-    QUEUE,
-    WAITING,
-    places,
-    row_bytes,
-)
+from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
 
@@ -24,8 +17,8 @@ FORGET_S = 60.0
 FORGET_TICKS_MAX = 255
 NO_FENCE: dict[str, Any] = {
     "watch": 0, "lost": 3, "flood": 1, "instances": 3, "clear_margin": 0, "predict_ms": 0,
-    "unit_cm": 1, "points": 0, "px": [0] * POINTS, "py": [0] * POINTS, "after": [0] * POINTS,
-    "fence": 0,
+    "unit_cm": 1, "points": 0, "fence": 0,
+    **{corners: [0] * fields.POINTS for corners in ("px", "py", "after")},
 }  # fmt: skip
 # Keys of [protocol] whose parameter is called something else.
 KEYS = {"faint": "min_rssi_dbm", "tick": "beacon_s", "jobs": "table_window", "job": "table_retry_s",
@@ -65,32 +58,28 @@ def parameters(
 ) -> dict[str, Any]:
     """The protocol's parameters without a fence and standby gateways.
 
-    Args:
-        profile: the radio's.
-        settings: a MeshProtocolTable; what it leaves out comes from the profile.
-        nodes: 1 .. 254.
-        degree: most neighbours of a node, as far as is known.
-        monitor: its number, 254 = whoever is gateway.
-        min_rssi_dbm: weakest link that is reported; None = 2 dB above the 50 % point.
+    What `settings`, a MeshProtocolTable, leave out comes from the radio's profile. `degree`: most
+    neighbours of a node, as far as is known. `monitor`: its number, 254 = whoever is gateway.
+    `min_rssi_dbm`: of the weakest link that is reported; None = 2 dB above the 50 % point.
 
     Raises:
         ValueError: a parameter leaves its range; the message is "key:what is wrong".
     """
-    width: int = next(size for size in CLASSES if nodes <= size and degree <= places(size))
+    width: int = next(size for size in CLASSES if nodes <= size and degree <= fields.places(size))
     chosen = _Chosen(settings, profile.beacon)
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     min_rssi = chosen.value("min_rssi_dbm", min_rssi_dbm)
     params: dict[str, Any] = {
         "nodes": nodes,
-        "row": row_bytes(width),
-        "places": places(width),
+        "row": fields.row_bytes(width),
+        "places": fields.places(width),
         "width": width,
         "told": int(profile.collisions),
         "hop_frames": 0,
         "gather": 0,
-        "queue": QUEUE,
-        "kept": WAITING,
+        "queue": fields.QUEUE,
+        "kept": fields.WAITING,
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": min_rssi,
         "faint": min(min_rssi + 1, LOUDEST_DBM) if _takes_best(settings) else FAINTEST_DBM,
@@ -157,7 +146,7 @@ def _rounds(profile: Profile, chosen: _Chosen) -> dict[str, int]:
 
 
 def _check(params: dict[str, Any]) -> None:
-    for name, length, low, high, unit, _ in PARAMS:
+    for name, length, low, high, unit, _ in fields.PARAMS:
         if length == 0 and not low <= params[name] <= high:
             stem = name.removesuffix("_us")
             key = KEYS.get(stem, f"{stem}_s" if stem != name or name in IN_TICKS else name)

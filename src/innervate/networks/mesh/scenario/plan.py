@@ -1,6 +1,8 @@
 """The plan of a mesh run: whole numbers only. Floats end here."""
 
+from bisect import bisect_right
 from dataclasses import dataclass, field
+from operator import itemgetter
 from typing import Any
 
 from innervate.scenario.declared.field import Fault
@@ -8,6 +10,9 @@ from innervate.scenario.declared.field import Fault
 CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
 ONE = 32_768
 HEADER_SLOTS = 2  # what medium access protocols of radio teams put in front of a frame, bytes
+
+
+Point = tuple[float, float]
 
 
 class MeshFault(Fault):
@@ -35,6 +40,23 @@ class Walk:
     node: int  # the robot
     # (time us, x cm, y cm), ascending in time; before the first it stands there.
     points: tuple[tuple[int, int, int], ...]
+
+
+def position_cm(walk: Walk, time_us: float) -> Point:
+    """Where the robot is: straight between its points, standing before the first and at the last.
+
+    Raises:
+        ValueError: the walk has no points.
+    """
+    if not walk.points:
+        raise ValueError("a walk needs at least one point")
+    behind = bisect_right(walk.points, time_us, key=itemgetter(0))
+    if behind in (0, len(walk.points)):
+        _, x, y = walk.points[max(0, behind - 1)]
+        return (x, y)
+    (t0, x0, y0), (t1, x1, y1) = walk.points[behind - 1], walk.points[behind]
+    share = (time_us - t0) / (t1 - t0)
+    return (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
 
 
 @dataclass(slots=True)

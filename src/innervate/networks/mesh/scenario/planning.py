@@ -5,17 +5,12 @@ from typing import Any
 
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR, MTU, WHOLE_GRAPH
 from innervate.networks.mesh.protocol.round import SLACK
-from innervate.networks.mesh.scenario import clusters
+from innervate.networks.mesh.scenario import clusters, distribution
 from innervate.networks.mesh.scenario import events as mesh_events
 from innervate.networks.mesh.scenario import fence as mesh_fence
 from innervate.networks.mesh.scenario import robots as mesh_robots
 from innervate.networks.mesh.scenario import traffic as mesh_traffic
 from innervate.networks.mesh.scenario.access import access, suited
-from innervate.networks.mesh.scenario.distribution import (
-    GRAPH_NODES_MAX,
-    graph_nodes_max,
-    less_of_both,
-)
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.network import Network, linked, placed
 from innervate.networks.mesh.scenario.nodes import Nodes, nodes_of
@@ -48,7 +43,7 @@ def plan(scenario: Any) -> MeshPlan:
     params = _parameters(model, network, profile, monitor)
     if model.protocol.failover == "auto":
         near = neighbours(count, network.good)
-        params["mode"] = less_of_both(network.radio, params, near, gateway)
+        params["mode"] = distribution.less_of_both(network.radio, params, near, gateway)
     walks = mesh_robots.walks(model, nodes, network.points, duration_us)
     if fence is not None:
         visited = [(x, y) for walk in walks for _, x, y in walk.points]
@@ -167,13 +162,13 @@ def _parameters(
     if not model.standby and model.protocol.dead_s is None:
         old = SLACK + ceil(COLLECTS_OLD * params["collect_us"] / params["tick_us"])
         params["dead"] = min(params["dead"], old)
-    if params["mtu"] not in GRAPH_NODES_MAX and model.radio.profile != "ip":
+    if params["mtu"] not in distribution.GRAPH_NODES_MAX and model.radio.profile != "ip":
         raise source.error(
             ("protocol", "mtu"),
             f"protocol.mtu = {params['mtu']}, but a frame on the air has 64 or {MTU} bytes; longer "
             'ones need cables: radio.profile = "ip"',
         )
-    most = graph_nodes_max(params["mtu"])
+    most = distribution.graph_nodes_max(params["mtu"])
     if params["mode"] == WHOLE_GRAPH and count > most:
         raise source.error(
             ("protocol", "failover"),

@@ -11,13 +11,7 @@ from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
 from innervate.networks.mesh.sim import build as builder
-from innervate.networks.mesh.sim import (
-    channel,
-    orders,
-    over_channel,
-    recorder,
-    stacks,
-)
+from innervate.networks.mesh.sim import channel, orders, over_channel, recorder, stacks
 from innervate.networks.mesh.sim import world as w
 from innervate.networks.radio.sim import recorder as radio_recorder
 from innervate.networks.radio.sim import simulate as radio_simulate

@@ -30,15 +30,10 @@ ORDERS = (
 
 
 class Layer(NamedTuple):
-    """What lies below the router.
+    """What lies below the router."""
 
-    Attributes:
-        part: `sim.field.access` or `over_channel`.
-        channel: what the channel of the latter calls; None = there is none.
-    """
-
-    part: ModuleType
-    channel: ModuleType | None = None
+    part: ModuleType  # `sim.field.access` or `over_channel`
+    channel: ModuleType | None = None  # what the channel of the latter calls; None = there is none
 
 
 def mesh() -> ModuleType:

@@ -6,7 +6,7 @@ from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as mesh_story
-from innervate.networks.mesh.verify.cases import ASKED, QUICK, SHORT
+from innervate.networks.mesh.verify.cases import ASKED, QUICK, SHORT, text_of
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import Nets
 from innervate.verify.mutants import Catch, Mutant, copies
@@ -74,8 +74,7 @@ def hunt(mutant: Mutant) -> Catch:
     states = 0
     for model in models():
         what = "gateways" if model.beats else "an alarm" if model.robot >= 0 else "messages"
-        links = " ".join(f"{a}-{b}" for a, b in model.links)
-        where = f"{links}, {model.failover}, {what}"
+        where = f"{text_of(model.links)}, {model.failover}, {what}"
         nets = Nets(model, mesh_local.Locals(model, entry))
         found = mesh_search.explore(model, nets=nets, states=STATES)
         states += found.tally.states

@@ -57,13 +57,9 @@ def explore(
 ) -> Found:
     """All states that `model` can reach, breadth first, until something is broken.
 
-    Args:
-        model: what is explored.
-        nets: its states, perhaps of a copy of the protocol.
-        memory: bytes they may take, roughly; reaching it ends the search.
-        states: end after so many; 0 = no such limit.
-        live: look at the calm future of every state, too.
-        progress: called every EVERY_S at most; the search ends if it returns True.
+    It also ends when `states` (0 = no limit) were found, when they take `memory` bytes, roughly, or
+    when `progress`, called every EVERY_S at most, returns True. `nets` may be of a copy of the
+    protocol; with `live` the calm future of every state is looked at, too.
     """
     first, found = _begun(model, nets or Nets(model))
     if found.broken:

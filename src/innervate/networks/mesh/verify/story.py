@@ -30,6 +30,12 @@ TIMERS = {
     const.RETRY: "has heard of no arrival and tries again",
     const.JOBS: "has no answer to a table",
 }
+BEFALLS = {
+    mesh_net.DIE: "dies",
+    mesh_net.SWITCH_ON: "is switched on",
+    mesh_net.REVIVE: "is switched on again, its memory lost",
+    mesh_net.OUTSIDE: "finds itself outside the fence",
+}
 TITLES = {
     local.BROKEN_TWICE: "a packet is delivered twice",
     local.BROKEN_ROUND: "a packet goes round",
@@ -124,22 +130,13 @@ def _dest(found: Found) -> int:
 
 def _sentence(nets: Nets, move: Move, before: Net, after: Net) -> str:
     who = f"node {move.node}"
-    if move.kind == mesh_net.DIE:
-        return f"{who} dies"
-    if move.kind == mesh_net.SWITCH_ON:
-        return f"{who} is switched on"
-    if move.kind == mesh_net.REVIVE:
-        return f"{who} is switched on again, its memory lost"
-    if move.kind == mesh_net.OUTSIDE:
-        return f"{who} finds itself outside the fence"
+    if move.kind in BEFALLS:
+        return f"{who} {BEFALLS[move.kind]}"
     if move.kind == mesh_net.OFFER:
         dest = nets.model.offers[move.frame][1]
         return f"{who} is given message {move.frame + 1} for node {dest}"
-    if move.kind == mesh_net.FIRE:
-        text = f"{who} {TIMERS[move.frame]}"
-    else:
-        text = f"{who} {_air(nets, move, before)}"
-    return text + _changes(nets, before, after)
+    what = TIMERS[move.frame] if move.kind == mesh_net.FIRE else _air(nets, move, before)
+    return f"{who} {what}{_changes(nets, before, after)}"
 
 
 def _air(nets: Nets, move: Move, before: Net) -> str:

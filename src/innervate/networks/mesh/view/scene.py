@@ -16,18 +16,14 @@ Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
 
 class Field:
-    """A plan's field.
-
-    Attributes:
-        pairs: the links: good at the start, and between a robot that moves and anybody.
-        walks: somebody moves.
-    """
+    """The field of a plan, as pages draw it."""
 
     def __init__(self, plan: Any) -> None:
         self.plan = plan
-        self.walks = bool(plan.walks) and is_to_scale(plan, WIDTH)
+        self.walks = bool(plan.walks) and is_to_scale(plan, WIDTH)  # somebody moves
         moving = {walk.node for walk in plan.walks} if self.walks else set()
         met = {(min(i, j), max(i, j)) for i in moving for j in range(plan.nodes) if i != j}
+        # The links: good at the start, and between a robot that moves and anybody.
         self.pairs: list[tuple[int, int]] = sorted({*plan.good, *met})
         self._ends = np.array(self.pairs, np.int64).reshape(-1, 2)
         self._wanders = np.array([bool(moving & set(pair)) for pair in self.pairs], np.bool_)

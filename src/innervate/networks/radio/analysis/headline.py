@@ -49,10 +49,7 @@ class RadioFacts(NamedTuple):
 def timeout_us(params: Mapping[str, int], stations: int) -> int:
     """How long a channel on which somebody waits may deliver nothing, us.
 
-    Args:
-        params: `slot_us`, `packet_slots`, `ta_us`, `dmax_us` of the protocol, as in a plan;
-            `per_turn` if it has turns of several packets.
-        stations: how many share the channel.
+    Of the protocol's `params` it takes times as a plan has them, and `per_turn` if there is one.
     """
     slot_us = params["slot_us"]
     turn_slots = params["packet_slots"] * params.get("per_turn", 1) + 1
@@ -62,13 +59,7 @@ def timeout_us(params: Mapping[str, int], stations: int) -> int:
 
 
 def headline(facts: RadioFacts, label: Callable[[int], str] = str, absent: str = "off") -> Headline:
-    """The state of a team: what a person reads first of it.
-
-    Args:
-        facts: what is known of it.
-        label: a station's name.
-        absent: what is said of stations that are missing: "off", "silent".
-    """
+    """The state of a team; of stations that are missing it says `absent`: "off", "silent"."""
     if not facts.answering:
         return Headline(NO_DATA, "No robot answers.", tuple(range(facts.stations)))
     down, nodes = _down(facts, label)

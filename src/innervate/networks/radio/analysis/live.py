@@ -35,12 +35,8 @@ def of_stations(
 ) -> RadioFacts:
     """The facts of running stations, from what they say of themselves.
 
-    Args:
-        told: by index what those say that answer, as `innervate live status --json` shows it.
-        stations: how many are known.
-        off: who does not answer, or is off the channel.
-        still_ms: how long nobody has reported a delivery though somebody had a packet.
-        params: of the protocol.
+    `told`: by index what those say that answer, as `innervate live status --json` shows it; `off`:
+    who does not, or is off the channel; `still_ms`: see Still.
     """
     count = {name: 0 for name in ("packets accepted", "packets delivered")}
     for one in told.values():

@@ -20,13 +20,8 @@ def facts(
 ) -> RadioFacts:
     """The facts of a simulation's world; `bounds` as the plan has them, whoever noticed.
 
-    Args:
-        world: of the event level, arrays or lists.
-        plan: what is simulated.
-        now_us: the moment.
-        delivered_us: when the newest packet was known to be delivered; 0 = none yet.
-        faults: what was done to the team besides the plan's own.
-        ended: nothing more will happen.
+    `delivered_us`: when the newest packet was known to be delivered; 0 = none yet. `faults`: what
+    was done to the team besides the plan's own. `ended`: nothing more will happen.
     """
     count = plan.stations
     on, off, away = _presence(world, plan, now_us)

@@ -23,11 +23,9 @@ PAIRS_FROM = 20_000  # successes whose order is looked at
 
 
 def summarize(result: Any, name: str | None = None) -> RadioSummary:
-    """The summary of a run; what never happened is None.
+    """The summary of a run whose rows were kept; what never happened is None.
 
-    Args:
-        result: of `sim.radio.simulate`, with its rows kept.
-        name: what to call it, where its plan has no scenario.
+    `name` is what to call it, where its plan has no scenario.
     """
     plan, counts = result.plan, result.counts
     found, steady = packets.successes(result), packets.settled(result)
@@ -91,30 +89,32 @@ def duration_us(result: Any) -> int | None:
 def jain(counts: Any) -> float | None:
     """Jain's index of fairness, (sum x)^2 / (n sum x^2): 1 = even, 1/n = one has it all.
 
-    None if nobody has anything.
+    None if nobody has anything. Jain, Chiu, Hawe 1984.
     """
     shares = np.asarray(counts, np.float64)
     squares = float((shares**2).sum())
     return float(shares.sum() ** 2 / (len(shares) * squares)) if squares else None
 
 
-def jain_round(result: Any) -> float | None:
-    """Mean of Jain's index over windows of one round: as many turns in a row as stations.
+def jain_of_rounds(stations: Any, n: int) -> float | None:
+    """Mean of Jain's index over windows of one round: as many turns in a row as stations, n.
 
-    A turn is a frame, however many packets it carried. None with less than a round of turns.
+    `stations` has whose each turn was. None with less than a round of turns.
     """
-    steady, n = packets.settled(result), result.plan.stations
-    if len(steady) == 0:
-        return None
-    fresh = np.ones(len(steady), np.bool_)
-    fresh[1:] = (np.diff(steady["end"]) != 0) | (np.diff(steady["node"]) != 0)
-    turns = steady["node"][fresh].astype(np.int64)
-    rounds = len(turns) // n
+    rounds = len(stations) // n
     if rounds == 0:
         return None
-    place = turns[: rounds * n] + n * np.repeat(np.arange(rounds), n)
+    place = np.asarray(stations[: rounds * n], np.int64) + n * np.repeat(np.arange(rounds), n)
     each = np.bincount(place, minlength=rounds * n).reshape(rounds, n).astype(np.float64)
     return float(np.mean(n / (each**2).sum(axis=1)))
+
+
+def jain_round(result: Any) -> float | None:
+    """The same of a run; a turn is a frame, however many packets it carried."""
+    steady = packets.settled(result)
+    fresh = np.ones(len(steady), np.bool_)
+    fresh[1:] = (np.diff(steady["end"]) != 0) | (np.diff(steady["node"]) != 0)
+    return jain_of_rounds(steady["node"][fresh], result.plan.stations)
 
 
 def delays(result: Any) -> Any:

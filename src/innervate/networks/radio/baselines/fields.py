@@ -12,17 +12,11 @@ BASELINE = (
     ("counting", 0, 0, 1, "flag", "DCF: the backoff counts down; ring: whom we named is to begin"),
     ("count", 0, 0, 15, "packets", "ring, polling: sent, and not yet told of"),
     ("mark", 0, 0, 1073741823, "us", "a moment at which a slot of the common clock began"),
-    (
-        "step",
-        0,
-        0,
-        1022,
-        "number",
-        "that slot's, modulo the number of stations; ring, polling: whom we named",
-    ),
+    ("step", 0, 0, 1022, "number",
+     "that slot's, modulo the number of stations; ring, polling: whom we named"),
     ("attempt", 0, 0, 1, "flag", "chance: the slot waited for is one to send in"),
     ("heard", 0, 0, 2, "result", "tree: in this slot; 0 nothing, 1 noise, 2 a packet"),
     ("told", 0, 0, 2, "result", "tree: of our own packet; 0 none was sent"),
     ("depth", 0, -1, 1048576, "place", "tree: in the stack; 0 sends, -1 takes no part"),
     ("branches", 0, 0, 1048576, "branches", "tree: not yet visited, as far as we know"),
-)
+)  # fmt: skip

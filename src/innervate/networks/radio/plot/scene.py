@@ -17,12 +17,7 @@ from innervate.networks.radio.analysis.air import (
 )
 from innervate.networks.radio.analysis.packets import first_offer_us, successes
 from innervate.networks.radio.plot.words import FrameWords, frame_words, report_words, turn_words
-from innervate.networks.radio.protocol.constants import (
-    DATA,
-    REPORT_COLLISION,
-    REPORT_FAILED,
-    REPORT_TURN,
-)
+from innervate.networks.radio.protocol import constants as const
 from innervate.scenario.actions.channel import KILL
 
 LANES_MAX = 128
@@ -34,7 +29,7 @@ ENLARGED = 0.3  # share of a resolution that is shown enlarged
 BEFORE = 0.05  # of that, how much of the time before its first frame
 
 NOTICED, DONE, FAILED = "noticed", "done", "failed"
-MARKS = {REPORT_COLLISION: NOTICED, REPORT_DELIVERED: DONE, REPORT_FAILED: FAILED}
+MARKS = {const.REPORT_COLLISION: NOTICED, REPORT_DELIVERED: DONE, const.REPORT_FAILED: FAILED}
 
 
 class Window(NamedTuple):
@@ -199,7 +194,7 @@ def _boxes(result: Any, on_air: Air, found: Groups, which: Any) -> list[Box]:
     protocol, slot = result.plan.protocol, int(result.plan.params["slot_us"])
     turns = {
         (int(row["node"]), int(row["time"])): (int(row["a"]), int(row["b"]))
-        for row in result.rows[result.rows["code"] == REPORT_TURN]
+        for row in result.rows[result.rows["code"] == const.REPORT_TURN]
     }
     decided = on_air.start - int(result.plan.params["ta_us"])
     boxes = []
@@ -212,7 +207,7 @@ def _boxes(result: Any, on_air: Air, found: Groups, which: Any) -> list[Box]:
         slots = "1 slot" if long == 1 else f"{long:g} slots"
         tip = f"station {node}: {words.name}, {start} to {end} us, {slots}"
         turn = turns.get((node, int(decided[place])))
-        if turn is not None and kind == DATA:
+        if turn is not None and kind == const.DATA:
             labels = (f"{words.name} {turn[0]}", f"{words.letter}{turn[0]}", words.letter)
             tip += f", {turn_words(protocol, *turn)}"
         collided = bool(found.collision[found.of[place]])
@@ -226,13 +221,15 @@ def _notes(result: Any, window: Window) -> list[Note]:
     inside = (rows["time"] >= window.from_us) & (rows["time"] < window.to_us)
     part = rows[inside & np.isin(rows["code"], list(MARKS))]
     noticed = {
-        (int(row["node"]), int(row["time"])) for row in part if row["code"] == REPORT_COLLISION
+        (int(row["node"]), int(row["time"]))
+        for row in part
+        if row["code"] == const.REPORT_COLLISION
     }
     notes = []
     for row in part:
         node, at, code = int(row["node"]), int(row["time"]), int(row["code"])
         # A collision says already that its packet failed.
-        if code == REPORT_FAILED and (node, at) in noticed:
+        if code == const.REPORT_FAILED and (node, at) in noticed:
             continue
         words = report_words(result.plan.protocol, code, int(row["a"]), int(row["b"]))
         notes.append(Note(node, at, MARKS[code], f"station {node}: {words}, {at} us"))

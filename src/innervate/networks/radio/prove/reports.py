@@ -40,11 +40,9 @@ class Ending(Induction):
 
 
 class Hearing(Ending):
-    """Hears a report by any of its minislots.
+    """A station hears a report by any of its minislots.
 
-    Args:
-        one: the station.
-        shared: how the round's record is called, so that stations may have the same.
+    `shared` is how the round's record is called, so that stations may have the same.
     """
 
     looped = "hear_report"
@@ -68,19 +66,14 @@ class Hearing(Ending):
 class Report:
     """Stations a and b of a stage hear its frame as a report.
 
-    Args:
-        stage: with both, and parameters.
-        alike: both have the same record of the round.
-
-    Attributes:
-        after: the values behind it.
-        machines: that heard it.
+    `alike`: both have the same record of the round.
     """
 
     def __init__(self, known: Source, stage: Stage, alike: bool) -> None:
         self.t, self.before, self.alike = stage.terms, dict(stage.store), alike
         self.a, self.b, self.frame = (stage.records[name] for name in ("a", "b", "frame"))
-        self.after, self.machines = dict(self.before), []
+        self.after = dict(self.before)  # the values behind it
+        self.machines = []  # that heard it
         for one in (self.a, self.b):
             machine = Hearing(known, self.t, one, "round" if alike else one.name)
             self.after, _ = hear(stage, machine, one, self.after)

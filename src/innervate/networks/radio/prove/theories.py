@@ -30,33 +30,19 @@ MUTANTS = tuple(
     for texts in (
         ("a packet is put where the oldest is", "station.head + station.queued", "station.head"),
         ("a full queue takes another", "station.queued >= QUEUE", "station.queued > QUEUE"),
-        (
-            "a place that another gets is kept",
-            "                if place == station.pos:\n                    station.pos = NONE\n",
-            "",
-        ),
-        (
-            "who is not named takes the turn",
-            "    if cur == station.pos:\n",
-            "    if cur <= station.pos:\n",
-        ),
-        (
-            "a turn does not wait for the one before it",
-            "2 * least_delay(params, wide) - params.ta_us)",
-            "3 * least_delay(params, wide) - params.ta_us)",
-        ),
-        (
-            "a turn is given up too soon",
-            "+ 4 * most_delay(params, wide) + minislot(params, wide)",
-            "+ minislot(params, wide)",
-        ),
-        (
-            "who is passed over takes the sender's place",
-            "        station.pos = NONE\n    if lone:",
-            "        station.pos = sender\n    if lone:",
-        ),
+        ("a place that another gets is kept",
+         "                if place == station.pos:\n                    station.pos = NONE\n", ""),
+        ("who is not named takes the turn",
+         "    if cur == station.pos:\n", "    if cur <= station.pos:\n"),
+        ("a turn does not wait for the one before it",
+         "2 * least_delay(params, wide) - params.ta_us)",
+         "3 * least_delay(params, wide) - params.ta_us)"),
+        ("a turn is given up too soon",
+         "+ 4 * most_delay(params, wide) + minislot(params, wide)", "+ minislot(params, wide)"),
+        ("who is passed over takes the sender's place",
+         "        station.pos = NONE\n    if lone:", "        station.pos = sender\n    if lone:"),
     )
-)
+)  # fmt: skip
 
 
 def theories(_network: Any, change: Change | None = None) -> list[Theory]:

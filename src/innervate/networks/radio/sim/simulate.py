@@ -59,7 +59,7 @@ def registered(protocol: stacks.Protocol, packets: ModuleType) -> ModuleType:
 
     compilation.register(traffic, rows, taps, hot=False)
     compilation.register(arith, outbox, rng, heap, medium)
-    compilation.register(*protocol.modules, hot=False)
+    compilation.register(*compilation.modules_of(protocol.entry), hot=False)
     compilation.register(recorder, listening, packets, hot=False)
     compilation.register_functions(loop.pressing, *loop.FUNCTIONS, hot=False)
     do = stacks.bind(protocol.entry, recorder, packets)

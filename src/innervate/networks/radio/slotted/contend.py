@@ -11,44 +11,28 @@ DOUBLINGS_MAX = 10
 
 
 class Contention(NamedTuple):
-    """Times and rules of CSMA/CD.
+    """Times and rules of CSMA/CD."""
 
-    Attributes:
-        slot, packet: how long they last.
-        cost: after the last station of a collision went on air the channel is sensed idle.
-        turn: from a decision to the first bit on air.
-        back: from the end of a frame until its sender senses the channel.
-        backoff: a step of the backoff.
-        linear: k + 1 values after k collisions, else 2^k.
-        redraw: who got through draws 0 or 1 as well.
-    """
-
-    slot: int
+    slot: int  # slot, packet: how long they last
     packet: int
-    cost: int
-    turn: int
-    back: int
-    backoff: int
-    linear: int
-    redraw: int
+    cost: int  # after the last station of a collision went on air the channel is sensed idle
+    turn: int  # from a decision to the first bit on air
+    back: int  # from the end of a frame until its sender senses the channel
+    backoff: int  # a step of the backoff
+    linear: int  # k + 1 values after k collisions, else 2^k
+    redraw: int  # who got through draws 0 or 1 as well
 
 
 class Counters(NamedTuple):
-    """Times and rules of 802.11 DCF.
+    """Times and rules of 802.11 DCF."""
 
-    Attributes:
-        slot: an idle step of every counter.
-        success, cost: the whole times that a packet and a collision take.
-        window, stages: counters start drawn from `window` values, doubled at most so many times.
-        at_once: they start at 0.
-    """
-
-    slot: int
-    success: int
+    slot: int  # an idle step of every counter
+    success: int  # success, cost: the whole times that a packet and a collision take
     cost: int
+    # window, stages: counters start drawn from `window` values, doubled at most so many times.
     window: int
     stages: int
-    at_once: int
+    at_once: int  # they start at 0
 
 
 def contend(recorder, rules):

@@ -18,21 +18,15 @@ be lost, and capture, its main effect here, would look milder than it is.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from innervate.networks.radio.scenario.slotted import BY_CHANCE
+from innervate.networks.radio.analysis import summary
 from innervate.networks.radio.slotted import recorder as rec
 from innervate.networks.radio.slotted.draws import MEAN_MAX, generator
-from innervate.networks.radio.slotted.drive import MACS, SLOT, USED_BY, Job, Options, drive, loop
+from innervate.networks.radio.slotted.drive import SLOT, TRAFFIC, USED_BY, Job, Setting, drive, loop
 from innervate.networks.radio.slotted.recorder import Recorder, new_recorder, schedule
-
-TRAFFIC = {"saturated": rec.SATURATED, "disaster": rec.DISASTER, "poisson": rec.POISSON}
-STATIONS_MAX = 10_000
-PACKET_SLOTS_MAX = 10_000
-SUCCESSES_MAX = 100_000_000
-LOAD_MAX = 50.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,65 +52,6 @@ class SlottedResult:
     jain_round: float
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """What runs on the slotted channel.
-
-    Attributes:
-        mac: one of MACS.
-        stations: 1..10,000; 0 = an infinite population (slotted-aloha, nonpersistent, p-persistent
-            under Poisson traffic), which ends after `packets` successes or 1,000 times as many
-            attempts.
-        packet_slots: packet length T, 1..10,000 slots.
-        traffic: "saturated", "disaster" (all at once, one packet each) or "poisson". Whoever has a
-            packet in csma-cd-* sends as soon as the channel is idle.
-        packets: per station in the mean, >= 1: a saturated run ends after stations * packets
-            successes, whosever they are; a Poisson run with the first station that has none left.
-        seed: root seed >= 0; the streams of protocol and traffic are derived from it.
-        warmup: share of the successes that is not measured, 0 <= warmup < 1; none in a disaster.
-        load: Poisson: packets offered per packet time (T slots) by all stations together, up to
-            50; with an infinite population that is fresh packets and retransmissions.
-        until_slots: packets that end later do not count, and the time measured ends there.
-    """
-
-    mac: str
-    stations: int
-    packet_slots: int
-    traffic: str
-    packets: int = 1000
-    seed: int = 1
-    warmup: float = 0.1
-    load: float | None = None
-    until_slots: float | None = None
-
-    def check(self) -> None:
-        """Raise ValueError for what is outside its range."""
-        mac, stations, traffic = self.mac, self.stations, self.traffic
-        if mac not in MACS:
-            raise ValueError(f"mac is one of {', '.join(sorted(MACS))}; not {mac!r}")
-        if traffic not in TRAFFIC:
-            raise ValueError(f"traffic is one of {', '.join(TRAFFIC)}; not {traffic!r}")
-        if not 0 <= stations <= STATIONS_MAX:
-            raise ValueError(f"stations are 0..{STATIONS_MAX}; not {stations}")
-        if stations == 0 and not (mac in BY_CHANCE and traffic == "poisson"):
-            raise ValueError(f"{mac} with {traffic} traffic needs stations >= 1")
-        if not 1 <= self.packet_slots <= PACKET_SLOTS_MAX:
-            raise ValueError(f"packet_slots are 1..{PACKET_SLOTS_MAX}; not {self.packet_slots}")
-        if self.packets < 1 or max(1, stations) * self.packets > SUCCESSES_MAX:
-            raise ValueError(
-                f"packets are >= 1 and at most {SUCCESSES_MAX} in all; not {self.packets}"
-            )
-        if self.seed < 0 or not 0 <= self.warmup < 1:
-            raise ValueError("seed is >= 0 and warmup in 0 <= warmup < 1")
-        if (self.load is not None) != (traffic == "poisson"):
-            raise ValueError("load belongs to poisson traffic, and only to it")
-        if self.load is not None and not 0 < self.load <= LOAD_MAX:
-            raise ValueError(f"load is in 0 < load <= {LOAD_MAX:g}; not {self.load}")
-
-
-NAMES = frozenset(Setting.__dataclass_fields__)
-
-
 def slotted(
     mac: str, stations: int, packet_slots: int, traffic: str, *, plain: bool = False, **given: Any
 ) -> SlottedResult:
@@ -128,63 +63,49 @@ def slotted(
         packet_slots: packet length T.
         traffic: "saturated", "disaster" or "poisson".
         plain: run the same loops uncompiled, with the same result.
-        given: what else there is in `Setting`, and in `Options` what only some protocols have.
+        given: what else there is in `Setting`.
 
     Raises:
         ValueError: an argument outside its range, or one that this protocol has no use for.
     """
-    others = {name: given.pop(name) for name in NAMES & given.keys()}
-    setting = Setting(mac, stations, packet_slots, traffic, **others)
-    setting.check()
-    options = _options(mac, stations, given)
+    for name in given:
+        if name not in Setting.__dataclass_fields__:
+            raise ValueError(f"{name} is no option; there are {', '.join(USED_BY)}")
+    setting = Setting(mac, stations, packet_slots, traffic, **given)
+    setting.check(given)
     if traffic == "disaster":
         setting = replace(setting, packets=1, warmup=0.0)
-    return _run(setting, options, plain)
+    recorder = _offered(setting, plain)
+    return _measure(recorder, setting, drive(Job(setting, recorder, plain)))
 
 
-def _run(setting: Setting, options: Options, plain: bool) -> SlottedResult:
-    """The same, of what may run."""
-    slot, airtime = SLOT, setting.packet_slots * SLOT
-    if options.dcf is not None:
-        slot, airtime = options.dcf.slot_us, options.dcf.payload_us
+def _offered(setting: Setting, plain: bool) -> Recorder:
+    """What a run is written into, with the packets that stations will be offered."""
     stations, packets, load = setting.stations, setting.packets, setting.load
     name = f"slotted/{setting.mac}/{stations}"
     kind = TRAFFIC[setting.traffic] if stations else rec.SATURATED
     recorder = new_recorder(kind, max(1, stations), packets, generator(setting.seed, name))
     if load is not None and stations:
-        interval = max(1, round(stations * airtime / load))
+        interval = max(1, round(stations * _times(setting)[1] / load))
         if interval > MEAN_MAX or interval * packets > rec.NEVER // 64:
             raise ValueError(f"{packets} packets take too long at a load of {load}")
         loop(schedule, plain)(recorder, generator(setting.seed, f"{name}/arrivals"), interval)
-    offered = None if stations else load
-    job = Job(setting.mac, recorder, setting.packet_slots, offered, options, plain)
-    return _measure(recorder, setting, _Times(slot, airtime, drive(job)))
+    return recorder
 
 
-def _options(mac: str, stations: int, options: dict[str, Any]) -> Options:
-    for name in options:
-        if name not in USED_BY:
-            raise ValueError(f"{name} is no option; there are {', '.join(USED_BY)}")
-        if mac not in USED_BY[name]:
-            raise ValueError(f"{mac} has no use for {name}")
-    if stations == 0 and "p" in options and mac != "p-persistent":
-        raise ValueError(f"{mac} has no use for p with an infinite population")
-    given = Options(**options)
-    given.check()
-    return given
+def _times(setting: Setting) -> tuple[int, int]:
+    """Of a slot, and of a packet on the air."""
+    if setting.dcf is not None:
+        return setting.dcf.slot_us, setting.dcf.payload_us
+    return SLOT, setting.packet_slots * SLOT
 
 
-class _Times(NamedTuple):
-    """Of a slot, a packet on the air, and the idle time that belongs to it."""
+def _measure(recorder: Recorder, setting: Setting, gap: int) -> SlottedResult:
+    """Times and shares from what the loop wrote down; `gap`: idle time that a packet has behind it.
 
-    slot: int
-    airtime: int
-    gap: int
-
-
-def _measure(recorder: Recorder, setting: Setting, times: _Times) -> SlottedResult:
-    """Times and shares from what the loop wrote down, up to a moment."""
-    slot, airtime, gap = times
+    Up to a moment, if one is given.
+    """
+    slot, airtime = _times(setting)
     until = rec.NEVER if setting.until_slots is None else round(setting.until_slots * slot)
     all_done = int(recorder.counts[rec.DONE])
     done = int(np.searchsorted(recorder.end[:all_done], until, "right"))
@@ -207,7 +128,8 @@ def _measure(recorder: Recorder, setting: Setting, times: _Times) -> SlottedResu
         collisions=_collisions(recorder, done, all_done) - before,
         delay_slots=delays if setting.stations else delays[:0],
         jain=jain(successes),
-        jain_round=_jain_round(order, stations),
+        # Over the whole rounds of n successes; of all if there is no round.
+        jain_round=summary.jain_of_rounds(order, stations) or jain(successes),
     )
 
 
@@ -219,20 +141,6 @@ def _collisions(recorder: Recorder, done: int, all_done: int) -> int:
 
 
 def jain(shares: Any) -> float:
-    """Jain's fairness index, 1/n (one has everything) to 1; 1 where there is nothing to share.
-
-    Jain, Chiu, Hawe 1984: (sum x)^2 / (n sum x^2).
-    """
-    shares = np.asarray(shares, np.float64)
-    squares = float((shares**2).sum())
-    return float(shares.sum()) ** 2 / (len(shares) * squares) if squares else 1.0
-
-
-def _jain_round(order: Any, stations: int) -> float:
-    """Mean fairness index over the whole rounds of n successes; of all if there is no round."""
-    rounds = len(order) // stations
-    if rounds == 0:
-        return jain(np.bincount(order, minlength=stations))
-    counted = np.arange(rounds * stations) // stations * stations + order[: rounds * stations]
-    counts = np.bincount(counted, minlength=rounds * stations).reshape(rounds, stations)
-    return float((stations / (counts.astype(np.float64) ** 2).sum(axis=1)).mean())
+    """Jain's fairness index, 1/n (one has everything) to 1; 1 where there is nothing to share."""
+    index = summary.jain(shares)
+    return 1.0 if index is None else index

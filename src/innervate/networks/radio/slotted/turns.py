@@ -9,21 +9,15 @@ from innervate.networks.radio.slotted.recorder import COLLISIONS, deliver, going
 
 
 class Reservation(NamedTuple):
-    """Times of CSMA/CD-R.
+    """Times of CSMA/CD-R, in ticks."""
 
-    Attributes:
-        slot, packet: how long they last.
-        turn: from a decision to the first bit on air.
-        lead, report: turns begin `lead` + (m - 1) * `report` after a collision of m stations began.
-        each: turns follow one another every so often.
-    """
-
-    slot: int
-    turn: int
+    slot: int  # slot, packet: how long they last
+    turn: int  # from a decision to the first bit on air
     packet: int
+    # lead, report: turns begin `lead` + (m - 1) * `report` after a collision of m stations began.
     lead: int
     report: int
-    each: int
+    each: int  # turns follow one another every so often
 
 
 def reserve(recorder, times):

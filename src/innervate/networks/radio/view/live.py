@@ -17,16 +17,11 @@ IDLE, SENDS, WAITS = 0, 1, 4  # what a station does, as pages count it
 
 
 class RadioState(State):
-    """What stations do.
-
-    Attributes:
-        unconnected: how many are off.
-        still_ms: for how long stations that had a packet have delivered nothing.
-    """
+    """What the stations of a team do."""
 
     noun = "station"
     is_off_when_cut = True
-    still_ms = 0.0
+    still_ms = 0.0  # for how long stations that had a packet have delivered nothing
 
     def look(self) -> tuple[int, int, int]:
         """Everybody hears everybody, or nobody."""
