@@ -132,3 +132,13 @@ def test_a_robot_that_leaves_everybody_behind():
     assert gone.startswith("out of everybody's reach on the way, first after 1")
     assert gone.endswith(": n5")
     assert walk((20, 20), (20, 900), (20, 20))  # it comes back in the end
+
+
+@pytest.mark.parametrize(("quality", "protocol", "said"), [
+    (0.6, {}, True), (0.8, {}, False),
+    (0.6, {"guard_s": 1}, False), (0.6, {"guard_s": 0}, False), (0.6, {"dead_s": 25}, False),
+])  # fmt: skip
+def test_a_standby_behind_lossy_links_that_waits_for_a_short_time_is_told(quality, protocol, said):
+    links = [*LINE[:1], LINE[1] | {"quality": quality}, *LINE[2:]]
+    found = line(link=links, standby=["n1", "n3"], protocol=protocol)
+    assert [words.partition(":")[0] for words in found] == ["n3"] * said

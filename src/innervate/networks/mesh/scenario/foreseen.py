@@ -20,6 +20,8 @@ HALF = 0.5
 # node's only link 25, 16, 9 or 4 % are acknowledged, 99, 89, 82 or 17 % came; in a ring of 30 nodes
 # with eight such links each 92, 60, 38 or 23 %.
 ACKED_MIN = RATIO_MIN / (ALL_ACKED + 1)
+# What a standby waits on links that lose much (decision 0066), and as the template has it.
+PATIENT_US = 1_000_000
 ON_A_LEG = 8  # places that are looked at between two points of a robot's way
 MOMENTS_MAX = 300
 BadLinks = dict[int, tuple[float, int, int]]  # by node, see _badly_reached()
@@ -31,6 +33,7 @@ def foreseen(made: MeshPlan) -> list[str]:
     return [
         *_acks(made),
         *_bad_ways(made, bad),
+        *_hasty(made),
         *_at_the_end(made, bad),
         *_too_much(made),
         *_out_of_reach(made),
@@ -97,6 +100,24 @@ def _worst_links(made: MeshPlan, gateway: int) -> dict[int, tuple[float, int, in
                 link = min(worst, (share, other, node))
                 heappush(ahead, (-link[0], other, node, link))
     return found
+
+
+def _hasty(made: MeshPlan) -> list[str]:
+    """Standbys that lossy links keep from hearing in time that the gateway lives."""
+    guard_us = made.params["guard_us"]
+    if not 0 < guard_us < PATIENT_US:
+        return []
+    worst = _worst_links(made, made.ranks.index(0))
+    ways = {node: worst[node] for node, rank in enumerate(made.ranks) if rank > 0 and node in worst}
+    lossy = [node for node, link in ways.items() if link[0] < HALF]
+    if not lossy:
+        return []
+    return [
+        f"{listed([made.names[node] for node in lossy])}: less than half of the transmissions are "
+        "acknowledged on a link to the gateway, so that its answers are late: with "
+        f"protocol.guard_s = {guard_us / 1e6:g} a standby may take over from a gateway that "
+        f"lives; set it to {PATIENT_US / 1e6:g}"
+    ]
 
 
 def _at_the_end(made: MeshPlan, bad: BadLinks) -> list[str]:
