@@ -88,6 +88,8 @@ def test_two_networks_with_one_link_type_have_no_dissector(alone, capsys):
         (["{run}", "--pcapng", "{out}", "--seed", "3"], "was run as it is"),
         (["{run}", "--pcapng", "{out}", "--from", "5"], "the run ends at"),
         (["{run}", "--pcapng", "{out}", "--from", "0.02", "--to", "0.01"], "nothing lies"),
+        (["{run}", "--graph", "{out}.json", "--from", "0.01"], "--from and --to are of --pcapng"),
+        (["{run}", "--tables", "{out}", "--to", "0.01"], "--from and --to are of --pcapng"),
         (["{run}", "--pcapng", "{out}/no/such/folder"], "cannot be written"),
         (["{run}", "--mcap", "{out}", "--csv"], "--csv is for tables"),
         (["setup-0", "--pcapng", "{out}"], "setup-0"),

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.cli import doctor, live, live_status, live_table
+from innervate.cli import doctor, live, live_status, live_table, main
 from innervate.cli.capturing import EVENT, Recorder
 from innervate.cli.options import SweepOptions
 from innervate.export import pcapng
@@ -270,3 +270,10 @@ def test_whether_runs_start_at_once(capsys, change, words):
     assert len(lines) == len(words)
     for line, said in zip(lines, words, strict=True):
         assert said in line
+
+
+def test_the_commands_that_new_names_take_a_file_with_blanks(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "skin", "my skin.toml"]) == 0
+    said = capsys.readouterr().out
+    assert "`innervate check 'my skin.toml'`, run it with `innervate run 'my skin.toml'`" in said

@@ -284,3 +284,24 @@ def test_a_mesh_is_known_by_its_suffix_however_it_is_written(robot, tmp_path):
     (tmp_path / "tile.stl").rename(tmp_path / "TILE.STL")
     upper = robot_of(tmp_path, '<mesh filename="TILE.STL" scale="0.001 0.001 0.001"/>')
     assert len(cells_from_urdf(upper, "*", None, 20.0)[0]) > 5
+
+
+@pytest.mark.parametrize(("name", "text"), [
+    ("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n"),
+    ("a.dae", "<COLLADA/>"),
+])  # fmt: skip
+def test_a_damaged_mesh_is_told_without_its_readers_own_words(tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(TopologyError) as caught:
+        cells_from_urdf(robot_of(tmp_path, f'<mesh filename="{name}"/>'), "arm", None, 10.0)
+    assert str(caught.value) == f"{name} of link arm is no mesh: it is damaged or incomplete"
+
+
+def test_a_link_that_is_too_large_is_told_with_its_surface(tmp_path):
+    """A robot whose lengths were written in mm."""
+    with pytest.raises(TopologyError) as caught:
+        cells_from_urdf(robot_of(tmp_path, '<box size="100 100 100"/>'), "arm", None, 25.0)
+    assert str(caught.value) == (
+        "a pitch of 25 mm is too fine for link arm, whose surface is 60,000.00 m2; "
+        "take a wider (lengths in a URDF are metres)"
+    )

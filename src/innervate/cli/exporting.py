@@ -36,6 +36,8 @@ def _write_files(source: str | None, wanted: ExportOptions) -> None:
         raise UserError("of what? name a run folder or a scenario; see: innervate export --help")
     if wanted.csv and wanted.tables is None:
         raise UserError("--csv is for tables; name their folder with --tables")
+    if wanted.pcapng is None and (wanted.from_s or wanted.to_s is not None):
+        raise UserError("--from and --to are of --pcapng; other files hold the whole run")
     _Source(source, wanted.set_ or [], wanted.seed).write(wanted)
 
 

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 from dataclasses import fields
 from itertools import takewhile
 from pathlib import Path
@@ -70,8 +71,9 @@ def new(kind: str, file: Path | None, measured: MeasuredOptions) -> int:
     files.write_text(file, text)
     if found:
         print(found)
-    print(f"Written: {file}. Check it with `innervate check {file}`, run it with "
-          f"`innervate run {file}`.")  # fmt: skip
+    word = shlex.quote(str(file))
+    print(f"Written: {file}. Check it with `innervate check {word}`, run it with "
+          f"`innervate run {word}`.")  # fmt: skip
     return 0
 
 

@@ -92,7 +92,10 @@ def _cells(path: Path, link: Link, pitch_mm: float) -> Iterator[tuple[Vector, Ve
             raise TopologyError(f"a mesh of link {link.name} has no surface", "urdf")
         wanted = math.ceil(DRAWN * area / pitch_mm**2)
         if wanted > DRAWN * CELLS_MAX:
-            message = f"a pitch of {pitch_mm:g} mm is too fine for link {link.name}; take a wider"
+            message = (
+                f"a pitch of {pitch_mm:g} mm is too fine for link {link.name}, whose surface is "
+                f"{area / 1e6:,.2f} m2; take a wider (lengths in a URDF are metres)"
+            )
             raise TopologyError(message, "pitch_mm")
         drawn, faces = sample_surface(mesh, wanted + 1, seed=SEED)
         normals = mesh.face_normals[faces].tolist()
@@ -164,8 +167,10 @@ def _shape(path: Path, link: Link, part: Element) -> Any:
             simplefilter("ignore", RuntimeWarning)
             made: Any = trimesh.load(file, force="mesh")
     except Exception as error:  # whatever a reader of a dozen formats may raise
+        told = isinstance(error, ImportError | ValueError | OSError)
+        reason = error if told else "it is damaged or incomplete"
         raise TopologyError(
-            f"{file.name} of link {link.name} is no mesh: {error}", "urdf"
+            f"{file.name} of link {link.name} is no mesh: {reason}", "urdf"
         ) from None
     if file.suffix.lower() == COLLADA:
         made.apply_scale(_metres(file))
