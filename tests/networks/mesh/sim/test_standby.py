@@ -3,7 +3,6 @@
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
-    ACK,
     ALARM,
     CONTROL,
     CROSS,
@@ -99,18 +98,6 @@ def test_nobody_takes_over_from_a_gateway_that_lives():
     assert {i for _, i, *_ in net.of(REPORT_ROUND)} == {0}
     questions = {f.seq for _, i, f in net.sent if f.kind == GRAPH and f.origin == i == 7}
     assert 20 < len(questions) <= 150
-
-
-def test_a_question_whose_acks_are_lost_is_answered_once():
-    """Where links lose much, a question comes again and again: an answer each fills the queues."""
-    net = guarded(count=2, links=line(2), standbys=(1,))
-    net.sent.clear()
-    net.lost = lambda frame, _: frame.kind == ACK and frame.link_src == 0
-    net.run(net.now + SOON)
-    asked = [f.seq for _, i, f in net.sent if f.kind == GRAPH and i == 1]
-    answers = {f.seq for _, i, f in net.sent if f.kind == GRAPH and i == 0}
-    assert len(asked) > 2 * len(set(asked)) > 0
-    assert len(answers) == len(set(asked))
 
 
 @pytest.mark.parametrize("asks", [0, 1])

@@ -270,8 +270,7 @@ def on_unicast(node, gate, params, now, frame, out):
         on_position(node, params, now, frame, out)
     elif is_routed(kind):
         if here and kind == GRAPH:
-            if not record_packet(node, frame):
-                on_guard(node, gate, params, now, frame, out)
+            on_guard(node, gate, params, now, frame, out)
         elif here:
             take(node, params, now, frame, out)
         else:
