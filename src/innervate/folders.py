@@ -17,7 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from innervate.dialect import counted, sends
+from innervate.dialect import clocks, counted, sends
 from innervate.dialect import folder as checks
 from innervate.dialect.checker import functions_of
 
@@ -281,6 +281,7 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     rules = [_file_of(folder, network, "invariants")] if network.has("invariants") else []
     for source in [*files, *rules]:
         found += checks.of_uses(source, declared, network.protocol.TIMERS, arrays)
+        found += clocks.of_clocks(source, tables)
     return found
 
 

@@ -1,0 +1,73 @@
+"""Readings of a clock that are compared as what they are not.
+
+A node's clock begins anywhere and goes round at 2^30 us, after 18 minutes, so that `<` says the
+wrong thing of two readings; and `later` is of sequence numbers, which go round at 2^16.
+"""
+
+import ast
+
+from innervate.dialect.arith import MASK16, MASK30
+from innervate.dialect.folder import Finding
+
+ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
+
+
+def of_clocks(path, tables):
+    """Comparisons of `now` by its size, and of what is no sequence number by `later`.
+
+    Args:
+        path: a file of the protocol, or of its invariants.
+        tables: the declared fields of states, frames and parameters.
+    """
+    most = {}
+    for name, _length, _low, high, *_ in tables:
+        most[name] = max(most.get(name, 0), high)
+    found = []
+    for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(function, ast.FunctionDef):
+            has_now = "now" in {argument.arg for argument in function.args.args}
+            for part in ast.walk(function):
+                wrong = (has_now and _by_size(part)) or _by_sequence(part, most, has_now)
+                if wrong:
+                    found.append(Finding(path, part.lineno, wrong))
+    return found
+
+
+def _by_size(part):
+    """What is wrong with a comparison, of `now` or of a difference that it is in."""
+    if not (isinstance(part, ast.Compare) and isinstance(part.ops[0], ORDERS)):
+        return ""
+    for side in (part.left, *part.comparators):
+        if _is_now(side):
+            return (
+                f"{ast.unparse(part)}: now goes round at 2^30 and begins anywhere; write "
+                "after(a, b) of innervate.dialect.arith"
+            )
+        is_difference = isinstance(side, ast.BinOp) and isinstance(side.op, ast.Sub)
+        if is_difference and (_is_now(side.left) or _is_now(side.right)):
+            said = ast.unparse(side)
+            return f"{said} is below 0 when the clock goes round; write ({said}) & MASK30"
+    return ""
+
+
+def _by_sequence(part, most, has_now):
+    """What is wrong with a call of `later`."""
+    if not (isinstance(part, ast.Call) and getattr(part.func, "id", "") == "later"):
+        return ""
+    for given in part.args:
+        field = given.value if isinstance(given, ast.Subscript) else given
+        name, high = "now", MASK30
+        if isinstance(field, ast.Attribute):
+            name, high = field.attr, most.get(field.attr, 0)
+        elif not (has_now and _is_now(field)):
+            continue
+        if high > MASK16:
+            return (
+                f"{ast.unparse(part)}: later is for sequence numbers of 16 bits, and {name} is up "
+                f"to {high}; readings of a clock are compared by after(a, b)"
+            )
+    return ""
+
+
+def _is_now(part):
+    return isinstance(part, ast.Name) and part.id == "now"
