@@ -106,7 +106,8 @@ ifeq ($(LOOPS),no)
 	@$(BIN)/python -m build --no-isolation --wheel
 else
 	@$(BIN)/python -m innervate.kernel.readying build/loops
-	@INNERVATE_LOOPS=build/loops $(BIN)/python -m build --no-isolation --wheel
+	@$(BIN)/python -m innervate.firmware.readying build/nodes
+	@INNERVATE_LOOPS=build/loops INNERVATE_NODES=build/nodes $(BIN)/python -m build --no-isolation --wheel
 endif
 
 # Source archive and wheel, built, installed in environments of their own and tried there.

@@ -1,9 +1,9 @@
-"""What the wheel is built with: the pages of the documentation, and ready loops if there are some.
+"""What the wheel is built with: the pages of the documentation, and what was compiled for it.
 
-Pages are for `innervate docs`. Loops are taken from the folder INNERVATE_LOOPS, if it is set.
-
-`python -m innervate.kernel.readying FOLDER` fills that folder; the wheel is then one for this
-system and processor, for every Python. Without, it is for any system, and compiles.
+Pages are for `innervate docs`. INNERVATE_LOOPS and INNERVATE_NODES, where they are set, name
+folders that `python -m innervate.kernel.readying FOLDER` and `python -m
+innervate.firmware.readying FOLDER` have filled; the wheel is then one for this system and
+processor, for every Python. Without, it is for any system, and compiles.
 """
 
 import glob
@@ -14,29 +14,36 @@ import sysconfig
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
+# By variable: where what is in its folder goes, and a file that is there.
+COMPILED = {
+    "INNERVATE_LOOPS": ("innervate/kernel/loops", "about.json"),
+    "INNERVATE_NODES": ("innervate/firmware/nodes", "*.so"),
+}
+
 
 class Loops(BuildHookInterface):
-    """Puts pages and ready loops into the wheel, and says in its name where these run."""
+    """Puts pages and compiled code into the wheel, and says in its name where that runs."""
 
     def initialize(self, version, build_data):
         """Before a wheel is built; an editable one has none: its sources are yet to change."""
-        folder = os.environ.get("INNERVATE_LOOPS")
         if version == "editable":
             return
         for page in glob.glob(os.path.join(self.root, "docs", "*.md")):
             name = os.path.basename(page)
             build_data["force_include"][page] = f"innervate/cli/pages/{name}"
-        if not folder:
-            return
-        if not os.path.isfile(os.path.join(folder, "about.json")):
-            raise FileNotFoundError(f"INNERVATE_LOOPS: no ready loops in {folder}")
-        build_data["force_include"][os.path.abspath(folder)] = "innervate/kernel/loops"
-        build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{_platform()}"
+        for variable, (place, wanted) in COMPILED.items():
+            folder = os.environ.get(variable)
+            if not folder:
+                continue
+            if not glob.glob(os.path.join(folder, wanted)):
+                raise FileNotFoundError(f"{variable}: no {wanted} in {folder}")
+            build_data["force_include"][os.path.abspath(folder)] = place
+            build_data["pure_python"] = False
+            build_data["tag"] = f"py3-none-{_platform()}"
 
 
 def _platform():
-    """A loop asks for nothing of a C library but `memset`: on Linux any that Numba runs with."""
+    """Of a C library it asks for `memset`, `memmove`: on Linux any that Numba runs with."""
     if sys.platform == "linux":
         return f"manylinux_2_17_{platform.machine()}"
     return sysconfig.get_platform().replace("-", "_").replace(".", "_")

@@ -148,13 +148,13 @@ def test_a_library_that_others_may_change_is_never_opened(tmp_path, monkeypatch,
     opened = []
     monkeypatch.setattr(ctypes, "CDLL", lambda path: opened.append(path) or "library")
     path = tmp_path / "one.so"
-    assert compiled._open(path, "key") is None, "it is not there"
+    assert compiled._kept(path, "key") is None, "it is not there"
     path.write_bytes(b"ELF ... key ...")
     path.chmod(mode)
     os.utime(path, (1, 1))
-    assert compiled._open(path, "other key") is None
+    assert compiled._kept(path, "other key") is None
     assert path.stat().st_mtime == 1
-    assert compiled._open(path, "key") == ("library" if is_taken else None)
+    assert compiled._kept(path, "key") == ("library" if is_taken else None)
     assert opened == [str(path)] * is_taken
     assert (path.stat().st_mtime > 1) == is_taken, "it was used just now"
 

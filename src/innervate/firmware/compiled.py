@@ -1,7 +1,8 @@
 """A role compiled for this machine: a shared library, made once for its sources and kept.
 
-It knows neither Python nor a C library. A name in the cache is a hash of all that it is made from,
-and stands in the library, too: what was made from other sources is never taken.
+It knows neither Python nor a C library. Its name is a hash of all that it is made from, and stands
+in the library, too: what was made from other sources is never taken. A wheel brings those of usual
+nodes (`readying.py`), others are made and kept in the cache.
 """
 
 import ctypes
@@ -9,6 +10,7 @@ import os
 import platform
 import sys
 import tempfile
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -26,6 +28,7 @@ from innervate.live.board import Coded, Role
 COMPILER = "cc"
 SHIPPED, QUICK = ("innervate_wire.h", "innervate_wire.c"), frozenset({"quick"})
 FOLDER = "nodes"  # below the cache
+READY = ROOT / "firmware" / FOLDER  # those of a wheel; a checkout has none
 KEPT_MOST = 32  # libraries; those not used for longest go first
 MAKERS = ("firmware", "dialect", "wire")  # rooms that have a part in what is made
 
@@ -35,7 +38,7 @@ def key_of(role: Role, coded: Coded | None) -> str:
     files = {Path(module.__file__ or "") for module in reached(role.entry)}
     for room in MAKERS:
         files |= {path for path in (ROOT / room).rglob("*") if path.suffix in (".py", ".c", ".h")}
-    of = role._replace(noted=frozenset())  # which C does not have, nor an order
+    of = role._replace(noted=frozenset(), usual=())  # which C does not have; no order
     begun = f"{sys.platform} {platform.machine()}\0{of}\0{coded}"
     return hash_of(begun, sorted(files), ROOT)
 
@@ -47,34 +50,46 @@ def handlers_of(role: Role) -> list[str]:
 
 
 def library_of(role: Role, coded: Coded | None) -> Any:
-    """A role's library, from the cache or made now.
+    """A role's library, from the wheel, from the cache, or made now.
 
     Raises:
         FirmwareError: the role cannot be said in C, there is no compiler, or it does not take it.
     """
     key = key_of(role, coded)
     path = cache_root() / FOLDER / f"{key}.so"
-    found = _open(path, key)
+    found = _ready(key) or _kept(path, key)
     if found is None:
         find(COMPILER)
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with alone(path.with_suffix(".lock")):
-            found = _open(path, key) or _made(role, coded, path, key)
+            found = _kept(path, key) or _made(role, coded, path, key)
     return found
 
 
-def _open(path: Path, key: str) -> Any:
-    """The library in a file, if it is ours, whole, and made from this very role."""
-    try:
+def _ready(key: str) -> Any:
+    """The library that came with the toolkit, trusted as its sources are; None without one."""
+    path = READY / f"{key}.so"
+    return None if os.environ.get("INNERVATE_READY") == "0" else _open(path, key)
+
+
+def _kept(path: Path, key: str) -> Any:
+    """The library in the cache, if nobody else could have written it."""
+    with suppress(OSError):
         about = path.stat()
-        if about.st_uid not in (0, os.getuid()) or about.st_mode & 0o022:
-            return None  # somebody else could have written it
-        if key.encode() not in path.read_bytes():
-            return None
-        os.utime(path)
-        return ctypes.CDLL(str(path))
-    except OSError:
-        return None
+        if about.st_uid in (0, os.getuid()) and not about.st_mode & 0o022:
+            found = _open(path, key)
+            if found is not None:
+                os.utime(path)
+            return found
+    return None
+
+
+def _open(path: Path, key: str) -> Any:
+    """The library in a file, if it is whole, and made from this very role."""
+    with suppress(OSError):
+        if key.encode() in path.read_bytes():
+            return ctypes.CDLL(str(path))
+    return None
 
 
 def _made(role: Role, coded: Coded | None, path: Path, key: str) -> Any:
@@ -87,7 +102,7 @@ def _made(role: Role, coded: Coded | None, path: Path, key: str) -> Any:
         (folder / path.name).chmod(0o700)
         os.replace(folder / path.name, path)
     _forget(path.parent)
-    found = _open(path, key)
+    found = _kept(path, key)
     if found is None:
         raise FirmwareError(f"{path}: was made, and cannot be taken; set INNERVATE_CACHE")
     return found

@@ -150,6 +150,8 @@ class Role(NamedTuple):
         sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
         live: "module:function", parameters -> the role as a live node with these has it; "" = the
             same as on a board.
+        usual: what stands in files of usual live nodes, besides their kind, number and links: a
+            wheel brings what these take as C.
         wide: all its numbers have 32 bits, whatever is declared, and a coder says which does not
             fit: so C does with values out of range what Python does.
     """
@@ -177,6 +179,7 @@ class Role(NamedTuple):
     hooks: str = ""
     sized: str = ""
     live: str = ""
+    usual: tuple[Mapping[str, Any], ...] = ()
     wide: bool = False
     watched: Watched = Watched()
     emulated: Emulated | None = None
@@ -223,4 +226,5 @@ def roles_of(network: Network) -> tuple[Role, ...]:
         getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN if network.medium == CABLES else None,
         watched=WATCHED[network.medium],
         action=getattr(fields, "ACTION", ACTION), timers=getattr(protocol, "TIMERS", 1),
+        usual=({},),
     ),)  # fmt: skip

@@ -70,6 +70,11 @@ small_parameters, middle_parameters, wide_parameters, large_parameters = (
     partial(node_parameters, size) for size in CLASSES
 )
 OF_CLASS = dict(zip(CLASSES, ("small", "middle", "wide", "large"), strict=True))
+USUAL = tuple(
+    {"nodes": size, "protocol": {"mtu": mtu}}
+    for size in CLASSES
+    for mtu in (const.MTU, const.MTU_MAX)
+)
 
 CSMA = Role(
     "csma", "innervate.networks.mesh.protocol.csma",
@@ -118,7 +123,7 @@ def node(nodes: int) -> Role:
         room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=const.TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
         watched=RUN._replace(table="nodes"), coded=CODED, frame_bytes=FRAME_BYTES,
-        hooks="innervate.networks.mesh:board_links", live=f"{HERE}:live_node",
+        hooks="innervate.networks.mesh:board_links", live=f"{HERE}:live_node", usual=USUAL,
     )  # fmt: skip
 
 

@@ -30,5 +30,6 @@ ROLES = (
             ),
         ),
         parameters="innervate.networks.skin.live.parameters:skin_parameters",
+        usual=({"role": "cell"},),
     ),
 )  # fmt: skip
