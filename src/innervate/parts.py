@@ -65,7 +65,7 @@ PARTS = {
     "boards": "tuple of live.board.Role: what of it runs on a board; if absent, its protocol",
     "random": "module: SHARE, drawn, smaller, trouble: networks from a number (running/fuzz.py)",
     "invariants": "module in the dialect: node_*(node, params, now), network_*(nodes, count, "
-    "params): what must hold",
+    "params) or (nodes, count, params, peer): what must hold",
     "measures": "(nodes, reports, deliveries, plan) -> dict of str to number: own figures; nodes: "
     "the states at the end of those that are on",
     "shows": "dict of str to (unit, (node, params) -> number): what pages colour nodes by, too",

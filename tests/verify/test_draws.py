@@ -53,6 +53,28 @@ def never(*waits):
     return rule
 
 
+@pytest.mark.parametrize(("graph", "ends"), [
+    ("n0.E-n1.W", {(0, 1): (1, 0)}), ("n0.up-n1.W", {(0, 2): (1, 0)}),
+])  # fmt: skip
+def test_a_rule_of_all_nodes_may_ask_who_is_joined(graph, ends):
+    def is_joined(nodes, count, params, peer):
+        """no cable where one is"""
+        both = {**ends, **{far: near for near, far in ends.items()}}
+        return all(
+            peer[4 * node + port] == 4 * both.get((node, port), (0, 0))[0]
+            + both[node, port][1] if (node, port) in both else peer[4 * node + port] == -1
+            for node in range(count) for port in range(4)
+        )  # fmt: skip
+
+    def is_alone(nodes, count, params, peer):
+        """somebody is joined"""
+        return max(peer) < 0
+
+    assert not explored(throws(2), [is_joined], graph=graph, states=20).is_broken
+    broken = explored(throws(2), [is_joined, is_alone], graph=graph, states=20)
+    assert broken.story.title == "somebody is joined"
+
+
 def throws(size):
     """Each node draws when its timer fires, again and again."""
 

@@ -22,7 +22,10 @@ HANDLERS = {
     "on_input": "(state, params, now, kind, item, out)",
 }
 ON_AIR = {"on_carrier": "(state, params, now, cd, voc, out)"}
-RULES = {"node_": "(node, params, now)", "network_": "(nodes, count, params)"}
+RULES = {
+    "node_": ("(node, params, now)",),
+    "network_": ("(nodes, count, params)", "(nodes, count, params, peer)"),
+}
 MAY = {"on_sent": "(state, params, now, ok, out)"}  # that a protocol need not have
 
 
@@ -81,10 +84,12 @@ def of_rules(path):
         if not function.name.startswith(tuple(RULES)) and function.name not in used:
             what = f"{function.name} is never looked at; begin its name with node_ or network_"
             found.append(Finding(path, function.lineno, what))
-        for prefix, arguments in RULES.items():
+        for prefix, allowed in RULES.items():
             given = len(function.args.args)
-            if function.name.startswith(prefix) and given != arguments.count(",") + 1:
-                what = f"{function.name} takes {given} arguments; it is {function.name}{arguments}"
+            fits = given in {arguments.count(",") + 1 for arguments in allowed}
+            if function.name.startswith(prefix) and not fits:
+                said = " or ".join(f"{function.name}{arguments}" for arguments in allowed)
+                what = f"{function.name} takes {given} arguments; it is {said}"
                 found.append(Finding(path, function.lineno, what))
     return found
 

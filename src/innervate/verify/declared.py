@@ -11,6 +11,7 @@ What nodes draw is tried in every way, as far as draws.py says.
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from inspect import signature
 from typing import Any
 
 from innervate.folders import MEDIA_ON_AIR, invariants_of
@@ -104,8 +105,18 @@ def net_of(network: Network, graph: Graph, params: dict[str, int], kind: type[Ne
     net.is_addressed = network.medium == "field" and hasattr(net.frame, "to")
     net.frames = frames_of(network)
     net.own = invariants_of(network, "node_")
-    net.of_all = invariants_of(network, "network_")
+    net.of_all = {
+        title: _with_cables(holds, graph)
+        for title, holds in invariants_of(network, "network_").items()
+    }
     return net
+
+
+def _with_cables(holds: Any, graph: Graph) -> Any:
+    """An invariant of all nodes; one with a fourth argument is given the graph's ends, too."""
+    if len(signature(holds).parameters) < 4:
+        return holds
+    return lambda *given: holds(*given, graph.peer)
 
 
 def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
