@@ -108,8 +108,11 @@ def test_invariants_take_what_they_are_given(file):
     assert said(folder.of_rules(file(INVARIANTS))) == [
         (1, "node_low takes 2 arguments; it is node_low(node, params, now)"),
         (5, "helper is never looked at; begin its name with node_ or network_"),
-        (7, "network_up takes 1 arguments; it is network_up(nodes, count, params) or "
-            "network_up(nodes, count, params, peer)"),
+        (
+            7,
+            "network_up takes 1 arguments; it is network_up(nodes, count, params) or "
+            "network_up(nodes, count, params, peer)",
+        ),
     ]
 
 
