@@ -50,6 +50,25 @@ def test_compare(capsys, tmp_path, monkeypatch):
     assert found["headlines"][0]["text"] == "Every cell has a way to the PC."
 
 
+def test_sweep(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ("sweep", "line", "--vary", "protocol.k=3,5,99", "--repeat", "2", "--workers", "1",
+             "--show", "recoveries.routed_ms,cut_off.most", "--out", "out")  # fmt: skip
+    found = said(capsys, *words, "--json")
+    assert (found["folder"], found["runs"], found["complete"]) == ("out", 6, True)
+    assert [one["settings"]["protocol.k"] for one in found["points"]] == [3, 5, 99]
+    assert sum(found["failed"].values()) == 2 and found["headlines"]["ok"] == 4
+    assert main(list(words)) == 0
+    table = capsys.readouterr().out.splitlines()[1:3]
+    for line, one in zip(table, found["points"], strict=False):
+        shown = one["figures"]["recoveries.routed_ms"]
+        assert line.split()[:3] == [str(one["settings"]["protocol.k"]), "2", f"{shown['mean']:.4g}"]
+        assert shown["low"] <= shown["mean"] <= shown["high"] and shown["runs"] == one["runs"]
+    assert found["points"][2]["figures"]["cut_off.most"]["mean"] is None
+    every = said(capsys, *words[:-4], "--out", "out", "--json")["points"][0]["figures"]
+    assert {"recoveries.routed_ms", "balance_factor"} <= every.keys()
+
+
 @pytest.fixture(scope="module")
 def schema():
     """What holds a scenario against the schema that is printed; made once."""

@@ -178,6 +178,17 @@ def test_what_cannot_be_read_beside_a_new_network_is_none_of_its_business(alone)
     assert sorted(path.name for path in alone.iterdir()) == ["away", "one", "other"]
 
 
+def test_a_disk_that_is_full_is_told_with_the_folders_name(alone, capsys, monkeypatch):
+    def full(path, *_, **__):
+        raise OSError(28, "No space left on device", str(path))
+
+    monkeypatch.setattr("pathlib.Path.write_text", full)
+    assert main(["new", "network", "gossip"]) == 2
+    said = capsys.readouterr().err
+    assert said == "innervate: gossip cannot be written: No space left on device\n"
+    assert list(alone.iterdir()) == []
+
+
 def test_over_goes_with_a_field_and_a_medium_access_that_there_is(alone, capsys):
     for words in (["--on", "field", "--over", "tdma"], ["--over", "csma"]):
         assert main(["new", "network", "flood", *words]) == 2

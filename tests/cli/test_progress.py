@@ -1,4 +1,5 @@
 import re
+import time
 
 import pytest
 
@@ -86,3 +87,22 @@ def test_a_bar_of_which_nobody_knows_the_end_has_none(monkeypatch):
         assert (task.description, task.completed, task.total) == ("looking on", 7, None)
         display.show("looking on", 8, 9, 1.0)
         assert (task.completed, task.total) == (8, 9)
+
+
+def test_while_something_compiles_a_line_comes_now_and_then_and_none_afterwards(
+    monkeypatch, capsys
+):
+    monkeypatch.setattr(progress, "STILL_EVERY_S", 0.01)
+    for compiled, quiet, some in ((False, False, True), (True, False, False), (False, True, False)):
+        with progress.Progress(compiled, quiet) as show:
+            end = time.monotonic() + 10
+            said = ""
+            while time.monotonic() < end and some and "still compiling, after 0 s" not in said:
+                time.sleep(0.01)
+                said += capsys.readouterr().err
+            show(0, 1_000_000)
+            time.sleep(0.05)
+            capsys.readouterr()
+            time.sleep(0.05)
+            assert capsys.readouterr().err == ""
+        assert ("still compiling" in said) == some

@@ -93,6 +93,15 @@ def test_a_counterexample_that_cannot_be_written_is_one_line_and_not_there(sh, f
     assert not list(Path("found").iterdir())
 
 
+@pytest.mark.parametrize("place", ["taken", "taken/below"])
+def test_a_place_that_is_none_for_counterexamples_is_told_before_anything_is_explored(sh, place):
+    Path("taken").write_text("mine")
+    assert sh("verify", *SMALL, "--out", place) == 2
+    assert (sh.out, sh.err) == (
+        "", f"innervate: {place} cannot be written: taken is no folder; choose another place\n"
+    )  # fmt: skip
+
+
 def test_json_is_all_there_is(sh):
     assert sh("verify", *SMALL, "--rule", "all", "--json") in (0, 1)
     cases = json.loads(sh.out)

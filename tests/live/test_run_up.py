@@ -3,6 +3,8 @@
 import asyncio
 import io
 import json
+import os
+import signal
 import socket
 import sys
 from contextlib import ExitStack, suppress
@@ -266,3 +268,24 @@ def test_each_matter_is_said_at_its_own_times_and_what_was_not_said_is_not_over(
     notices.tell("a", "too soon")
     notices.over("a", "not said, so not over")
     assert said[4:] == ["a is over"]
+
+
+def test_ctrl_c_before_all_are_up_interrupts_and_no_node_is_said_to_have_ended(
+    plan, tmp_path, monkeypatch
+):
+    async def starts(network, scenario):  # as a terminal tells: this process, and each node's
+        os.kill(os.getpid(), signal.SIGINT)
+        raise LiveError("c0 ended: innervate: interrupted")
+
+    monkeypatch.setattr(run_up, "up", starts)
+    with pytest.raises(KeyboardInterrupt):
+        asyncio.run(run_up.run(plan, Way(tmp_path / "run", "udp", ""), "", 0.0, False))
+
+
+def test_a_node_that_ends_by_itself_is_said(plan, tmp_path, monkeypatch):
+    async def starts(network, scenario):
+        raise LiveError("c0 ended: no message")
+
+    monkeypatch.setattr(run_up, "up", starts)
+    with pytest.raises(LiveError, match="c0 ended: no message"):
+        asyncio.run(run_up.run(plan, Way(tmp_path / "run", "udp", ""), "", 0.0, False))

@@ -115,6 +115,7 @@ def test_dump_keeps_odd_strings() -> None:
     tables = {"kind": "skin", "name": 'a"\\\x7f\x01é\n', "link": [{"a": "x y", "b": "pc"}]}
     scenario = from_dict(tables)
     assert loads(dump(scenario)).model == scenario.model
+    assert scenario.name == 'a"\\\\x7f\\x01é\\n', "as it is told, in one line"
 
 
 def test_relative_robot_files_stay_found(tmp_path: Path) -> None:

@@ -136,6 +136,16 @@ def test_a_rule_about_a_figure_that_runs_do_not_have(four):
         innervate.sweep(four, until="zzz.ci=5%", workers=1)
 
 
+@pytest.mark.parametrize(("vary", "sets", "option"), [
+    (["nothing.k=1"], [], "--vary nothing.k=1: a scenario has no key"),
+    (["protocol.k=3"], ["nothing.k=1"], "--set nothing.k=1: a scenario has no key"),
+])  # fmt: skip
+def test_a_key_that_is_none_is_told_by_the_option_that_names_it(four, vary, sets, option):
+    with pytest.raises(ScenarioError) as caught:
+        innervate.sweep(four, vary=vary, overrides=sets, workers=1)
+    assert str(caught.value).startswith(option)
+
+
 def test_no_valid_point_is_the_scenarios_error(four):
     with pytest.raises(ScenarioError, match='did you mean "k"'):
         innervate.sweep(four, vary={"protocol.kk": [2, 3]}, out="out")

@@ -145,6 +145,22 @@ def test_a_mesh_is_refused_that_has_no_surface_or_is_larger_than_any_robot(tmp_p
         cells_from_urdf(box, "*", None, 10.0)
 
 
+def test_a_mesh_with_a_point_that_is_no_number_is_refused_though_the_rest_of_it_is_whole(tmp_path):
+    whole = TILE.removesuffix("endsolid tile\n")
+    _, facet = whole.split("solid tile\n")
+    torn = facet.replace("vertex 0 0 0", "vertex nan 0 0")
+    (tmp_path / "torn.stl").write_text(f"{whole}{torn}endsolid tile\n")
+    tile = robot_of(tmp_path, '<mesh filename="torn.stl"/>')
+    with pytest.raises(TopologyError, match=r"torn\.stl of link arm has .* that are no numbers"):
+        cells_from_urdf(tile, "*", None, 10.0)
+
+
+@pytest.mark.parametrize("mesh", ["<mesh/>", '<mesh filename=""/>'])
+def test_a_mesh_without_a_file_is_told_as_that(tmp_path, mesh):
+    with pytest.raises(TopologyError, match=r"a <mesh> of link arm names no file; give it a"):
+        cells_from_urdf(robot_of(tmp_path, mesh), "*", None, 10.0)
+
+
 def test_a_box_is_as_large_as_it_says_each_way(tmp_path):
     box = robot_of(tmp_path, '<box size="0.1 0.2 0.3"/>')
     _, places = cells_from_urdf(box, "*", None, 20.0)

@@ -22,14 +22,16 @@ MEASURES_MAX = 2
 class LiveTable:
     """Shows how far a sweep is; a context manager, called with the Scheduler; on stderr.
 
-    Of `measures` the means are shown, as many as there is room for.
+    Of `measures` the means are shown, as many as there is room for. `quiet`, for --json: on a
+    terminal alone.
     """
 
-    def __init__(self, name: str, measures: tuple[str, ...]) -> None:
+    def __init__(self, name: str, measures: tuple[str, ...], quiet: bool = False) -> None:
         self.words = ""
         self._name = name
         self._measures = measures
         self._terminal = sys.stderr.isatty()
+        self._silent = quiet and not self._terminal
         self._live: Any = None
         self._last = time.monotonic()
 
@@ -63,6 +65,8 @@ class LiveTable:
         if conductor.failed:
             self.words += f", {conductor.failed} failed"
         now, ended = time.monotonic(), conductor.done == conductor.total
+        if self._silent:
+            return
         if conductor.lacks and self._live is None:
             print(f"{self._name}: {conductor.lacks}", file=sys.stderr, flush=True)
         elif self._live is not None and (

@@ -42,6 +42,8 @@ def make(target: Path | None, on: str, over: str = "") -> int:
                     text = text.replace(old, new)
                 (fresh / made).write_text(text.replace("OVER", over), encoding="utf-8")
         fresh.rename(target)
+    except OSError as error:
+        raise UserError(f"{target} cannot be written: {error.strerror}") from None
     finally:
         shutil.rmtree(work, ignore_errors=True)
     what = f"{on}, above {over}" if over else on

@@ -84,6 +84,8 @@ class SweepOptions:
     """Figures to show while it runs and at the end, like a,b; may be given again."""
     retry: Flag = False
     """Run again what failed."""
+    json: Flag = False
+    """Print the means of every point as JSON and nothing else."""
 
     @property
     def planned(self) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """What a person sees while work goes on: a bar on a terminal, lines elsewhere; on stderr."""
 
 import sys
+import threading
 import time
 from typing import Any, Self
 
@@ -8,6 +9,7 @@ from innervate.network import networks
 
 COMPILING = "compiling the simulation, once on this machine: about half a minute"
 LINE_EVERY_S = 10.0
+STILL_EVERY_S = 30.0  # a line of what is still compiling, where there is no bar
 
 
 class Display:
@@ -84,17 +86,31 @@ class Progress(Display):
         super().__init__(quiet)
         self._compiled = compiled
         self._first: tuple[float, int] | None = None
+        self._runs = threading.Event()  # compiling is over
 
     def __enter__(self) -> Self:
         super().__enter__()
         self.begin("preparing" if self._compiled else COMPILING, line=not self._compiled)
+        if not (self._compiled or self._terminal or self._silent):
+            threading.Thread(target=self._compiling, daemon=True).start()
         return self
+
+    def __exit__(self, *how: object) -> None:
+        self._runs.set()
+        super().__exit__(*how)
+
+    def _compiling(self) -> None:
+        """Lines now and then until the first of the simulation: beside other work it takes long."""
+        begun = time.monotonic()
+        while not self._runs.wait(STILL_EVERY_S):
+            self._line(f"still compiling, after {time.monotonic() - begun:.0f} s")
 
     def __call__(self, now_us: int, duration_us: int) -> None:
         """The simulation has come to `now_us` of `duration_us`."""
         clock = time.monotonic()
         if self._first is None:  # all before was compiling and building
             self._first = (clock, now_us)
+            self._runs.set()
         took, came = clock - self._first[0], now_us - self._first[1]
         left_s = took * (duration_us - now_us) / came if came > 0 else None
         what = f"simulated {now_us / 1e6:.2f} of {duration_us / 1e6:g} s"

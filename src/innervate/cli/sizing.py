@@ -27,7 +27,7 @@ def size(robot: str, options: SizeOptions) -> int:
     asked = sizing.Question(ports=sizing.parse_ports(options.ports), **question)
     folder = options.out or Path("sweeps") / f"size-{Path(asked.urdf).stem}"
     seed = 1 if options.seed is None else options.seed
-    with LiveTable(folder.name, (sizing.RECOVERY, "data.loss_ratio")) as table:
+    with LiveTable(folder.name, (sizing.RECOVERY, "data.loss_ratio"), options.json) as table:
         try:
             answer = sizing.size(
                 asked, out=folder, workers=options.workers, dask=options.dask, progress=table,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +29,7 @@ def sweep(file: str, options: SweepOptions) -> int:
     plan: SweepPlan = room.make_plan(file, **options.planned)
     folder = options.out or Path("sweeps") / (plain_name(plan.name) or "sweep")
     wanted = tuple(dict.fromkeys([*options.shown, *(rule.measure for rule in plan.until)]))
-    with LiveTable(plan.name, wanted or SHOWN) as table:
+    with LiveTable(plan.name, wanted or SHOWN, options.json) as table:
         try:
             done = room.sweep(
                 plan, out=folder, **options.how, show=options.shown,
@@ -42,12 +43,16 @@ def sweep(file: str, options: SweepOptions) -> int:
         more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
         errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
                    f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
-    for line in result_lines(done, wanted):
-        print(line)
     drawn = draw_plots(done, folder)
-    for path in drawn:
-        print(f"Drawn: {path}")
-    print(f"Written: {folder / 'results.parquet'}")
+    if options.json:
+        told = record(done, wanted) | {"folder": str(folder), "drawn": [str(path) for path in drawn]}
+        print(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        for line in result_lines(done, wanted):
+            print(line)
+        for path in drawn:
+            print(f"Drawn: {path}")
+        print(f"Written: {folder / 'results.parquet'}")
     if done.others:
         kept = f"{done.others:,} other run{'s' if done.others > 1 else ''}"
         errors.say(f"{folder} keeps {kept}, too, which these tables do not show; whoever asks for "
@@ -100,6 +105,31 @@ def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     if more > 0:
         lines.append(f"... and {more} more points")
     return lines + never_lines(done) + headline_lines(done) + failed_lines(done)
+
+
+def record(done: Sweep, wanted: tuple[str, ...] = ()) -> dict[str, Any]:
+    """What a sweep came to, for programs: of every point its settings, runs, and figures.
+
+    Figures are those wanted, or all; each with its mean, the interval's ends, and of how many runs.
+    """
+    from innervate.sweeping.tables import reasons
+
+    points: list[dict[str, Any]] = [
+        {"point": one.index, "settings": one.columns, "runs": 0, "figures": {}}
+        for one in done.plan.points
+    ]
+    for index, runs in done.results.group_by("point").len().iter_rows():
+        points[index]["runs"] = runs
+    there = [name for name in wanted or done.measures if name in done.measures]
+    for row in done.points(there).iter_rows(named=True) if there else ():
+        figures = {key: row[key] for key in ("runs", "mean", "low", "high")}
+        points[row["point"]]["figures"][row["measure"]] = figures
+    levels = done.results["headline.level"] if "headline.level" in done.results.columns else ()
+    return {
+        "name": done.plan.name, "complete": done.complete, "runs": done.results.height,
+        "failed": reasons(done.failed),
+        "headlines": {level: list(levels).count(level) for level in LEVELS}, "points": points,
+    }  # fmt: skip
 
 
 def never_lines(done: Sweep) -> list[str]:

@@ -24,6 +24,8 @@ def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None)
     for name in ("cells", "starts", "states", "walks", "count"):
         if getattr(options, name) < 0:
             raise errors.UserError(f"--{name} must be 0 or more, not {getattr(options, name)}")
+    if out is not None:
+        files.check_folder(out)
     if options.random and options.mutants:
         raise errors.UserError("--random and --mutants exclude each other; name one")
     if options.random:

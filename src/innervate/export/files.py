@@ -1,5 +1,6 @@
 """Files are there whole or not at all: written beside their place, and moved there at the end."""
 
+import os
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -53,6 +54,20 @@ def write_text(path: Path, text: str) -> None:
     """
     with whole(path) as file:
         file.write(text.encode())
+
+
+def check_folder(path: Path) -> None:
+    """See that a folder is there, or can be made, before long work whose files come into it.
+
+    Raises:
+        ExportError: it cannot.
+    """
+    there = next((one for one in (path, *path.parents) if one.exists()), path)
+    why = "" if there.is_dir() else f"{there} is no folder"
+    if not why and not os.access(there, os.W_OK | os.X_OK):
+        why = "no permission"
+    if why:
+        raise ExportError(f"{path} cannot be written: {why}; choose another place")
 
 
 def make_folder(path: Path) -> None:

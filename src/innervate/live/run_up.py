@@ -19,6 +19,7 @@ from innervate.live.up import Processes
 
 SCENARIO = "scenario.toml"
 OURS = "# As `innervate live up` brought it up; the next one in this folder replaces it."
+SIGNAL_S = 0.2  # a node that a signal ended is seen before that signal is
 MANY = 50  # nodes
 NODE_MB, KEYED_MB = 27, 34  # that a node's process holds, in the clear and with keys
 MARK = "made-by-live-up"  # among keys that may be replaced
@@ -45,7 +46,11 @@ class Way(NamedTuple):
 
 
 async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -> int:
-    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0."""
+    """Bring a scenario up and keep it until Ctrl-C, SIGTERM or the time is over; 0.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C or SIGTERM came before all were up; they are ended.
+    """
     network = prepared(plan, way)
     player = _player(network, as_json)
     _foretell(network)
@@ -55,13 +60,29 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
         loop.add_signal_handler(number, ending.set)
     began = time.monotonic()
     try:
-        await up(network, scenario)
+        if not await _came_up(asyncio.create_task(up(network, scenario)), ending):
+            raise KeyboardInterrupt
         with status.findable(network.folder):
             _announce(network, time.monotonic() - began, as_json)
             await _until(ending, asyncio.create_task(player.play()), for_s)
     finally:
         await down(network, way)
     return 0
+
+
+async def _came_up(starting: asyncio.Task[None], ending: asyncio.Event) -> bool:
+    """True once all are up, False if somebody ends it before: Ctrl-C ends the first nodes, too."""
+    ended = asyncio.ensure_future(ending.wait())
+    await asyncio.wait({starting, ended}, return_when=asyncio.FIRST_COMPLETED)
+    if starting.done() and starting.exception() is not None:
+        await asyncio.wait({ended}, timeout=SIGNAL_S)
+    ended.cancel()
+    if not ending.is_set():
+        starting.result()
+        return True
+    starting.cancel()
+    await asyncio.gather(starting, return_exceptions=True)
+    return False
 
 
 def prepared(plan: Any, way: Way) -> Processes:

@@ -12,16 +12,16 @@ class ScenarioError(Exception):
     """
 
     def __init__(self, message: str, path: str = "", line: int = 0, key: str = "") -> None:
-        self.path = _one_line(path)
+        self.path = one_line(path)
         self.line = line
-        self.key = _one_line(key)
-        self.message = _one_line(message)
+        self.key = one_line(key)
+        self.message = one_line(message)
         place = f"{self.path}:{line}" if self.path and line else self.path
         super().__init__(f"{place}: {self.message}" if place else self.message)
 
 
-def _one_line(text: str) -> str:
-    """The text with everything a terminal would not print as it is escaped."""
+def one_line(text: str) -> str:
+    """The text with everything escaped that a terminal would not print as it is."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -11,7 +11,7 @@ from typing import Any
 
 from innervate.network import NetworkError, find, first, networks
 from innervate.scenario.bundled import bundled
-from innervate.scenario.errors import ScenarioError
+from innervate.scenario.errors import ScenarioError, one_line
 from innervate.scenario.explain import alternatives, convert, nearest
 from innervate.scenario.keys import SCHEMA
 from innervate.scenario.lines import key_lines
@@ -42,8 +42,8 @@ class Scenario:
 
     @property
     def name(self) -> str:
-        """Its name; the file's if it gives none."""
-        return str(self.model.name)
+        """Its name, in one line that can be printed; the file's if it gives none."""
+        return one_line(self.model.name)
 
     @property
     def duration_s(self) -> float:

@@ -255,12 +255,21 @@ def _checked(plan: SweepPlan) -> tuple[SweepPlan, Scenario]:
             made = base.scenario(point.settings)
             scenarios.plan(made)  # what a file says that it names shows only here
         except ScenarioError as error:
-            wrong = wrong or error
+            wrong = wrong or _of_vary(error, plan.axes)
         else:
             root = made.seed if plan.root < 0 else plan.root
             return replace(plan, base=base, root=root), made
     assert wrong is not None
     raise wrong
+
+
+def _of_vary(error: ScenarioError, axes: Iterable[Axis]) -> ScenarioError:
+    """An error of what is varied, which a run of its own tells as of its --set, as of --vary."""
+    varied = tuple(f"--set {key}=" for axis in axes for key in axis.keys)
+    if not error.path.startswith(varied):
+        return error
+    path = error.path.replace("--set", "--vary", 1)
+    return ScenarioError(error.message, path, error.line, error.key)
 
 
 def _prepare(folder: Path) -> None:

@@ -45,6 +45,11 @@ def surfaces(path: Path, pattern: str) -> Iterator[Any]:
 
 def _say_unreadable(path: Path, links: Sequence[Link]) -> None:
     """Raise if some links have a shape, but none that can be read: they would carry no cells."""
+    nameless = [link.name for link in links
+                if not all(mesh.get("filename") for mesh in link.element.iter("mesh"))]  # fmt: skip
+    if nameless:
+        message = f"{path.name}: a <mesh> of link {nameless[0]} names no file; give it a filename"
+        raise TopologyError(message, "urdf")
     lost = [link for link in links if has_surface(link) and not _parts(link)]
     if lost:
         names = ", ".join(link.name for link in lost[:NAMED_MAX])
@@ -165,7 +170,7 @@ def _shape(path: Path, link: Link, part: Element) -> Any:
     try:
         with catch_warnings():  # NumPy's, of numbers that are refused below
             simplefilter("ignore", RuntimeWarning)
-            made: Any = trimesh.load(file, force="mesh")
+            made: Any = trimesh.load(file, force="mesh", process=False)
     except Exception as error:  # whatever a reader of a dozen formats may raise
         told = isinstance(error, ImportError | ValueError | OSError)
         reason = error if told else "it is damaged or incomplete"
@@ -176,7 +181,8 @@ def _shape(path: Path, link: Link, part: Element) -> Any:
         made.apply_scale(_metres(file))
     if not bool((abs(made.vertices) <= NUMBER_MAX).all()):
         message = f"{file.name} of link {link.name} has points farther than {NUMBER_MAX:g} away"
-        raise TopologyError(message, "urdf")
+        raise TopologyError(f"{message}, or that are no numbers", "urdf")
+    made.process()  # not before: it leaves out faces with such points
     made.apply_scale(_numbers(mesh.get("scale", "1 1 1"), 3, mesh, link))
     return made
 

@@ -266,6 +266,7 @@ def from_lines(text: str) -> Measured:
     """
     number: dict[str, int] = {}
     found: dict[tuple[int, int], Quality] = {}
+    lines: dict[frozenset[str], int] = {}
     for line_number, line in enumerate(text.splitlines(), 1):
         words = line.partition("#")[0].split()
         if not words:
@@ -279,6 +280,10 @@ def from_lines(text: str) -> Measured:
             raise TopologyError(f'{where} is no link; write "A B 0.9 0.7"', "file")
         if problem := _unnameable(words[0]) or _unnameable(words[1]):
             raise TopologyError(f"a name in {where} {problem}", "file")
+        first = lines.setdefault(frozenset(words[:2]), line_number)
+        if first < line_number:
+            message = f"{where} joins {words[0]} and {words[1]}, as line {first} does; "
+            raise TopologyError(f"{message}put both qualities into one line", "file")
         a, b = (number.setdefault(word, len(number)) for word in words[:2])
         _join(found, a, b, shares[0], shares[-1], where)
     if not found:

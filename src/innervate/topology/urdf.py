@@ -88,6 +88,10 @@ def read_links(path: Path, pattern: str) -> list[Link]:
         some += ", ..." if len(links) > 3 else ""
         message = f'no link of {path.name} matches "{pattern}"; it has {len(links)}: {some}'
         raise TopologyError(message, "links")
+    twice = next((name for name in names if links.count(name) > 1), None)
+    if twice is not None:
+        message = f'{path.name} has {links.count(twice)} links called "{twice}"; name them apart'
+        raise TopologyError(message, "urdf")
     joints = {}
     for joint in root.findall("joint"):
         parent, child = joint.find("parent"), joint.find("child")

@@ -114,7 +114,10 @@ start_s = 9
 def test_what_is_elsewhere_is_behind_the_gateway(run, wanted) -> None:
     made = line(run, tables=FLOWS)
     assert [(one.flow, one.node, one.dest) for one in made.offers] == wanted
-    assert not [one for one in describe(made).splitlines() if "sends nothing" in one]
+    told = describe(made).splitlines()
+    assert not [one for one in told if "sends nothing" in one]
+    flows = len({flow for flow, _, _ in wanted})
+    assert f"  messages   {len(wanted)} in {flows} flows" in told
 
 
 def test_a_flow_that_begins_after_the_end_is_still_said() -> None:

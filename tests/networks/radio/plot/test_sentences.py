@@ -22,9 +22,9 @@ def run_of(*arrivals, ended_us=2_000_000):
     (0.8999, "shared unevenly"), (0.25, "shared unevenly"),
 ])  # fmt: skip
 def test_how_evenly_the_time_was_shared(index, split):
-    summary = {"stations": 4, "throughput": 0.5, "jain": index}
+    summary = {"stations": 4, "throughput": 0.038271, "jain": index}
     assert report._saturated(run_of(), summary) == (
-        "4 robots always had something to send; delivered packets filled 50.0 % of the time, "
+        "4 robots always had something to send; delivered packets filled 3.83 % of the time, "
         f"{split} (Jain's index {index:.3f})."
     )
 
@@ -45,14 +45,18 @@ def test_where_nothing_was_delivered_nothing_was_shared():
 ])  # fmt: skip
 def test_how_a_disaster_ended(arrivals, delivered, said):
     offered = sum(map(len, arrivals))
-    summary = {"offered": offered, "delivered": delivered, "duration_slots": 100, "duration_s": 3}
+    summary = {"offered": offered, "delivered": delivered, "duration_slots": 100, "duration_s": 3,
+               "abandoned": 0}  # fmt: skip
     assert report._disaster(run_of(*arrivals), summary) == said
+    off = summary | {"offered": offered + 1, "abandoned": 1}  # of a robot that has left, say
+    assert report._disaster(run_of(*arrivals), off) == said
     none = report._disaster(run_of(*arrivals), summary | {"duration_slots": None})
     assert none.endswith("; no packet was delivered in 3 s.")
 
 
 def test_a_disaster_to_which_nobody_came_in_time():
-    summary = {"offered": 0, "delivered": 0, "duration_slots": None, "duration_s": 0.1}
+    summary = {"offered": 0, "delivered": 0, "duration_slots": None, "duration_s": 0.1,
+               "abandoned": 0}  # fmt: skip
     assert report._disaster(run_of(), summary) == "No robot started in the 0.1 s of the run."
 
 
@@ -147,7 +151,7 @@ def test_figures_are_of_what_is_known(changes, left_out):
 
 def test_figures_are_in_their_order():
     found = report._figures(run_of(), summary_of())
-    assert [one for one, _ in found[:4]] == ["50.0 %", "8.5 slots", "131 slots", "0.250"]
+    assert [one for one, _ in found[:4]] == ["50 %", "8.5 slots", "131 slots", "0.250"]
     assert found[1][1] == "median delay, 1.77 ms"  # 8.5 slots of 208 us
 
 

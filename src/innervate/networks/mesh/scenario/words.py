@@ -47,7 +47,8 @@ def describe(made: MeshPlan) -> str:
         f"a round every {params['period'] * params['tick_us'] / 1e6:g} s",
     ]
     if made.offers:
-        lines.append(f"  messages   {len(made.offers):,} in {count_of(len(model.flow), 'flow')}")
+        flows = count_of(len({offer.flow for offer in made.offers}), "flow")
+        lines.append(f"  messages   {len(made.offers):,} in {flows}")
     if model.fence is not None:
         corners = count_of(params["points"], "corner")
         holes = count_of(len(model.fence.holes), "hole")

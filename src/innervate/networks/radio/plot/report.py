@@ -66,7 +66,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
 
 
 def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
-    plan, offered = result.plan, summary["offered"]
+    plan, offered = result.plan, summary["offered"] - summary["abandoned"]
     if not offered:
         return f"No robot started in the {summary['duration_s']:g} s of the run."
     starts = [times[0] for times in plan.arrivals if len(times)]
@@ -92,7 +92,7 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
         return f"{begin}; no packet was delivered in {result.ended_us / 1e6:g} s."
     index = summary["jain"]
     split = "shared evenly" if index > 0.99 else "shared unevenly" if index < 0.9 else "shared"
-    filled = f"delivered packets filled {100 * summary['throughput']:.1f} % of the time"
+    filled = f"delivered packets filled {words.share_words(summary['throughput'])} of the time"
     return f"{begin}; {filled}, {split} (Jain's index {index:.3f})."
 
 
@@ -144,7 +144,7 @@ def _silence(summary: Mapping[str, Any]) -> str:
 def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     slot, found = result.plan.params["slot_us"], []
     if summary["throughput"] is not None:
-        share = f"{100 * summary['throughput']:.1f} %"
+        share = words.share_words(summary["throughput"])
         found.append((share, "of the time filled with delivered packets"))
     delay = summary["delay_slots"]
     if delay["p50"] is not None:
