@@ -92,6 +92,19 @@ async def test_a_session_is_asked_for_anew_once_nothing_comes_back():
 
 
 @timed
+async def test_who_is_spoken_to_and_has_nothing_to_say_needs_no_new_session():
+    """A slow mesh sends a word now and then, which nobody answers."""
+    a, b = await two()
+    said = len(a.said) + len(b.said)
+    begun = len(asked(a)) + len(asked(b))
+    for _ in range(5):
+        a.frame(b"a beacon")
+        await settle(60.0)
+    assert len(asked(a)) + len(asked(b)) == begun
+    assert len(a.said) + len(b.said) == said + 5 * 3  # and "are you there", and "I am"
+
+
+@timed
 async def test_a_path_on_which_nothing_goes_is_looked_after_rarely_until_something_does():
     a, b = await two()
     looks = []

@@ -27,7 +27,8 @@ WAIT_S = 0.05  # until one asks again, doubling
 WAIT_MAX_S = 1.0
 IDLE_S = 0.5  # between looks at a session that is well
 PROOF_US = 2_000_000  # a session in which nothing was heard for so long never came about
-SILENT_US = 3_000_000  # nothing was heard while we send: the neighbour may have lost the session
+DOUBT_US = 2_000_000  # nothing was heard while we send: ask in the session, which costs little ...
+SILENT_US = 3_000_000  # ... then with a handshake: the neighbour may have lost the session
 OLD_US = 3 * REKEY_US  # an older session is not taken any more
 ASKED = 4  # of our questions may be answered late
 ANSWERS = 8  # of ours are remembered
@@ -117,6 +118,8 @@ class Contact:
             self.ask(ANYBODY)
             wait_s = self._wait_s * (0.75 + machine().chance.random() / 2)
             self._wait_s = min(2 * self._wait_s, WAIT_MAX_S)
+        elif self._current and 0 < self._sent_at < now - DOUBT_US:
+            self.tell(self._current, ALIVE)
         elif self._rests and not self._sent_at and wait_s == IDLE_S:
             wait_s = self.rest_s
         self._rests = not is_asking and wait_s >= IDLE_S
@@ -155,9 +158,8 @@ class Contact:
         return known | {index: one.window.least for index, one in self._by_index.items()}
 
     def _wants_session(self, now: int) -> bool:
-        session = self._current
         is_silent = self._sent_at > 0 and now - self._sent_at > SILENT_US
-        return session is None or bool(self._due) or is_silent or session.is_worn(now)
+        return not self._current or bool(self._due) or is_silent or self._current.is_worn(now)
 
     def ask(self, whom: int) -> None:
         """Begin a handshake with somebody, or with anybody."""
@@ -210,12 +212,10 @@ class Contact:
 
     def heard(self, session: Session) -> None:
         """Something genuine came in a session."""
-        self._sent_at = 0
-        if not session.heard_at:
-            session.heard_at = clock_us()
-            if not session.is_initiator:
-                self._up(session)
-        session.heard_at = clock_us()
+        is_first = not session.heard_at
+        session.heard_at, self._sent_at = clock_us(), 0
+        if is_first and not session.is_initiator:
+            self._up(session)
         self._stir()
 
     def control(self, session: Session, data: bytes) -> None:

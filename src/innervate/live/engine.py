@@ -80,6 +80,8 @@ class Engine:
         counters: what happened how often: handler calls, and frames dropped by reason.
         now: when what is drained now was decided, us.
         ended: is told why, if what runs the handlers ends by itself.
+        late_us: a timer that is so late shows that the process did not run meanwhile; NEVER: none.
+        late: is told then, in place of the handler, by how much it was, us.
     """
 
     def __init__(
@@ -104,10 +106,13 @@ class Engine:
         self._stopped = False
         self.now = 0
         self.ended: Callable[[str], None] = lambda _why: None
+        self.late_us = NEVER
+        self.late: Callable[[int], None] = lambda _late_us: None
 
     def start(self, cause: int = 0) -> None:
         """Switch the node on: 0 first, 1 again with its memory lost."""
         now = clock_us()
+        self._due = [NEVER] * self.stack.timers
         self.stack.on_start(now & MASK30, cause)
         self._drain(now)
 
@@ -139,6 +144,8 @@ class Engine:
         `at` is when, if that is known better than by looking at the clock now.
         """
         now = clock_us() if at is None else at
+        if self._is_late(now):
+            return
         self.counters["frames"] += 1
         self.stack.on_frame(now & MASK30, port)
         self._drain(now)
@@ -158,6 +165,14 @@ class Engine:
         now = clock_us()
         self.stack.on_input(now & MASK30, kind, item)
         self._drain(now)
+
+    def _is_late(self, now: int) -> bool:
+        """True if the process did not run for long, and somebody was told."""
+        late_us = now - min(self._due, default=NEVER)
+        if late_us > self.late_us:
+            self.late(late_us)
+            return True
+        return False
 
     def _drain(self, now: int) -> None:
         out = self.stack.out
@@ -209,6 +224,8 @@ class Engine:
 
     def _fire(self) -> None:
         now = clock_us()
+        if self._is_late(now):
+            return
         for timer, at in enumerate(self._due):
             if at <= now:
                 self._due[timer] = NEVER

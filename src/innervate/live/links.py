@@ -4,6 +4,8 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+FORGOTTEN_MAX = 4096  # reads of a socket or a port: what comes meanwhile does not hold us up
+
 # Takes the path a frame came in on, and its bytes.
 Receiver = Callable[["Path", bytes], None]
 
@@ -77,6 +79,9 @@ class Link:
     def unread(self) -> int:
         """How many frames the system dropped before they were read, where it says so."""
         return 0
+
+    def forget(self) -> None:
+        """Throw away what came and was not read yet, and what could not be sent yet."""
 
     def close(self) -> None:
         """Stop; nothing is received any more."""

@@ -5,7 +5,7 @@ import errno
 from contextlib import suppress
 
 from innervate.live.errors import LiveError
-from innervate.live.links import Link, Path, Receiver
+from innervate.live.links import FORGOTTEN_MAX, Link, Path, Receiver
 from innervate.live.machine import SerialPort, machine
 from innervate.live.serial_port import is_speed
 from innervate.wire import cobs
@@ -58,6 +58,19 @@ class SerialLink(Link):
         if self._again is not None:
             self._again.cancel()
         self._drop()
+
+    def forget(self) -> None:
+        """Throw away the bytes that wait at the port, and those that wait for it."""
+        if self._port is None:
+            return
+        with suppress(OSError):
+            for _ in range(FORGOTTEN_MAX):
+                if not self._port.read(READ_BYTES):
+                    break
+        self._decoder = cobs.Decoder(FRAME_MAX)
+        if self._waiting:
+            self._waiting.clear()
+            asyncio.get_running_loop().remove_writer(self._port.fileno())
 
     def write(self, data: bytes) -> bool:
         """Put bytes on the line, or behind those that wait; False if there is no room."""

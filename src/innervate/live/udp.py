@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from contextlib import closing, suppress
 
 from innervate.live.errors import LiveError
-from innervate.live.links import Link, Path, Receiver
+from innervate.live.links import FORGOTTEN_MAX, Link, Path, Receiver
 from innervate.live.machine import machine
 from innervate.live.only_from import TAKE, Doors, Ranges, of_peer, only_from, packed, share, unread
 
@@ -161,6 +161,13 @@ class UdpLink(Link):
     def unread(self) -> int:
         """How many datagrams the system dropped: not for us, and those that found no room."""
         return self._unread + sum(map(unread, self._sockets()))
+
+    def forget(self) -> None:
+        """Read and throw away the datagrams that wait."""
+        for sock in self._sockets():
+            with suppress(OSError):
+                for _ in range(FORGOTTEN_MAX):
+                    sock.recvfrom(DATAGRAM_MAX)
 
     def close(self) -> None:
         """Close the socket, and do not open it again."""

@@ -48,6 +48,7 @@ class MeshNode(LiveNode):
         stack.epoch = self.state.epoch
         self.in_order = False  # True = send and receive in order if nothing else is said
         self._ahead = -1  # numbers that were kept last; -1 = none in this life
+        self._boot: int | None = None  # of the machine, where our numbers were drawn; None = else
         self.inbox = Inbox(orderly or Orderly(), self._acknowledge, self.outcomes)
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self.outgoing = Outgoing(stack, self._hand_down, self.inbox.put_own, self.outcomes)
@@ -144,13 +145,31 @@ class MeshNode(LiveNode):
         By how much is drawn: where a disk failed, nobody may have noted those used last.
         """
         self._ahead = -1
+        self._boot = None
         if self.state.numbers >= 0:
-            self.outgoing.chains = Chains()
             self.stack.first = (self.state.numbers + machine().chance.getrandbits(12)) & MASK16
         else:
-            boot, self.stack.first = drawn_number()
-            self.outgoing.chains = Chains(boot)
+            self._boot, self.stack.first = drawn_number()
+        self.outgoing.chains = Chains(self._boot)
         await super()._switch_on()
+        engine = self.running()
+        engine.late_us, engine.late = self.stack.late_us, self._was_held_up
+
+    def _was_held_up(self, late_us: int) -> None:
+        """The process did not run for so long: what waits was sent to who it was then.
+
+        Others have told the ends of such messages, or forget that they had them; the router would
+        deliver them once more, and its clock, which wraps, may take old times for new ones.
+        """
+        why = f"did not run for {late_us / 1e6:.0f} s"
+        machine().say(f"{self.name}: {why}; begins anew, and what was under way has expired")
+        self.outcomes["begun anew: did not run for long"] += 1
+        for link in self.links:
+            link.forget()
+        self.outgoing.stop(f"the node {why}")
+        self.outgoing.chains = Chains(self._boot)
+        self.stack.first, self.stack.epoch = self.stack.node.seq, self.state.epoch
+        self.running().start(1)
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up, what is under way has expired."""

@@ -199,10 +199,10 @@ class Outgoing:
         item.body[:BEFORE_BYTES] = before.to_bytes(BEFORE_BYTES, "big")
         return dest, seq
 
-    def stop(self) -> None:
-        """Nothing goes any more: whoever waits for the end of a message is told so."""
+    def stop(self, reason: str = STOPPED) -> None:
+        """Nothing of what there is goes any more: whoever waits for its end is told, and why."""
         for handle in list(self.receipts):
-            self._end(handle, EXPIRED, STOPPED)
+            self._end(handle, EXPIRED, reason)
         self.turns, self.chains = Turns(self._stack, self._new_item), Chains()
         self._long_bytes = 0
 

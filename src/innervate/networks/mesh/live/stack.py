@@ -21,6 +21,7 @@ from innervate.networks.mesh.protocol.neighbours import (
     place_of,
 )
 from innervate.networks.mesh.protocol.route import alternate, planned
+from innervate.networks.mesh.protocol.timeout import TICK_MAX_US
 from innervate.networks.mesh.protocol.upward import is_better, is_uplink
 
 CLASSES = (32, 64, 128, 254)
@@ -53,6 +54,8 @@ class MeshStack:
         width = self.params.width
         # Every node sends in every round: three without a word are no accident.
         self.silent_us = 3 * self.params.period_max * self.params.tick_us + self.params.tick_us
+        # Packets are tried for less than half of `forget`: so many times that late they are known.
+        self.late_us = self.params.forget * min(self.params.tick_us, TICK_MAX_US) >> 2
         mtu = self.params.mtu
         most = self.params.places
         sizes = self.params.queue, self.params.kept, mtu, most
