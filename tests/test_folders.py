@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import innervate
+from boards import join
 from innervate.cli import main
 from innervate.network import NetworkError, networks, use
 from innervate.sweeping import make_plan
@@ -162,6 +163,60 @@ def test_what_is_wrong_is_said_in_one_line_with_file_and_line(own, capsys, wrong
     line = said(capsys, "run", own.scenario)
     assert line.startswith(f"innervate: gossip/{file}:{own.line(file, where)}: ")
     assert words in line
+
+
+@pytest.fixture
+def by_module(own):
+    """A network whose protocol takes its numbers from modules, by the modules' names."""
+    (own.folder / "sizes.py").write_text('"""How much."""\n\nPORTS = 4\nSTEP = 1\n')
+    own.change("protocol.py", "import MASK16, MASK30, later\n", "import later\n")
+    own.change("protocol.py", "from innervate.dialect.outbox",
+               "from gossip import sizes\nfrom innervate.dialect import arith\n"
+               "from innervate.dialect.outbox")  # fmt: skip
+    own.change("protocol.py", "PORTS = 4\n", "")
+    own.change("protocol.py", "node.version + 1)", "node.version + sizes.STEP)")
+    path = own.folder / "protocol.py"
+    text = path.read_text().replace("range(PORTS)", "range(sizes.PORTS)")
+    path.write_text(text.replace("MASK", "arith.MASK"))
+    return own
+
+
+def test_numbers_by_their_modules_names_do_the_same_everywhere(by_module, own, capsys, tmp_path):
+    assert main(["check-protocol", str(own.folder)]) == 0
+    assert "at most 5 actions a call of 8" in capsys.readouterr().out
+    run = innervate.run(own.scenario, plain=True)
+    assert {(node.version, node.value) for node in run.result.world.cells} == {(2, 9)}
+    assert main(["firmware", str(own.folder), "--out", str(tmp_path / "c")]) == 0
+    text = (tmp_path / "c" / "gossip.c").read_text()
+    assert "(uint16_t)((node->version + GOSSIP_STEP) & GOSSIP_MASK16)" in text
+    assert "#define GOSSIP_STEP 1" in (tmp_path / "c" / "gossip.h").read_text()
+    board = join.joined("gossip.protocol")
+    assert "node.version = node.version + 1 & 65535" in board
+    assert "sizes" not in board
+
+
+@pytest.mark.slow
+def test_a_number_of_another_file_that_is_edited_is_compiled_anew(by_module, own):
+    for step in (1, 3):
+        own.change("sizes.py", "STEP = 1", f"STEP = {step}")
+        runs = [innervate.run(own.scenario, plain=is_plain) for is_plain in (True, False)]
+        plain, compiled = (run.result.world.cells for run in runs)
+        assert {node.version for node in plain} == {2 * step}
+        assert set(compiled["version"]) == {2 * step}
+        assert runs[0].summary["frames"] == runs[1].summary["frames"]
+
+
+@pytest.mark.parametrize(("old", "new", "says"), [
+    ("+ sizes.STEP", "+ sizes.STEPS", "sizes.STEPS is no whole number of that module"),
+    ("+ sizes.STEP", "+ sizes.step", "sizes.step of a module that is imported; only its constants"),
+    ("for p in range(", "for sizes in range(",
+     "sizes is a module here, and a variable; rename the variable"),
+])  # fmt: skip
+def test_what_is_no_number_of_a_module_is_told(by_module, own, capsys, old, new, says):
+    path = own.folder / "protocol.py"
+    path.write_text(path.read_text().replace(old, new, 1))
+    line = own.line("protocol.py", new.partition("\n")[0])
+    assert f"gossip/protocol.py:{line}: {says}" in said(capsys, "check", own.scenario)
 
 
 def test_a_frame_that_has_no_layout(own, capsys):

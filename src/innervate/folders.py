@@ -20,6 +20,7 @@ from typing import Any
 from innervate.dialect import clocks, counted, sends
 from innervate.dialect import folder as checks
 from innervate.dialect.checker import functions_of
+from innervate.dialect.source import numbers_of
 
 NETWORK_FILE = "network.py"
 MEDIA_ON_AIR = ("channel", "field")
@@ -195,7 +196,8 @@ def sources(folder: Path, network: Any) -> list[Path]:
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom):
                 module = (node.module or "").rpartition(f"{folder.name}.")[2]
-                names = [module] if module else [alias.name for alias in node.names]
+                is_ours = not module or (module == folder.name and not node.level)
+                names = [alias.name for alias in node.names] if is_ours else [module]
                 waiting += [folder / f"{name.replace('.', '/')}.py" for name in names]
     return found
 
@@ -282,7 +284,13 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     for source in [*files, *rules]:
         found += checks.of_uses(source, declared, network.protocol.TIMERS, arrays)
         found += clocks.of_clocks(source, tables)
+        found += checks.of_numbers(source, numbers_of(import_module(_name_of(folder, source))))
     return found
+
+
+def _name_of(folder: Path, source: Path) -> str:
+    inside = source.relative_to(folder).with_suffix("").parts
+    return ".".join([folder.name, *inside])
 
 
 def _dialects() -> set[str]:
@@ -315,8 +323,8 @@ def actions_of(folder: Path, network: Any) -> dict[str, tuple[int | None, str]]:
     constants: dict[str, int] = {}
     files: dict[str, Path] = {}
     for path in sources(folder, network):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        constants |= checks.constants_of(tree)
+        tree = checks.parsed(path)
+        constants |= checks.constants_of(tree, path.stem)
         functions |= {one.name: one for one in functions_of(tree)}
         files |= {one.name: path for one in functions_of(tree)}
     found: dict[str, tuple[int | None, str]] = {}

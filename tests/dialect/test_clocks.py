@@ -44,6 +44,7 @@ def test_a_difference_goes_round_too(tmp_path, line):
     ("return later(node.due, now)", "due"),
     ("return later(node.seen[port], node.seq)", "seen"),
     ("return not later(now, node.seq)", "now"),
+    ("return arith.later(node.due, node.seq)", "due"),
 ])  # fmt: skip
 def test_later_is_not_for_readings(tmp_path, line, name):
     ((_, text),) = said(tmp_path, line)

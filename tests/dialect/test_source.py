@@ -7,6 +7,7 @@ from types import ModuleType
 import pytest
 
 from innervate.dialect import source
+from innervate.dialect.checker import with_numbers
 
 CELL = "innervate.networks.skin.protocol.cell"
 MESH = "innervate.networks.mesh.protocol.node"
@@ -48,6 +49,24 @@ def test_a_mistake_is_planted_in_one_place_only():
 def test_constants_are_in_capitals():
     module = ModuleType("some")
     vars(module).update(LIMIT=3, IS_ON=True, limit=4, Name="a", __file__="some.py")
-    found = source.Function("f", ast.parse("def f():\n    pass").body[0], module)
+    found = source.Function(
+        "f", ast.parse("def f():\n    pass").body[0], module, source.numbers_of(module)
+    )
     assert found.constants == {"LIMIT": 3, "IS_ON": 1}
     assert (found.module, found.path) == ("some", "some.py")
+
+
+def test_numbers_of_modules_that_are_named_have_their_modules_names():
+    module, kinds = ModuleType("some"), ModuleType("kinds")
+    vars(kinds).update(DATA=5, far=6, ACK=7, Name=8)
+    vars(module).update(kinds=kinds, ONE=1, __file__="some.py")
+    assert source.numbers_of(module) == {"kinds.DATA": 5, "kinds.ACK": 7, "ONE": 1}
+    text = "import kinds\ndef f(x):\n    x.at[kinds.DATA].DATA = kinds.far + ONE"
+    (_, node) = with_numbers(ast.parse(text)).body
+    assert ast.unparse(node) == text.partition("\n")[2]
+    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+    assert names == {"x", "kinds.DATA", "kinds", "ONE"}
+    assert source.Function("f", node, module, source.numbers_of(module)).constants == {
+        "kinds.DATA": 5,
+        "ONE": 1,
+    }

@@ -4,6 +4,7 @@ import asyncio
 import random
 import shutil
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -339,6 +340,10 @@ def test_a_hash_is_of_all_that_has_a_part_in_it(monkeypatch):
     assert compiled.key_of(role, None) == was
     assert compiled.key_of(role._replace(room=13), None) != was
     assert compiled.key_of(role, coded_of(role, networks()["skin"])) != was
+    monkeypatch.setattr(import_module("innervate.networks.skin.protocol.route"), "INFINITY", 254)
+    assert compiled.key_of(role, None) != was
+    monkeypatch.undo()
+    assert compiled.key_of(role, None) == was
     monkeypatch.setattr(compiled, "MAKERS", ("dialect", "wire"))
     assert compiled.key_of(role, None) != was
 

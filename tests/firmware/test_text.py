@@ -1,8 +1,13 @@
 """What a protocol looks like as C: the parentheses that it needs and no others, line by line."""
 
 import re
+from types import SimpleNamespace
 
+import pytest
+
+from innervate.firmware.constants import names_of
 from innervate.firmware.emit import Library
+from innervate.firmware.errors import FirmwareError
 from tests.firmware.test_expressions import BEGIN, role_of
 
 # Of a number, a flag or a list of the state, without the words that say so.
@@ -311,3 +316,19 @@ def test_an_expression_has_the_parentheses_that_it_needs(tmp_path, monkeypatch):
 
 def test_statements_and_their_comments_stand_as_they_stood(tmp_path, monkeypatch):
     assert made(tmp_path, monkeypatch, "own_lines", STATEMENTS) == IN_C
+
+
+def test_constants_of_two_values_are_called_after_their_modules():
+    def names(*known):
+        functions = (SimpleNamespace(module=module, constants=numbers) for module, numbers in known)
+        return names_of(functions, "own")
+
+    found = names(("ring.go", {"ONE": 1, "kinds.DATA": 5, "kinds.ACK": 6, "timers.ACK": 0}),
+                  ("ring.come", {"ONE": 2, "kinds.DATA": 5}))  # fmt: skip
+    assert found == {
+        "": "own", "ring.go.ONE": "OWN_GO_ONE", "ring.come.ONE": "OWN_COME_ONE",
+        "ring.go.kinds.DATA": "OWN_DATA", "ring.come.kinds.DATA": "OWN_DATA",
+        "ring.go.kinds.ACK": "OWN_KINDS_ACK", "ring.go.timers.ACK": "OWN_TIMERS_ACK",
+    }  # fmt: skip
+    with pytest.raises(FirmwareError, match="another constant is called KINDS_ACK in C, too"):
+        names(("ring.go", {"kinds.ACK": 6}), ("ring.come", {"kinds.ACK": 7}))

@@ -1,12 +1,16 @@
 """Compilation: what the cache of compiled code is known by, so that none of it is stale."""
 
+import ast
 import gc
+import importlib
+import inspect
 import os
 import shutil
 import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
+from types import ModuleType
 
 import numba
 import numpy as np
@@ -15,7 +19,7 @@ from llvmlite.binding import Linkage
 
 from innervate.analysis import intervals
 from innervate.dialect import arith
-from innervate.kernel import cache, compilation, linking
+from innervate.kernel import cache, compilation, linking, sources
 from innervate.kernel.linking import as_one
 from innervate.network import networks
 from innervate.networks.mesh.protocol import node
@@ -39,12 +43,50 @@ def foreign(monkeypatch):
 @pytest.mark.parametrize("file", [
     "dialect/arith.py", "kernel/bits.py", "sim/wheel.py", "networks/mesh/protocol/node.py",
     "networks/skin/verify/system.py", "networks/skin/invariants.py",
-    "networks/radio/slotted/drive.py",
+    "networks/radio/slotted/drive.py", "networks/radio/scenario/baselines.py",
+    "scenario/actions/channel.py", "topology/placement.py",
 ])  # fmt: skip
 def test_an_edit_of_what_is_compiled_changes_the_cache(copied, file):
     before = compilation.source_hash(copied)
     (copied / file).write_text("# another\n")
     assert compilation.source_hash(copied) != before
+
+
+PLAIN = {"networks/skin/sim/script.py", "networks/skin/verify/assumptions.py"}  # never compiled
+
+
+def numbers_taken(path):
+    """(module, name) of the whole numbers that a file takes from other modules of the toolkit."""
+    tree = ast.parse(path.read_text())
+    used = {(one.value.id, one.attr) for one in ast.walk(tree)
+            if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name)}  # fmt: skip
+    for part in ast.walk(tree):
+        if isinstance(part, ast.ImportFrom) and part.module.startswith("innervate"):
+            module = importlib.import_module(part.module)
+            for alias in part.names:
+                thing, known = getattr(module, alias.name, None), alias.asname or alias.name
+                yield from ((thing, name) for of, name in used
+                            if of == known and isinstance(getattr(thing, name, None), int)
+                            and isinstance(thing, ModuleType))  # fmt: skip
+                if alias.name.isupper() and isinstance(thing, int):
+                    yield module, alias.name
+
+
+def file_that_says(module, name):
+    """Where a number is written, however many modules have it from there."""
+    for part in ast.parse(inspect.getsource(module)).body:
+        if isinstance(part, ast.ImportFrom) and name in [one.name for one in part.names]:
+            return file_that_says(importlib.import_module(part.module), name)
+    return Path(module.__file__).relative_to(sources.ROOT).as_posix()
+
+
+def test_the_cache_is_known_by_all_files_whose_numbers_are_compiled_in():
+    files = {path.relative_to(sources.ROOT).as_posix() for path in sources.source_files()}
+    rooms = [file for file in files if "scenario" not in file and file not in PLAIN]
+    taken = {one for file in rooms for one in numbers_taken(sources.ROOT / file)}
+    said = {(file_that_says(module, name), name) for module, name in taken}
+    assert {("dialect/arith.py", "MASK30"), ("scenario/actions/channel.py", "JOIN")} <= said
+    assert {(file, name) for file, name in said if file not in files} == set()
 
 
 def test_an_edit_of_anything_else_does_not(copied):
@@ -93,6 +135,26 @@ def test_functions_of_other_packages_are_noted_for_the_next_loop(foreign, tmp_pa
     assert not foreign
     assert compilation.open_cache() != with_ours
     numba.config.CACHE_DIR = before
+
+
+def test_numbers_of_other_packages_are_what_the_next_loop_is_known_by(
+    foreign, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    sizes = ModuleType("sizes")
+    known = {"STEP": 1, "PLACES": (1, 2), "sizes": sizes, "MOST": 9}
+    code = compile("def f(n):\n    return n + STEP + PLACES[0] + sizes.FAR", "/ring/f.py", "exec")
+    exec(code, known)
+
+    def folder(step=1, places=(1, 2), far=3, most=9):
+        known.update(STEP=step, PLACES=places, MOST=most)
+        sizes.FAR = far
+        compilation.register_functions(known["f"])
+        return compilation.open_cache()
+
+    assert folder() == folder(most=8)  # it does not look at that one
+    assert len({folder(), folder(step=2), folder(places=(1, 3)), folder(far=4)}) == 4
 
 
 @pytest.fixture

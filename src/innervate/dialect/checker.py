@@ -117,6 +117,22 @@ def _is_docstring(node, parents):
     )
 
 
+class _Numbers(ast.NodeTransformer):
+    def __init__(self, modules):
+        self.modules = modules
+
+    def visit_Attribute(self, node):
+        owner = getattr(node.value, "id", "")
+        if owner in self.modules and node.attr.isupper():
+            return ast.copy_location(ast.Name(f"{owner}.{node.attr}", node.ctx), node)
+        return self.generic_visit(node)
+
+
+def with_numbers(tree):
+    """A file's tree in which a number of another module is one name: "kinds.DATA"."""
+    return _Numbers({name for _, name in imports_of(tree)}).visit(tree)
+
+
 class Checker:
     """Collects what a source breaks (see broken_rules)."""
 
@@ -127,6 +143,9 @@ class Checker:
         self.known = known | {function.name for function in functions_of(self.tree)}
         imports = imports_of(self.tree, home or PACKAGE)
         self.imported = {name for module, name in imports if is_ours(module, home)}
+        self.own = {node.id for node in ast.walk(self.tree)
+                    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}  # fmt: skip
+        self.own |= {node.arg for node in ast.walk(self.tree) if isinstance(node, ast.arg)}
         self.parents = {
             child: node for node in ast.walk(self.tree) for child in ast.iter_child_nodes(node)
         }
@@ -232,6 +251,19 @@ class Checker:
             self.complain(node, "None; use a number that is never a value, like -1")
         elif node.value >= 1 << 30:
             self.complain(node, "a number of 2^30 or more; all values stay below")
+
+    def check_Attribute(self, node):
+        """Of a module constants are looked at, and nothing is set."""
+        owner = getattr(node.value, "id", "")
+        called = getattr(self.parents[node], "func", None) is node
+        is_field = owner in self.own and not node.attr.isupper()
+        if owner not in self.imported or called or is_field:
+            return
+        if owner in self.own:
+            self.complain(node, f"{owner} is a module here, and a variable; rename the variable")
+        elif not node.attr.isupper() or isinstance(node.ctx, ast.Store):
+            self.complain(node, f"{owner}.{node.attr} of a module that is imported; only its "
+                                "constants can be looked at")  # fmt: skip
 
     def check_Call(self, node):
         """Calls are of functions that the protocol has."""

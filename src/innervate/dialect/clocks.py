@@ -52,7 +52,7 @@ def _by_size(part):
 
 def _by_sequence(part, most, has_now):
     """What is wrong with a call of `later`."""
-    if not (isinstance(part, ast.Call) and getattr(part.func, "id", "") == "later"):
+    if not (isinstance(part, ast.Call) and ast.unparse(part.func).rpartition(".")[2] == "later"):
         return ""
     for given in part.args:
         field = given.value if isinstance(given, ast.Subscript) else given

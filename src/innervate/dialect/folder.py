@@ -6,7 +6,7 @@ Nothing is run here but what declares: each finding names a file, a line, and wh
 import ast
 from difflib import get_close_matches
 
-from innervate.dialect.checker import broken_rules, functions_of
+from innervate.dialect.checker import broken_rules, functions_of, with_numbers
 
 MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
@@ -94,12 +94,35 @@ def of_rules(path):
     return found
 
 
-def constants_of(tree):
-    """Whole numbers that a file names, with the names it has for them."""
+def parsed(path):
+    """A file's tree, in which a number of another module is one name: "kinds.DATA"."""
+    return with_numbers(ast.parse(path.read_text(encoding="utf-8")))
+
+
+def constants_of(tree, module=""):
+    """Whole numbers that a file names; also by the names that others have for them.
+
+    Args:
+        tree: of the file.
+        module: what others call the file; "" = they are not to be told.
+    """
     found = {}
     for name, value in _assigned(tree):
         found[name] = number(value, found)
-    return {name: value for name, value in found.items() if value is not None}
+    known = {name: value for name, value in found.items() if value is not None}
+    return known | {f"{module}.{name}": value for name, value in known.items() if module}
+
+
+def of_numbers(path, known):
+    """Numbers of other modules that these do not have.
+
+    Args:
+        path: a file of the protocol.
+        known: names of those that there are, "kinds.DATA".
+    """
+    return [Finding(path, part.lineno, f"{part.id} is no whole number of that module")
+            for part in ast.walk(parsed(path))
+            if isinstance(part, ast.Name) and "." in part.id and part.id not in known]  # fmt: skip
 
 
 def _assigned(tree):
@@ -311,7 +334,7 @@ def of_uses(path, declared, timers, arrays=frozenset()):
         timers: how many timers a node has.
         arrays: of those declared, which have a length.
     """
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = parsed(path)
     constants, found = constants_of(tree), []
     modules = {alias.asname or alias.name for node in ast.walk(tree)
                if isinstance(node, (ast.Import, ast.ImportFrom))

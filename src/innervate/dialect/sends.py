@@ -4,14 +4,14 @@ import ast
 
 from innervate.dialect.access import REPORT_DELIVERED, REPORT_LEFT
 from innervate.dialect.checker import functions_of
-from innervate.dialect.folder import NOTED, Finding, called, constants_of, number
+from innervate.dialect.folder import NOTED, Finding, called, constants_of, number, parsed
 
 
 def of_channel(paths):
     """Reports that a channel takes for its own."""
     found = []
     for path in paths:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = parsed(path)
         for name, value in constants_of(tree).items():
             if name.startswith("REPORT_") and value in (REPORT_DELIVERED, REPORT_LEFT):
                 line = next(node.lineno for node in tree.body if name in _names(node))
@@ -31,7 +31,7 @@ def of_delays(paths, what=LATER):
     """Frames that are to leave later, where only cables can do that, or not even these."""
     found = []
     for path in paths:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = parsed(path)
         constants = constants_of(tree)
         for part in ast.walk(tree):
             is_sent = isinstance(part, ast.Call) and getattr(part.func, "id", "") == "send"
@@ -49,8 +49,8 @@ def of_kinds(paths, layouts):
     """
     constants, functions = {}, []
     for path in paths:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        constants |= constants_of(tree)
+        tree = parsed(path)
+        constants |= constants_of(tree, path.stem)
         functions += [(path, function) for function in functions_of(tree)]
     sent, found = _sent_names([function for _, function in functions]), []
     for path, function in functions:

@@ -10,6 +10,8 @@ import inspect
 from functools import lru_cache
 from types import ModuleType
 
+from innervate.dialect.checker import with_numbers
+
 # (old, new): a text that stands once in the sources, and what is read in its place.
 Change = tuple[str, str]
 
@@ -22,21 +24,22 @@ class Function:
         node: as it is written, with its docstring, its file's line numbers and its own name.
         module: the name of the module it stands in.
         path: the file of that module.
-        constants: the whole numbers that it may use, by their names there.
+        constants: the whole numbers that it may use, by their names there: ONE, kinds.DATA.
         calls: the joined names of the functions that it may call, by their names there.
     """
 
     __slots__ = ("calls", "constants", "module", "name", "node", "path")
 
-    def __init__(self, name: str, node: ast.FunctionDef, module: ModuleType) -> None:
+    def __init__(
+        self, name: str, node: ast.FunctionDef, module: ModuleType, numbers: dict[str, int]
+    ) -> None:
         self.name = name
         self.node = node
         self.module = module.__name__
         self.path = module.__file__ or ""
+        used = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
         self.constants = {
-            known: int(thing)
-            for known, thing in vars(module).items()
-            if isinstance(thing, int) and known.isupper()
+            name: value for name, value in numbers.items() if "." not in name or name in used
         }
         self.calls: dict[str, str] = {}
 
@@ -63,13 +66,13 @@ def functions(
     found: dict[str, Function] = {}
     changed = 0
     for module in modules:
-        text = inspect.getsource(module)
+        text, numbers = inspect.getsource(module), numbers_of(module)
         if change is not None:
             changed += text.count(change[0])
             text = text.replace(*change)
-        for node in (_parsed if shared else ast.parse)(text).body:
+        for node in (_parsed(text) if shared else with_numbers(ast.parse(text))).body:
             if isinstance(node, ast.FunctionDef) and (module.__name__, node.name) in wanted:
-                made = Function(names[module.__name__, node.name], node, module)
+                made = Function(names[module.__name__, node.name], node, module, numbers)
                 made.calls = _calls(module, names)
                 found[made.name] = made
     if change is not None and changed != 1:
@@ -79,7 +82,18 @@ def functions(
 
 @lru_cache(100)
 def _parsed(text: str) -> ast.Module:
-    return ast.parse(text)
+    return with_numbers(ast.parse(text))
+
+
+def numbers_of(module: ModuleType) -> dict[str, int]:
+    """Whole numbers in capitals of a module, and of modules that it names: ONE, kinds.DATA."""
+    found = {}
+    for known, thing in vars(module).items():
+        inside = vars(thing).items() if isinstance(thing, ModuleType) else ()
+        for name, value in [(known, thing), *((f"{known}.{one}", it) for one, it in inside)]:
+            if isinstance(value, int) and name.rpartition(".")[2].isupper():
+                found[name] = int(value)
+    return found
 
 
 def reached(entry: str) -> list[ModuleType]:

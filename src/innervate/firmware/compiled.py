@@ -15,7 +15,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from innervate.dialect.source import reached
+from innervate.dialect.source import numbers_of, reached
 from innervate.firmware.errors import FirmwareError
 from innervate.firmware.program import GIVEN
 from innervate.firmware.records import records_of
@@ -35,11 +35,13 @@ MAKERS = ("firmware", "dialect", "wire")  # rooms that have a part in what is ma
 
 def key_of(role: Role, coded: Coded | None) -> str:
     """A hash of all that a role's library is made from, and for which machine."""
-    files = {Path(module.__file__ or "") for module in reached(role.entry)}
+    modules = reached(role.entry)
+    files = {Path(module.__file__ or "") for module in modules}
+    numbers = [sorted(numbers_of(module).items()) for module in modules]
     for room in MAKERS:
         files |= {path for path in (ROOT / room).rglob("*") if path.suffix in (".py", ".c", ".h")}
     of = role._replace(noted=frozenset(), usual=())  # which C does not have; no order
-    begun = f"{sys.platform} {platform.machine()}\0{of}\0{coded}"
+    begun = f"{sys.platform} {platform.machine()}\0{of}\0{coded}\0{numbers}"
     return hash_of(begun, sorted(files), ROOT)
 
 

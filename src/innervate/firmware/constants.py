@@ -8,6 +8,7 @@ from importlib import import_module
 from importlib.util import resolve_name
 
 from innervate.dialect.source import Function
+from innervate.firmware.errors import FirmwareError
 from innervate.firmware.statements import comments_of
 
 
@@ -15,23 +16,33 @@ def names_of(functions: Iterable[Function], prefix: str) -> dict[str, str]:
     """Names in C by "module.NAME"; those of several meanings are called after their module.
 
     Under "" stands the prefix itself.
+
+    Raises:
+        FirmwareError: two of one name, and of modules of one name, have different values.
     """
-    modules = {function.module: function.constants for function in functions}
+    known = {
+        f"{function.module}.{name}": value
+        for function in functions
+        for name, value in function.constants.items()
+    }
     values: dict[str, set[int]] = {}
-    for constants in modules.values():
-        for name, value in constants.items():
-            values.setdefault(name, set()).add(value)
-    found = {"": prefix}
-    for module, constants in modules.items():
-        short = module.rpartition(".")[2].upper()
-        for name in constants:
-            own = name if len(values[name]) == 1 else f"{short}_{name}"
-            found[f"{module}.{name}"] = f"{prefix.upper()}_{own}"
+    for place, value in known.items():
+        values.setdefault(place.rpartition(".")[2], set()).add(value)
+    found, said = {"": prefix}, dict[str, int]()
+    for place in known:
+        *_, module, name = place.split(".")
+        own = name if len(values[name]) == 1 else f"{module.upper()}_{name}"
+        found[place] = f"{prefix.upper()}_{own}"
+        if said.setdefault(own, known[place]) != known[place]:
+            raise FirmwareError(f"{place}: another constant is called {own} in C, too")
     return found
 
 
 def note_of(module: str, name: str) -> str:
     """The comment behind a constant where it is defined; "" = there is none."""
+    owner, _, name = name.rpartition(".")
+    if owner:
+        return note_of(getattr(import_module(module), owner).__name__, name)
     notes, homes = _notes(module)
     if name in notes:
         return notes[name]

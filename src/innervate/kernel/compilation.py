@@ -10,7 +10,7 @@ import inspect
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -26,6 +26,7 @@ CACHE_FOLDERS_MAX = 8
 
 _registered: set[Callable[..., Any]] = set()
 _foreign: set[Path] = set()  # files of other packages that the next loop is compiled from
+_numbers: set[str] = set()  # that functions of such files take from modules, by name and value
 _not_kept: list[str] = []  # what was compiled and could not be written
 
 
@@ -84,8 +85,18 @@ def _note(function: Callable[..., Any]) -> None:
         return  # written out as the program runs: `told` says what it is
     if not path.is_relative_to(ROOT):
         _foreign.add(path)
+        _numbers.update(_taken(function))
     elif not _is_hashed(path):
         raise RuntimeError(f"{path} is compiled, and no part of what the cache is known by")
+
+
+def _taken(function: Callable[..., Any]) -> Iterator[str]:
+    """Numbers that compiled code takes from a function's module, or from modules named there."""
+    used, known = function.__code__.co_names, function.__globals__
+    for home in (known, *(vars(known[n]) for n in used if inspect.ismodule(known.get(n)))):
+        for name in used:
+            if isinstance(home.get(name), int | float | tuple):
+                yield f"{name} {told(home[name])}"
 
 
 @cache
@@ -109,13 +120,15 @@ def source_hash(root: Path = ROOT) -> str:
 def open_cache() -> Path:
     """Point Numba at the cache folder of the present sources; forget the oldest others.
 
-    What is compiled from a network elsewhere has a folder in it for each state of its files: who
-    edits a protocol compiles that, and what the toolkit's own loops were compiled to stays.
+    What is compiled from a network elsewhere has a folder in it for each state of its files and of
+    the numbers that they take from others: who edits a protocol compiles that, and what the
+    toolkit's own loops were compiled to stays.
     """
     folder = own = cache_root() / source_hash()
     if _foreign:
-        folder = own / hash_of("", sorted(_foreign))
+        folder = own / hash_of(" ".join(sorted(_numbers)), sorted(_foreign))
     _foreign.clear()
+    _numbers.clear()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for one in {own, folder}:

@@ -4,9 +4,16 @@ import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 
-# What of the sources ends up in compiled code: rooms, and of every network these parts.
-SOURCE_ROOMS = ("dialect", "kernel", "sim", "verify")
-PARTS = ("protocol", "sim", "verify", "baselines", "slotted", "invariants.py")
+# What of the sources ends up in compiled code, functions or numbers: rooms and files, and of every
+# network these parts.
+SOURCE_ROOMS = (
+    "dialect", "kernel", "sim", "verify",
+    "scenario/actions", "topology/patch.py", "topology/placement.py",
+)  # fmt: skip
+PARTS = (
+    "protocol", "sim", "verify", "baselines", "slotted", "invariants.py",
+    "scenario/baselines.py", "scenario/plan.py",
+)  # fmt: skip
 NAME_LENGTH = 20  # of a hash
 ROOT = Path(__file__).resolve().parent.parent
 
