@@ -196,8 +196,9 @@ def sources(folder: Path, network: Any) -> list[Path]:
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom):
                 module = (node.module or "").rpartition(f"{folder.name}.")[2]
-                is_ours = not module or (module == folder.name and not node.level)
-                names = [alias.name for alias in node.names] if is_ours else [module]
+                is_folder = not module or (module == folder.name and not node.level)
+                inside = "" if is_folder else f"{module}."
+                names = [module, *(f"{inside}{alias.name}" for alias in node.names)]
                 waiting += [folder / f"{name.replace('.', '/')}.py" for name in names]
     return found
 
@@ -284,13 +285,15 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     for source in [*files, *rules]:
         found += checks.of_uses(source, declared, network.protocol.TIMERS, arrays)
         found += clocks.of_clocks(source, tables)
-        found += checks.of_numbers(source, numbers_of(import_module(_name_of(folder, source))))
+        found += checks.of_numbers(
+            source, numbers_of(import_module(_name_of(source, folder, network)))
+        )
     return found
 
 
-def _name_of(folder: Path, source: Path) -> str:
+def _name_of(source: Path, folder: Path, network: Any) -> str:
     inside = source.relative_to(folder).with_suffix("").parts
-    return ".".join([folder.name, *inside])
+    return ".".join([network.package, *inside])
 
 
 def _dialects() -> set[str]:

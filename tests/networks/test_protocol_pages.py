@@ -105,8 +105,9 @@ def event_of(test):
             what = node.left
             left = what.attr if isinstance(what, ast.Attribute) else getattr(what, "id", "")
             right = node.comparators[0]
-            if left in EVENTS and isinstance(right, ast.Name) and right.id.isupper():
-                found.add(right.id)
+            name = right.attr if isinstance(right, ast.Attribute) else getattr(right, "id", "")
+            if left in EVENTS and name.isupper():
+                found.add(name)
     return found
 
 

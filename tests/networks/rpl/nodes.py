@@ -3,6 +3,7 @@
 from innervate.dialect.access import ALL
 from innervate.network import networks
 from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol import kinds, sizes, timers
 from tests.networks.one import One
 
 RPL = networks()["rpl"]
@@ -18,7 +19,14 @@ def node(number=5, **params):
 
 def dio(src, rank, **more):
     """A DIO of a neighbour, as keywords of `hear`."""
-    usual = {"kind": c.DIO, "to": ALL, "src": src, "rank": rank, "version": VERSION, "dtsn": 240}
+    usual = {
+        "kind": kinds.DIO,
+        "to": ALL,
+        "src": src,
+        "rank": rank,
+        "version": VERSION,
+        "dtsn": 240,
+    }
     return usual | {"rssi": LOUD} | more
 
 
@@ -45,7 +53,7 @@ def settle(one):
 
 def ack(one, src=None):
     """Who the frame under way is for acknowledges it."""
-    return one.hear(kind=c.ACK, to=one.node.number, src=one.node.to if src is None else src,
+    return one.hear(kind=kinds.ACK, to=one.node.number, src=one.node.to if src is None else src,
                     dsn=one.node.dsn)  # fmt: skip
 
 
@@ -53,20 +61,20 @@ def fail(one):
     """The frame under way is not acknowledged, however often it is sent."""
     for _ in range(one.params.transmissions):
         one.told()
-        one.fire(c.ACK_WAIT)
+        one.fire(timers.ACK_WAIT)
 
 
 def data(src, dest, number=1, **more):
     """A packet that a neighbour hands on, as keywords of `hear`."""
-    usual = {"kind": c.DATA, "src": src, "dsn": number, "origin": 9, "dest": dest, "hops": 16}
+    usual = {"kind": kinds.DATA, "src": src, "dsn": number, "origin": 9, "dest": dest, "hops": 16}
     return usual | {"rssi": LOUD} | more
 
 
 def dao(src, *targets, path=241, life=180, number=1):
     """A DAO of a child in storing mode."""
-    many = [*targets, *[c.NOBODY] * c.TARGETS][: c.TARGETS]
-    return {"kind": c.DAO, "src": src, "dsn": number, "targets": many, "rssi": LOUD,
-            "paths": [path] * c.TARGETS, "life": life}  # fmt: skip
+    many = [*targets, *[c.NOBODY] * sizes.TARGETS][: sizes.TARGETS]
+    return {"kind": kinds.DAO, "src": src, "dsn": number, "targets": many, "rssi": LOUD,
+            "paths": [path] * sizes.TARGETS, "life": life}  # fmt: skip
 
 
 def parent_of(one):
@@ -77,16 +85,16 @@ def told_to_parent(one):
     """DAOs that go out now: (target, Path Sequence, life) of each that is named."""
     one.sent.clear()
     if one.node.dao_armed:
-        one.fire(c.DAO_DELAY)
+        one.fire(timers.DAO_DELAY)
     settle(one)
-    return [(target, path, frame.life) for frame in one.sent if frame.kind == c.DAO
+    return [(target, path, frame.life) for frame in one.sent if frame.kind == kinds.DAO
             for target, path in zip(frame.targets, frame.paths, strict=True)
             if target != c.NOBODY]  # fmt: skip
 
 
 def ticks(one, count):
     for _ in range(count):
-        one.fire(c.TICK)
+        one.fire(timers.TICK)
 
 
 def storing(**params):
@@ -102,4 +110,4 @@ def of(frames, kind):
 
 
 def packets(one):
-    return [f for f in one.sent if c.DATA <= f.kind < c.DATA + 3]
+    return [f for f in one.sent if kinds.DATA <= f.kind < kinds.DATA + 3]

@@ -1,6 +1,7 @@
 """Downward routes of RFC 6550, sections 9 and 11.2.2.3, sentence by sentence."""
 
 from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol import kinds, timers
 from innervate.networks.rpl.protocol.downward import FOR_EVER, LIFE
 from tests.networks.rpl.nodes import (
     ROOT,
@@ -25,8 +26,8 @@ def test_a_new_dao_parent_is_told_after_delay_dao():
     """9.5: "When a node adds a node to its DAO parent set, it SHOULD schedule a DAO message
     transmission." """
     one = attached()
-    assert of(one.sent, c.DAO) == [], "SHOULD delay sending the DAO message"
-    assert one.params.dao_us <= one.left(c.DAO_DELAY) < 2 * one.params.dao_us
+    assert of(one.sent, kinds.DAO) == [], "SHOULD delay sending the DAO message"
+    assert one.params.dao_us <= one.left(timers.DAO_DELAY) < 2 * one.params.dao_us
     assert told_to_parent(one) == [(5, one.node.path_seq, LIFE * one.params.refresh)]
 
 
@@ -34,9 +35,9 @@ def test_daos_that_come_do_not_reset_delay_dao():
     """9.5: "DAO messages received while the DelayDAO timer is active do not reset the timer." """
     one = storing()
     one.hear(**dao(7, 7))
-    at = one.timers[c.DAO_DELAY]
+    at = one.timers[timers.DAO_DELAY]
     one.hear(**dao(8, 8))
-    assert one.timers[c.DAO_DELAY] == at
+    assert one.timers[timers.DAO_DELAY] == at
 
 
 def test_storing_nodes_store_and_pass_on_what_daos_say():
@@ -56,7 +57,7 @@ def test_a_dao_goes_to_the_parent_alone():
     one.hear(**dio(2, 256))
     one.hear(**dao(7, 7))
     told_to_parent(one)
-    assert {frame.to for frame in of(one.sent, c.DAO)} == {1}
+    assert {frame.to for frame in of(one.sent, kinds.DAO)} == {1}
 
 
 def test_daos_without_news_are_not_passed_on():
@@ -104,7 +105,7 @@ def test_a_changed_parent_is_told_of_the_whole_sub_dodag():
     assert parent_of(one) == 2
     told = told_to_parent(one)
     assert [(t, p) for t, p, life in told if life] == [(5, before + 1), (7, 241), (20, 241)]
-    assert [frame.to for frame in of(one.sent, c.DAO)] == [2, 1]
+    assert [frame.to for frame in of(one.sent, kinds.DAO)] == [2, 1]
 
 
 def test_a_parent_that_was_left_is_told_so():
@@ -119,14 +120,14 @@ def test_a_parent_that_was_left_is_told_so():
     assert [t for t, _, life in told_to_parent(one) if not life] == [5, 7, 20], (
         "a detached one, too"
     )
-    assert {frame.to for frame in of(one.sent, c.DAO)} == {2}
+    assert {frame.to for frame in of(one.sent, kinds.DAO)} == {2}
     assert told_to_parent(one) == []
 
 
 def test_a_dao_that_is_not_acknowledged_is_sent_again():
     """9.3: "MAY reschedule the DAO message transmission for another attempt" """
     one = attached()
-    one.fire(c.DAO_DELAY)
+    one.fire(timers.DAO_DELAY)
     fail(one)
     assert [target for target, *_ in told_to_parent(one)] == [5]
     assert told_to_parent(one) == []
@@ -260,7 +261,7 @@ def test_own_routes_are_refreshed():
     """9.2.1: "the Path Lifetime is to be updated (e.g., a refresh or a no-Path)" """
     one = storing(refresh=2)
     before = one.node.path_seq
-    one.fire(c.TICK)
+    one.fire(timers.TICK)
     assert not one.node.dao_armed
-    one.fire(c.TICK)
+    one.fire(timers.TICK)
     assert told_to_parent(one)[0][:2] == (5, before + 1)

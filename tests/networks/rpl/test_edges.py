@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol import kinds, sizes, timers
 from innervate.networks.rpl.protocol import packets as parts
 from innervate.networks.rpl.protocol.node import ALARM, MESSAGE
 from tests.networks.rpl.nodes import (
@@ -27,7 +27,7 @@ def test_node_0_is_a_target_like_others_where_it_is_not_the_root():
 
 
 @pytest.mark.parametrize("storing_", [0, 1])
-@pytest.mark.parametrize("dest", [c.NODES - 1, c.NODES, c.NODES + 1])
+@pytest.mark.parametrize("dest", [sizes.NODES - 1, sizes.NODES, sizes.NODES + 1])
 def test_a_packet_for_a_node_that_there_is_not_goes_to_the_parent_like_others(storing_, dest):
     one = attached(storing=storing_)
     told_to_parent(one)
@@ -48,13 +48,13 @@ def test_an_alarm_goes_to_the_root():
 def test_as_many_as_there_can_be_suppress_a_dio(heard, sends):
     """6550, 6.7.6: DIORedundancyConstant is an 8-bit number; its greatest is counted to, too."""
     one = attached(dio_k=255)
-    one.fire(c.TRICKLE)
+    one.fire(timers.TRICKLE)
     one.told()
-    one.fire(c.TRICKLE)  # the next interval begins
+    one.fire(timers.TRICKLE)  # the next interval begins
     for _ in range(heard):
         one.hear(**dio(1, 256))
-    sent = one.fire(c.TRICKLE)
-    assert len([frame for frame in sent if frame.kind == c.DIO]) == sends
+    sent = one.fire(timers.TRICKLE)
+    assert len([frame for frame in sent if frame.kind == kinds.DIO]) == sends
 
 
 def test_who_loses_its_memory_knows_its_neighbours_no_better_than_a_new_one():

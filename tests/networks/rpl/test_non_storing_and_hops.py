@@ -3,6 +3,7 @@
 import pytest
 
 from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol import kinds, sizes, timers
 from innervate.networks.rpl.protocol.downward import DAO_TRIES, LIFE
 from tests.networks.rpl.nodes import (
     ROOT,
@@ -22,8 +23,8 @@ from tests.networks.rpl.nodes import (
 
 def up(source, parent, path=241, number=1):
     """A DAO that has come to the root."""
-    return {"kind": c.DAO_UP, "src": 1, "dsn": number, "origin": source, "dest": ROOT, "hops": 9,
-            "info": parent, "path": path, "rssi": -60}  # fmt: skip
+    return {"kind": kinds.DAO_UP, "src": 1, "dsn": number, "origin": source, "dest": ROOT,
+            "hops": 9, "info": parent, "path": path, "rssi": -60}  # fmt: skip
 
 
 def root_of_chain(length):
@@ -41,14 +42,14 @@ def test_the_dao_goes_to_the_root_and_names_the_parent():
     """9.7: "DAOs are sent directly to the root along a default route", "The DODAG Parent Address
     subfield of a Transit Information option MUST contain one or more addresses." """
     one = attached(storing=0)
-    (frame,) = one.fire(c.DAO_DELAY)
-    assert (frame.kind, frame.dest, frame.to, frame.info) == (c.DAO_UP, ROOT, 1, 1)
+    (frame,) = one.fire(timers.DAO_DELAY)
+    assert (frame.kind, frame.dest, frame.to, frame.info) == (kinds.DAO_UP, ROOT, 1, 1)
 
 
 def test_on_the_way_a_dao_is_a_packet():
     one = attached(storing=0)
     one.hear(**(up(9, 8) | {"src": 7}))
-    assert (one.sent[-1].kind, one.sent[-1].to, one.sent[-1].info) == (c.DAO_UP, 1, 8)
+    assert (one.sent[-1].kind, one.sent[-1].to, one.sent[-1].info) == (kinds.DAO_UP, 1, 8)
     assert one.node.via[9] == c.NONE
 
 
@@ -69,17 +70,17 @@ def test_a_dao_is_repeated_until_the_root_acknowledges_it():
     DAO-ACK." "up until an implementation-specific number of retries" """
     one = attached(storing=0)
     for _ in range(DAO_TRIES):
-        assert of(one.fire(c.DAO_DELAY), c.DAO_UP)
+        assert of(one.fire(timers.DAO_DELAY), kinds.DAO_UP)
         settle(one)
-    assert one.fire(c.DAO_DELAY) == []
+    assert one.fire(timers.DAO_DELAY) == []
     one = attached(storing=0)
-    one.fire(c.DAO_DELAY)
+    one.fire(timers.DAO_DELAY)
     settle(one)
-    one.hear(kind=c.DAO_ACK, src=1, dsn=3, origin=0, dest=5, hops=9, path=one.node.path_seq)
-    assert one.fire(c.DAO_DELAY) == []
+    one.hear(kind=kinds.DAO_ACK, src=1, dsn=3, origin=0, dest=5, hops=9, path=one.node.path_seq)
+    assert one.fire(timers.DAO_DELAY) == []
     root = node(ROOT, storing=0)
     root.hear(**up(1, ROOT))
-    (answer,) = of(root.sent, c.DAO_ACK)
+    (answer,) = of(root.sent, kinds.DAO_ACK)
     assert (answer.to, answer.dest, answer.path) == (1, 1, 241)
 
 
@@ -89,7 +90,7 @@ def test_the_root_writes_the_whole_way_into_a_packet(hops, kind):
     one-hop information that ties a Target (address or prefix) and a transit address together" """
     root = root_of_chain(hops)
     (frame,) = root.give(1, dest=hops)
-    assert (frame.kind, frame.to, frame.length, frame.down) == (c.DATA + kind, 1, hops - 1, 1)
+    assert (frame.kind, frame.to, frame.length, frame.down) == (kinds.DATA + kind, 1, hops - 1, 1)
     assert [*frame.near, *frame.far][: frame.length] == list(range(2, hops + 1))
 
 
@@ -135,13 +136,13 @@ def test_a_broken_source_route_is_told_to_the_root():
     """11.2.2.3: "an ICMP error with a new code "Error in Source Routing Header" is sent back to the
     root" """
     one = attached(1, parent=20, storing=0)
-    route = {"near": [2, 3, 0, 0], "length": 2, "next": 1, "kind": c.DATA + 1, "down": 1}
+    route = {"near": [2, 3, 0, 0], "length": 2, "next": 1, "kind": kinds.DATA + 1, "down": 1}
     one.hear(**data(20, 3, **route))
     fail(one)
-    (error,) = of(one.sent, c.ROUTE_ERROR)
+    (error,) = of(one.sent, kinds.ROUTE_ERROR)
     assert (error.dest, error.to, error.info) == (ROOT, 20, 2)
     root = root_of_chain(3)
-    root.hear(kind=c.ROUTE_ERROR, src=1, dsn=77, origin=1, dest=ROOT, hops=9, info=2)
+    root.hear(kind=kinds.ROUTE_ERROR, src=1, dsn=77, origin=1, dest=ROOT, hops=9, info=2)
     assert root.node.via[2] == c.NONE
     assert root.give(1, dest=3) == []
 
@@ -150,8 +151,8 @@ def test_a_frame_for_us_is_acknowledged_at_once():
     """IEEE 802.15.4: whatever is on the air; once more if it comes again, and is taken once."""
     one = storing()
     first = one.hear(**data(7, 5))
-    assert [(f.kind, f.to, f.dsn, f.urgent) for f in first] == [(c.ACK, 7, 1, 1)]
-    assert len(of(one.hear(**data(7, 5)), c.ACK)) == 1
+    assert [(f.kind, f.to, f.dsn, f.urgent) for f in first] == [(kinds.ACK, 7, 1, 1)]
+    assert len(of(one.hear(**data(7, 5)), kinds.ACK)) == 1
     assert len(one.delivered) == 1
 
 
@@ -174,7 +175,7 @@ def test_a_frame_is_sent_four_times():
         assert one.node.tries == tries
         one.told(ok=tries % 2)  # or the channel was busy
         if one.node.waiting:
-            one.fire(c.ACK_WAIT)
+            one.fire(timers.ACK_WAIT)
     assert one.node.rounds == 1
 
 
@@ -182,16 +183,16 @@ def test_hop_limit_and_full_queues_are_told():
     one = storing()
     one.hear(**data(7, 0, hops=1))
     assert one.reports == [(c.REPORT_HOPS, 0, 9)]
-    for _ in range(c.QUEUE + 1):
+    for _ in range(sizes.QUEUE + 1):
         one.give(2)
-    assert one.reports[1:] == [(c.REPORT_FULL, 0, c.QUEUE)]
+    assert one.reports[1:] == [(c.REPORT_FULL, 0, sizes.QUEUE)]
 
 
 def test_packets_wait_for_a_parent_for_a_while():
     one = node()
     assert one.give(2) == []
     for _ in range(one.params.patience):
-        one.fire(c.TICK)
+        one.fire(timers.TICK)
         one.told()
     assert one.node.q_count == 0
     assert one.reports == [(c.REPORT_NO_ROUTE, ROOT, 0)]
@@ -203,10 +204,10 @@ def test_packets_wait_for_a_parent_for_a_while():
 
 def test_of_many_neighbours_the_farthest_is_forgotten():
     one = attached()
-    for src in range(20, 20 + c.NEIGHBOURS - 1):
+    for src in range(20, 20 + sizes.NEIGHBOURS - 1):
         one.hear(**dio(src, 2000 + src))
     one.hear(**dio(90, 300))
     known = list(one.node.nbr)
     assert 90 in known
     assert 1 in known
-    assert 20 + c.NEIGHBOURS - 2 not in known
+    assert 20 + sizes.NEIGHBOURS - 2 not in known

@@ -3,6 +3,7 @@
 import pytest
 
 from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol import kinds, timers
 from innervate.networks.rpl.protocol.counters import dag_rank, following, is_newer
 from tests.networks.rpl.nodes import RPL, attached, dio, node
 
@@ -14,12 +15,12 @@ def at_root(**params):
 
 
 def dios(frames):
-    return [frame for frame in frames if frame.kind == c.DIO]
+    return [frame for frame in frames if frame.kind == kinds.DIO]
 
 
 def point(one):
     """Time t, or an interval's end; the DIOs that are sent then."""
-    sent = dios(one.fire(c.TRICKLE))
+    sent = dios(one.fire(timers.TRICKLE))
     if sent:
         one.told()
     return sent
@@ -27,9 +28,9 @@ def point(one):
 
 def interval(one):
     """An interval's length as its two timers give it, t first, and what is sent; us."""
-    t = one.left(c.TRICKLE)
+    t = one.left(timers.TRICKLE)
     sent = point(one)
-    length = t + one.left(c.TRICKLE)
+    length = t + one.left(timers.TRICKLE)
     point(one)
     return t, length, sent
 
@@ -60,26 +61,26 @@ def test_it_transmits_if_the_counter_is_below_k():
     k" """
     for heard, expected in ((1, 1), (2, 0), (3, 0)):
         one = attached(dio_k=2)
-        one.fire(c.TRICKLE)  # t
+        one.fire(timers.TRICKLE)  # t
         one.told()
-        one.fire(c.TRICKLE)  # the next interval begins
+        one.fire(timers.TRICKLE)  # the next interval begins
         one.sent.clear()
         for _ in range(heard):
             one.hear(**dio(1, 256))
-        assert len(dios(one.fire(c.TRICKLE))) == expected, heard
+        assert len(dios(one.fire(timers.TRICKLE))) == expected, heard
 
 
 def test_k_zero_is_infinity():
     """6550, 8.3.1: "when k has the value of 0x00, this is to be treated as a redundancy constant of
     infinity" """
     one = attached(dio_k=0)
-    one.fire(c.TRICKLE)
+    one.fire(timers.TRICKLE)
     one.told()
-    one.fire(c.TRICKLE)
+    one.fire(timers.TRICKLE)
     one.sent.clear()
     for _ in range(50):
         one.hear(**dio(1, 256))
-    assert len(dios(one.fire(c.TRICKLE))) == 1
+    assert len(dios(one.fire(timers.TRICKLE))) == 1
 
 
 def test_consistent_is_a_lesser_rank_that_changes_nothing():
@@ -104,9 +105,9 @@ def stretched(**params):
 def test_an_inconsistency_begins_an_interval_of_imin():
     """6206, 4.2: "To reset the timer, Trickle sets I to Imin and starts a new interval" """
     one = stretched()
-    one.hear(kind=c.DIS, to=65535, src=7, rssi=-60)
+    one.hear(kind=kinds.DIS, to=65535, src=7, rssi=-60)
     assert one.node.interval == 0
-    assert 32 * MS <= one.left(c.TRICKLE) < 64 * MS
+    assert 32 * MS <= one.left(timers.TRICKLE) < 64 * MS
 
 
 def test_at_imin_an_inconsistency_does_nothing():
@@ -114,18 +115,26 @@ def test_at_imin_an_inconsistency_does_nothing():
     does nothing." """
     one = attached()
     assert one.node.interval == 0
-    before = one.timers[c.TRICKLE]
-    one.hear(kind=c.DIS, to=65535, src=7, rssi=-60)
-    assert one.timers[c.TRICKLE] == before
+    before = one.timers[timers.TRICKLE]
+    one.hear(kind=kinds.DIS, to=65535, src=7, rssi=-60)
+    assert one.timers[timers.TRICKLE] == before
 
 
 @pytest.mark.parametrize(
     "heard",
     [
-        {"kind": c.DIS, "to": 65535, "src": 7},  # a multicast DIS
+        {"kind": kinds.DIS, "to": 65535, "src": 7},  # a multicast DIS
         dio(1, 256, version=241),  # joins a new DODAG version
         # a second inconsistency of ranks
-        {"kind": c.DATA, "src": 8, "dsn": 9, "dest": 0, "hops": 9, "sender_rank": 1, "error": 1},
+        {
+            "kind": kinds.DATA,
+            "src": 8,
+            "dsn": 9,
+            "dest": 0,
+            "hops": 9,
+            "sender_rank": 1,
+            "error": 1,
+        },
     ],
 )
 def test_what_must_reset_the_timer(heard):
@@ -138,10 +147,10 @@ def test_what_must_reset_the_timer(heard):
 def test_the_only_time_it_transmits_is_t():
     """6206, 4.2: "The only time the Trickle algorithm transmits is at step 4" """
     one = stretched()
-    assert dios(one.hear(kind=c.DIS, to=65535, src=7, rssi=-60)) == []
-    assert len(dios(one.fire(c.TRICKLE))) == 1
+    assert dios(one.hear(kind=kinds.DIS, to=65535, src=7, rssi=-60)) == []
+    assert len(dios(one.fire(timers.TRICKLE))) == 1
     one.told()
-    assert dios(one.fire(c.TRICKLE)) == []
+    assert dios(one.fire(timers.TRICKLE)) == []
 
 
 def test_counters_go_straight_up_and_then_round():

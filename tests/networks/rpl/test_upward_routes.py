@@ -3,6 +3,7 @@
 import pytest
 
 from innervate.networks.rpl.protocol import constants as c
+from innervate.networks.rpl.protocol import kinds, timers
 from tests.networks.rpl.nodes import (
     STEP,
     VERSION,
@@ -29,8 +30,8 @@ def test_the_root_advertises_root_rank():
     """8.2.2.2: "A DODAG root MUST advertise a Rank of ROOT_RANK."; 17: "a value of
     MinHopRankIncrease" """
     root = node(0)
-    (frame,) = root.fire(c.TRICKLE)
-    assert (frame.kind, frame.rank, frame.version) == (c.DIO, STEP, VERSION)
+    (frame,) = root.fire(timers.TRICKLE)
+    assert (frame.kind, frame.rank, frame.version) == (kinds.DIO, STEP, VERSION)
     root.hear(**dio(1, 64))
     assert parent_of(root) is None, "8.2.1: a DODAG parent set of size zero"
 
@@ -81,7 +82,7 @@ def test_etx_is_learnt_from_acknowledgements():
     one = attached()
     one.give(2)
     one.told()
-    one.fire(c.ACK_WAIT)
+    one.fire(timers.ACK_WAIT)
     settle(one)
     assert one.node.nbr_etx[one.node.parent] == (3 * 128 + 2 * 128) // 4
     before = one.node.rank
@@ -122,7 +123,7 @@ def test_ranks_lower_within_a_version():
 
 
 def advertised(one):
-    one.fire(c.TRICKLE)
+    one.fire(timers.TRICKLE)
     one.told()
 
 
@@ -152,7 +153,7 @@ def test_a_node_poisons_its_routes():
     immediately advertise this new situation" """
     one = attached()
     (frame,) = one.hear(**dio(1, c.INFINITE))
-    assert (frame.kind, frame.rank) == (c.DIO, c.INFINITE)
+    assert (frame.kind, frame.rank) == (kinds.DIO, c.INFINITE)
 
 
 def test_nobody_of_infinite_rank_is_a_parent():
@@ -174,7 +175,7 @@ def test_who_is_not_above_us_is_no_parent_at_once():
     one.hear(**dio(2, 384))
     assert parent_of(one) is None, "poison and delay before moving"
     for _ in range(one.params.hold):
-        one.fire(c.TICK)
+        one.fire(timers.TICK)
         settle(one)
     one.hear(**dio(2, 384))
     assert parent_of(one) == 2
@@ -184,14 +185,14 @@ def test_a_node_without_a_parent_solicits():
     """6.2: "The DODAG Information Solicitation (DIS) message may be used to solicit a DODAG
     Information Object" """
     one = node()
-    (frame,) = one.fire(c.TICK)
-    assert (frame.kind, frame.to) == (c.DIS, 65535)
+    (frame,) = one.fire(timers.TICK)
+    assert (frame.kind, frame.to) == (kinds.DIS, 65535)
 
 
 def test_it_solicits_ever_more_rarely_and_for_ever():
     one, asked = node(), []
     for number in range(1, 600):
-        asked += [number] if any(frame.kind == c.DIS for frame in one.fire(c.TICK)) else []
+        asked += [number] if any(frame.kind == kinds.DIS for frame in one.fire(timers.TICK)) else []
         settle(one)
     assert asked == [1, 2, 4, 8, 16, 32, *range(64, 600, 64)]
 
@@ -228,10 +229,10 @@ def test_only_the_root_makes_versions():
     """8.2.2.1: "a node that is a not a root MUST NOT advertise a DODAGVersionNumber higher than the
     highest DODAGVersionNumber it has heard" """
     one = attached(repair=1)
-    one.fire(c.TICK)
+    one.fire(timers.TICK)
     assert one.node.version == VERSION
     root = node(0, repair=1)
-    root.fire(c.TICK)
+    root.fire(timers.TICK)
     assert root.node.version == VERSION + 1
 
 
@@ -258,7 +259,7 @@ def test_ranks_have_to_fit_the_direction(down, sender, wrong):
     one = attached(rank=256)  # our DAGRank is 3
     one.node.via[8] = 7
     one.hear(**data(2, 8 if down else 0, down=down, sender_rank=sender))
-    passed = [frame for frame in one.sent if frame.kind == c.DATA]
+    passed = [frame for frame in one.sent if frame.kind == kinds.DATA]
     assert [frame.error for frame in passed] == [int(wrong)]
 
 
@@ -267,7 +268,7 @@ def test_a_second_inconsistency_drops_the_packet():
     packet MUST be dropped" """
     one = attached(rank=256)
     one.hear(**data(2, 0, sender_rank=2, error=1))
-    assert [frame for frame in one.sent if frame.kind == c.DATA] == []
+    assert [frame for frame in one.sent if frame.kind == kinds.DATA] == []
     assert one.reports == [(c.REPORT_LOOP, 0, 9)]
 
 

@@ -118,7 +118,7 @@ def test_who_falls_silent_ends_what_is_on_the_air_now(start, end, spoilt, cut_to
     else:
         unsent = start >= 200  # and no edge of it has passed anybody
         assert (air.end, air.spoilt) == (cut_to, medium.UNSENT if unsent else medium.GARBLED)
-        what = (1 << medium.AIR_BITS) | 2
+        what = (1 << heap.AIR_BITS) | 2
         assert due(world) == [key_of(cut_to + 10, ENDS, 2, what)]
         assert [bool(medium.is_end(world, 1, 2, air, at)) for at in (cut_to, cut_to + 10)] == [
             False, True,
@@ -139,7 +139,7 @@ def test_who_breaks_off_listens_at_once_and_is_told_nothing():
 @pytest.mark.parametrize(("cursor", "left"), [(0, 1), (1, 1), (2, 0), (3, 0)])
 def test_an_edge_goes_from_station_to_station_until_all_had_it(cursor, left):
     world = world_of()
-    what = (2 << medium.AIR_BITS) | 1
+    what = (2 << heap.AIR_BITS) | 1
     heap.push(world.heap, key_of(100, ENDS, 0, what))
     medium.go_on(world, ENDS, what, 100, cursor)
     assert len(due(world)) == left

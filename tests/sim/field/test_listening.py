@@ -62,8 +62,8 @@ def test_a_frame_is_counted_for_whoever_could_hear_it():
     world.air[0].node = 1
     listening.count_frame(world, 0, 1, taps.FINE)
     assert (world.air[0].receivers, counted(world)) == (3, {"sent": 5})
-    listening.lose_all(world, 1, listening.FULL)
-    listening.lose_all(world, 0, listening.BUSY)
+    listening.lose_all(world, 1, heard.FULL)
+    listening.lose_all(world, 0, heard.BUSY)
     assert counted(world) == {"sent": 10, "queue": 3, "busy": 2}
 
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from innervate.networks.rpl import frames
-from innervate.networks.rpl.protocol.constants import ACK
+from innervate.networks.rpl.protocol.kinds import ACK
 from innervate.scenario.declared.field import sizes_of
 from innervate.topology.placement import distances, neighbours
 

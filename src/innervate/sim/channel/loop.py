@@ -6,54 +6,23 @@
 from collections.abc import Callable
 from typing import Any
 
-from innervate.dialect.access import (
-    CLOCK,
-    FORCE,
-    LEAVE,
-    PACKET,
-    QUEUE,
-    REPORT_DELIVERED,
-    REPORT_LEFT,
-    RESULT,
-)
+from innervate.dialect import access
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER, STOP
 from innervate.kernel.bits import mix
 from innervate.scenario.actions.channel import BEGIN, FADE, GARBLE, JOIN, KILL
 from innervate.scenario.actions.channel import LEAVE as RETIRE
 from innervate.sim import heap as queue
+from innervate.sim import status
 from innervate.sim.channel import medium, traffic
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.channel.world import RING, TIMERS
-from innervate.sim.heap import (
-    ENDS,
-    OFFER,
-    OUTCOME,
-    RANK_SHIFT,
-    READY,
-    STARTS,
-    STATION_SHIFT,
-    STATIONS_MAX,
-    TIME_SHIFT,
-    TIMER,
-)
 from innervate.sim.rows import record_row
-from innervate.sim.status import (
-    BROKEN,
-    BUDGET,
-    DONE,
-    ON_FRAME,
-    ON_INPUT,
-    ON_START,
-    ON_TIMER,
-    POOL_FULL,
-    ROWS_FULL,
-)
 
 ON_CARRIER = 4
 BROKEN_OUTBOX = 3
 BROKEN_FRAME = 8  # a receiver changed the frame that the others are handed, too
-WHAT_MASK = (1 << STATION_SHIFT) - 1
+WHAT_MASK = (1 << queue.STATION_SHIFT) - 1
 
 COLD, LATE = 0, 1
 BATCH = 16  # events between two looks at the room left in the tables
@@ -64,20 +33,20 @@ def pressing(world):
     """Why the loop has to stop before the next event, or DONE."""
     run = world.run[0]
     if run.broken:
-        return BROKEN
+        return status.BROKEN
     # All stations may be told of a carrier in one event, and each fill its outbox.
     margin = BATCH * (ROWS_PER_EVENT + world.out.limit[0]) + run.stations * world.out.limit[0]
     if run.rows + margin > run.row_limit > 0 or run.sent + margin > run.sent_limit > 0:
-        return ROWS_FULL
+        return status.ROWS_FULL
     if run.packets + margin > run.packet_limit > 0:
-        return ROWS_FULL
+        return status.ROWS_FULL
     if run.trail + margin > run.trail_limit > 0:
-        return ROWS_FULL
+        return status.ROWS_FULL
     if run.taps > run.tap_limit:
-        return ROWS_FULL
+        return status.ROWS_FULL
     if world.heap.size[0] + 4 * run.stations + 8 * BATCH > len(world.heap.keys):
-        return POOL_FULL
-    return DONE
+        return status.POOL_FULL
+    return status.DONE
 
 
 def drain(world, do, node, time, now):
@@ -100,14 +69,14 @@ def drain(world, do, node, time, now):
             at = time + max(0, ((b - now + (1 << 29)) & MASK30) - (1 << 29))
             if world.due[node * TIMERS + a] != at:
                 world.due[node * TIMERS + a] = at
-                queue.push(world.heap, queue.key_of(at, TIMER, node, a))
+                queue.push(world.heap, queue.key_of(at, queue.TIMER, node, a))
         elif kind == REPORT:
             record_row(world, time, node, a, b, c)
-            if a == REPORT_DELIVERED:
+            if a == access.REPORT_DELIVERED:
                 for k in range(c):
                     do.note_delivered(world, node, (b + k) & MASK16, time)
                 world.radios[node].noted |= 2
-            elif a == REPORT_LEFT:
+            elif a == access.REPORT_LEFT:
                 world.radios[node].leaving = 2
         elif kind == DELIVER:
             do.note_received(world, node, out.frame[i], time)
@@ -131,7 +100,7 @@ def finish(world, do, node, time, now, handler, port):
     if radio.noted & 2:
         radio.noted &= 1
         if (run.saturated or radio.backlog > 0) and radio.leaving == 0:
-            queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
+            queue.push(world.heap, queue.key_of(time, queue.OFFER, node, 1))
     if radio.leaving == 2 and radio.alive and not radio.deaf:
         radio.alive = 0
 
@@ -140,8 +109,8 @@ def offer(world, do, node, time):
     """Hand packets down: of those that wait, and in saturation always new ones."""
     run, radio = world.run[0], world.radios[node]
     station = world.stations[node]
-    most = min(QUEUE, 2 * run.per_turn + 1) if run.saturated else QUEUE
-    for _ in range(QUEUE):
+    most = min(access.QUEUE, 2 * run.per_turn + 1) if run.saturated else access.QUEUE
+    for _ in range(access.QUEUE):
         if station.queued >= most or radio.leaving or not radio.alive:
             break
         if run.saturated:
@@ -152,9 +121,9 @@ def offer(world, do, node, time):
             break
         traffic.fill_item(world, node, handle)
         now = time + radio.offset
-        kind = FORCE if run.forced else PACKET
+        kind = access.FORCE if run.forced else access.PACKET
         do.on_input(world, node, now & MASK30, kind)
-        finish(world, do, node, time, now, ON_INPUT, kind)
+        finish(world, do, node, time, now, status.ON_INPUT, kind)
 
 
 def tell_clock(world, do, node, time):
@@ -164,8 +133,8 @@ def tell_clock(world, do, node, time):
         item.slots, item.handle = 0, time // run.period % run.stations
         item.ago = time % run.period
         now = time + world.radios[node].offset
-        do.on_input(world, node, now & MASK30, CLOCK)
-        finish(world, do, node, time, now, ON_INPUT, CLOCK)
+        do.on_input(world, node, now & MASK30, access.CLOCK)
+        finish(world, do, node, time, now, status.ON_INPUT, access.CLOCK)
 
 
 def tell_outcome(world, do, node, time):
@@ -175,8 +144,8 @@ def tell_outcome(world, do, node, time):
         item.slots, item.ago = 0, 0
         item.handle = world.got[node * RING + (radio.told & (RING - 1))]
         now = time + radio.offset
-        do.on_input(world, node, now & MASK30, RESULT)
-        finish(world, do, node, time, now, ON_INPUT, RESULT)
+        do.on_input(world, node, now & MASK30, access.RESULT)
+        finish(world, do, node, time, now, status.ON_INPUT, access.RESULT)
 
 
 def switch_on(world, do, node, time, cause):
@@ -192,10 +161,10 @@ def switch_on(world, do, node, time, cause):
     for timer in range(TIMERS):
         world.due[node * TIMERS + timer] = NEVER
     do.on_start(world, node, now & MASK30, cause)
-    finish(world, do, node, time, now, ON_START, cause)
+    finish(world, do, node, time, now, status.ON_START, cause)
     tell_clock(world, do, node, time)
     medium.note_carrier(world, node)
-    queue.push(world.heap, queue.key_of(time, OFFER, node, 1))
+    queue.push(world.heap, queue.key_of(time, queue.OFFER, node, 1))
 
 
 def tell_carrier(world, do, node, time):
@@ -212,16 +181,16 @@ def edge(world, do, rank, node, what, time):
     """A signal arrives at a station, or ends there."""
     air, radio = world.air[what], world.radios[node]
     sender = what >> queue.AIR_BITS
-    if rank == STARTS:
+    if rank == queue.STARTS:
         air.at_start += 1
-        medium.go_on(world, STARTS, what, air.start, air.at_start)
+        medium.go_on(world, queue.STARTS, what, air.start, air.at_start)
         medium.begin_signal(world, node, what)
     else:
         if not medium.is_end(world, sender, node, air, time):
             queue.pop(world.heap)  # its sender died before
             return
         air.at_end += 1
-        medium.go_on(world, ENDS, what, air.end, air.at_end)
+        medium.go_on(world, queue.ENDS, what, air.end, air.at_end)
         clear = radio.candidate == what or air.spoilt == medium.UNSENT
         received = medium.end_signal(world, node, what)
         do.record_received(world, node, what, time, clear, received)
@@ -233,7 +202,7 @@ def edge(world, do, rank, node, what, time):
             do.on_frame(world, node, now & MASK30, world.frames[what])
             if run.checks and run.broken == 0 and do.digest(world.frames[what]) != was:
                 run.broken, run.broken_node = BROKEN_FRAME, sender
-            finish(world, do, node, time, now, ON_FRAME, world.frames[what].kind)
+            finish(world, do, node, time, now, status.ON_FRAME, world.frames[what].kind)
     medium.note_carrier(world, node)
 
 
@@ -254,8 +223,8 @@ def obey(world, do, index, time):
     elif command.action == RETIRE and radio.alive:
         radio.leaving = max(radio.leaving, 1)
         now = time + radio.offset
-        do.on_input(world, node, now & MASK30, LEAVE)
-        finish(world, do, node, time, now, ON_INPUT, LEAVE)
+        do.on_input(world, node, now & MASK30, access.LEAVE)
+        finish(world, do, node, time, now, status.ON_INPUT, access.LEAVE)
     elif command.action == GARBLE:
         radio.garble = command.value
     elif command.action == FADE:
@@ -276,35 +245,35 @@ def tell_all(world, do, time):
 
 def dispatch(world, do, key, time):
     """Hand the first event of the queue to what it is for."""
-    rank = (key >> RANK_SHIFT) & 7
-    node = (key >> STATION_SHIFT) & (STATIONS_MAX - 1)
+    rank = (key >> queue.RANK_SHIFT) & 7
+    node = (key >> queue.STATION_SHIFT) & (queue.STATIONS_MAX - 1)
     what = key & WHAT_MASK
-    if rank <= STARTS:
+    if rank <= queue.STARTS:
         edge(world, do, rank, node, what, time)
         return
     queue.pop(world.heap)
     radio = world.radios[node]
-    if rank == READY:
+    if rank == queue.READY:
         if radio.ready_at == time:
             radio.deaf = 0
         if radio.alive and not radio.deaf:
             tell_carrier(world, do, node, time)
-    elif rank == TIMER:
+    elif rank == queue.TIMER:
         if world.due[node * TIMERS + what] == time and radio.alive:
             world.due[node * TIMERS + what] = NEVER
             now = time + radio.offset
             do.on_timer(world, node, now & MASK30, what)
-            finish(world, do, node, time, now, ON_TIMER, what)
-    elif rank == OFFER:
+            finish(world, do, node, time, now, status.ON_TIMER, what)
+    elif rank == queue.OFFER:
         if what == 0:
             traffic.make(world, node, time)
             radio.next_offer += 1
             traffic.schedule(world, node)
         offer(world, do, node, time)
-    elif rank == OUTCOME:
+    elif rank == queue.OUTCOME:
         tell_outcome(world, do, node, time)
     else:
-        obey(world, do, (node << STATION_SHIFT) | what, time)
+        obey(world, do, (node << queue.STATION_SHIFT) | what, time)
 
 
 def run_until(world, do, until, budget):
@@ -312,26 +281,26 @@ def run_until(world, do, until, budget):
     run, heap = world.run[0], world.heap
     for _ in range(0, budget, BATCH):
         run.status = pressing(world)
-        if run.status != DONE:
+        if run.status != status.DONE:
             return
         for _ in range(BATCH):
             if run.broken:
-                run.status = BROKEN
+                run.status = status.BROKEN
                 return
             if run.completed >= run.wanted > 0:
                 return
             key = heap.keys[0]
             if heap.size[0] == 0:
                 key = queue.LAST
-            if world.told[0] > 0 and key >= queue.key_of(run.now, READY, 0, 0):
+            if world.told[0] > 0 and key >= queue.key_of(run.now, queue.READY, 0, 0):
                 tell_all(world, do, run.now)
                 continue
-            time = key >> TIME_SHIFT
+            time = key >> queue.TIME_SHIFT
             if time >= until:
                 return
             run.now = time
             dispatch(world, do, key, time)
-    run.status = BUDGET
+    run.status = status.BUDGET
 
 
 FUNCTIONS = (

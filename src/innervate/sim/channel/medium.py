@@ -9,18 +9,8 @@ may break off; with `oracle` it learns, when all could know, how many received i
 """
 
 from innervate.dialect.rng import LOW15, step
-from innervate.sim.heap import (
-    AIR_BITS,
-    AIRS,
-    ENDS,
-    OUTCOME,
-    READY,
-    STARTS,
-    key_of,
-    pop,
-    push,
-    replace,
-)
+from innervate.sim import heap
+from innervate.sim.heap import key_of, pop, push, replace
 
 NOBODY = -1
 NEVER = -1
@@ -50,7 +40,7 @@ def transmit(world, node, frame, time, copy_frame):
     if frame.slots < 1:
         run.broken, run.broken_node = BROKEN_EMPTY, node
         return
-    place = node * AIRS + radio.air
+    place = node * heap.AIRS + radio.air
     air = world.air[place]
     last = world.degree[node] - 1
     if last >= 0 and air.end > 0 and air.end + world.delay[node * run.stations + last] > time:
@@ -64,19 +54,19 @@ def transmit(world, node, frame, time, copy_frame):
     radio.deaf = HEARING if run.full_duplex else SENDING
     radio.candidate = NOBODY
     radio.ready_at = off + run.ta_us
-    what = (node << AIR_BITS) | radio.air
-    radio.air = (radio.air + 1) & (AIRS - 1)
-    push(world.heap, key_of(radio.ready_at, READY, node, 0))
+    what = (node << heap.AIR_BITS) | radio.air
+    radio.air = (radio.air + 1) & (heap.AIRS - 1)
+    push(world.heap, key_of(radio.ready_at, heap.READY, node, 0))
     if world.degree[node] > 0 and air.spoilt != FADED:
         first = node * run.stations
-        push(world.heap, key_of(on + world.delay[first], STARTS, world.order[first], what))
-        push(world.heap, key_of(off + world.delay[first], ENDS, world.order[first], what))
+        push(world.heap, key_of(on + world.delay[first], heap.STARTS, world.order[first], what))
+        push(world.heap, key_of(off + world.delay[first], heap.ENDS, world.order[first], what))
     if run.oracle and frame.count > 0:
         radio.told, radio.told_at = frame.handle, radio.ready_at
         if last >= 0:
             known = off + world.delay[node * run.stations + last]
             radio.told_at = max(known, radio.ready_at)
-        push(world.heap, key_of(radio.told_at, OUTCOME, node, 0))
+        push(world.heap, key_of(radio.told_at, heap.OUTCOME, node, 0))
 
 
 def impair(world, radio, air):
@@ -91,7 +81,7 @@ def impair(world, radio, air):
 
 def go_on(world, rank, what, since, cursor):
     """A signal's edge is first in the queue: put that edge at the next station in its place."""
-    sender = what >> AIR_BITS
+    sender = what >> heap.AIR_BITS
     if cursor < world.degree[sender]:
         at = sender * world.run[0].stations + cursor
         replace(world.heap, key_of(since + world.delay[at], rank, world.order[at], what))
@@ -165,20 +155,20 @@ def break_off(world, node, time):
     if radio.deaf:
         silence(world, node, time)
         radio.ready_at, radio.told_at = time, NEVER
-        push(world.heap, key_of(time, READY, node, 0))
+        push(world.heap, key_of(time, heap.READY, node, 0))
 
 
 def silence(world, node, time):
     """A station stops in mid-frame, or dies: its signal ends now, and is no frame any more."""
     stations = world.run[0].stations
-    for i in range(AIRS):
-        place = node * AIRS + i
+    for i in range(heap.AIRS):
+        place = node * heap.AIRS + i
         air = world.air[place]
         if air.end > time and world.degree[node] > 0 and air.spoilt < FADED:
             is_on_air = air.start < time or air.at_start > 0
             air.end = max(time, air.start)
             air.spoilt = GARBLED if is_on_air else UNSENT
             first = node * stations
-            what = (node << AIR_BITS) | i
-            key = key_of(air.end + world.delay[first], ENDS, world.order[first], what)
+            what = (node << heap.AIR_BITS) | i
+            key = key_of(air.end + world.delay[first], heap.ENDS, world.order[first], what)
             push(world.heap, key)

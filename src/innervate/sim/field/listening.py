@@ -5,26 +5,15 @@ Frames are counted once for every node that could hear them, in `world.counters`
 
 from innervate.dialect.arith import MASK30
 from innervate.sim import heard, taps
+from innervate.sim import heard as counts
 from innervate.sim.field import access, calls, medium
 from innervate.sim.field.medium import NONE
 from innervate.sim.field.states import ALIVE, ON_AIR
-from innervate.sim.heard import (
-    ARRIVED,
-    BROKEN_OFF,
-    BUSY,
-    COLLIDED,
-    CUT,
-    FULL,
-    NOISY,
-    OFF,
-    SENDING,
-    SENT,
-)
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
 
 ON_CARRIER = 4  # in trails
 ON_SENT = 5
-LOST = {**heard.LOST, "cut": CUT, "busy": BUSY, "queue": FULL}
+LOST = {**heard.LOST, "cut": counts.CUT, "busy": counts.BUSY, "queue": counts.FULL}
 
 
 def pressing(world):
@@ -52,7 +41,7 @@ def reach_of(world, node):
 def lose_all(world, node, why):
     """A frame of a node does not get on the air."""
     count = reach_of(world, node)
-    world.counters[SENT] += count
+    world.counters[counts.SENT] += count
     world.counters[why] += count
 
 
@@ -62,15 +51,15 @@ def record_sent(world, place, time, length, receivers):
     if air.state != ON_AIR:
         return
     if time < air.end:
-        world.counters[BROKEN_OFF] += air.receivers
+        world.counters[counts.BROKEN_OFF] += air.receivers
         return
     nodes = world.run[0].nodes
     for j in range(nodes):
         at = air.node * nodes + j
         if world.prob[at] > 0 and world.radios[j].state != ALIVE:
-            world.counters[OFF] += 1
+            world.counters[counts.OFF] += 1
         elif world.prob[at] > 0 and world.power[at] == 0:
-            world.counters[CUT] += 1
+            world.counters[counts.CUT] += 1
 
 
 def count_frame(world, place, out, why):
@@ -78,24 +67,24 @@ def count_frame(world, place, out, why):
     if out:
         air = world.air[place]
         air.receivers = reach_of(world, air.node)
-        world.counters[SENT] += air.receivers
+        world.counters[counts.SENT] += air.receivers
     elif why == taps.FINE:
-        world.counters[ARRIVED] += 1
+        world.counters[counts.ARRIVED] += 1
     elif why == taps.SENDING:
-        world.counters[SENDING] += 1
+        world.counters[counts.SENDING] += 1
     elif why == taps.COLLISION:
-        world.counters[COLLIDED] += 1
+        world.counters[counts.COLLIDED] += 1
     elif why == taps.CUT:
-        world.counters[CUT] += 1
+        world.counters[counts.CUT] += 1
     else:
-        world.counters[NOISY] += 1
+        world.counters[counts.NOISY] += 1
 
 
 def put_off(world, do, node, frame, act):
     """A frame has to wait for those before it."""
     run, radio = world.run[0], world.radios[node]
     if radio.waiting >= run.room:
-        lose_all(world, node, FULL)
+        lose_all(world, node, counts.FULL)
         return
     place = node * run.room + (radio.first + radio.waiting) % run.room
     do.copy_frame(world.ring[place], frame)
@@ -116,7 +105,7 @@ def next_one(world, do, node, time):
 def tell_sent(world, do, node, time, ok):
     """A node's frame has left the air, or the medium access has given it up."""
     if not ok:
-        lose_all(world, node, BUSY)
+        lose_all(world, node, counts.BUSY)
     do.tell_end(world, do, node, time, ok)
     next_one(world, do, node, time)
 

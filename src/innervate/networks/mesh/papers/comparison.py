@@ -11,22 +11,10 @@ from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer
 from innervate.networks.mesh.sim.simulate import simulate
-from innervate.papers import in_field
+from innervate.papers import in_field, jobs
 from innervate.papers.experiment import Claim
 from innervate.papers.in_field import NEVER, Sent, World
-from innervate.papers.jobs import (
-    MEAN,
-    MEDIAN,
-    PERCENT,
-    Case,
-    Column,
-    Compared,
-    Entry,
-    Given,
-    Job,
-    Words,
-    entries,
-)
+from innervate.papers.jobs import Case, Column, Compared, Entry, Given, Job, Words, entries
 from innervate.scenario.actions.field import KILL, REVIVE
 from innervate.trace.streams import stream
 
@@ -168,24 +156,24 @@ def _case(name: str, title: str, seeds: range, columns: tuple[Column, ...], **gi
 
 
 TIMES = (
-    Column("latency, half within (ms)", "p50_ms", MEDIAN),
-    Column("99 % within (ms)", "p99_ms", MEDIAN),
-    Column("airtime of all (% of the time)", "airtime", MEAN),
+    Column("latency, half within (ms)", "p50_ms", jobs.MEDIAN),
+    Column("99 % within (ms)", "p99_ms", jobs.MEDIAN),
+    Column("airtime of all (% of the time)", "airtime", jobs.MEAN),
 )
 MESSAGES = (
-    Column("first messages delivered (%)", FIRST, PERCENT),
-    Column("second ones (%)", LATER, PERCENT),
+    Column("first messages delivered (%)", FIRST, jobs.PERCENT),
+    Column("second ones (%)", LATER, jobs.PERCENT),
     *TIMES,
 )
-RAISED = (Column("alarms at the monitor (%)", FIRST, PERCENT), *TIMES)
+RAISED = (Column("alarms at the monitor (%)", FIRST, jobs.PERCENT), *TIMES)
 OUTAGE = (
-    Column("others' messages meanwhile (%)", PEERS, PERCENT),
-    Column("again after (s)", f"{PEERS}_again_s", MEDIAN),
-    Column("alarms meanwhile (%)", ALARMS, PERCENT),
-    Column("alarms again after (s)", f"{ALARMS}_again_s", MEDIAN),
-    Column("others' messages afterwards (%)", "peers after", PERCENT),
-    Column("alarms afterwards (%)", AFTER, PERCENT),
-    Column("again, from its return (s)", f"{AFTER}_again_s", MEDIAN),
+    Column("others' messages meanwhile (%)", PEERS, jobs.PERCENT),
+    Column("again after (s)", f"{PEERS}_again_s", jobs.MEDIAN),
+    Column("alarms meanwhile (%)", ALARMS, jobs.PERCENT),
+    Column("alarms again after (s)", f"{ALARMS}_again_s", jobs.MEDIAN),
+    Column("others' messages afterwards (%)", "peers after", jobs.PERCENT),
+    Column("alarms afterwards (%)", AFTER, jobs.PERCENT),
+    Column("again, from its return (s)", f"{AFTER}_again_s", jobs.MEDIAN),
     TIMES[-1],
 )
 # Nodes, dead, seeds.

@@ -2,6 +2,7 @@
 
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.outbox import report
+from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.bounds import TRIP, adopt, notice
 from innervate.networks.radio.protocol.constants import (
     HEARD_TAIL,
@@ -18,7 +19,6 @@ from innervate.networks.radio.protocol.constants import (
 from innervate.networks.radio.protocol.idle import leave_sequence
 from innervate.networks.radio.protocol.modes import (
     ACTIVE,
-    LEAD,
     QUIET,
     clear_round,
     code_for,
@@ -84,7 +84,7 @@ def hear_data(station, params, now, frame, out):
         return
     if station.pending:
         settle(station, params, now, frame, out)
-    if station.mode == LEAD:
+    if station.mode == modes.LEAD:
         note_joined(station, 0)  # the next turn has begun: nobody used our window
     station.collided = 0
     station.tail = 0

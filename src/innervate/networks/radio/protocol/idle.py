@@ -3,6 +3,7 @@
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.outbox import report
 from innervate.dialect.rng import draw
+from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.bounds import BEHIND, notice
 from innervate.networks.radio.protocol.constants import (
     ALONE,
@@ -18,9 +19,7 @@ from innervate.networks.radio.protocol.constants import (
 from innervate.networks.radio.protocol.modes import (
     ACTIVE,
     BUSY,
-    IDLE,
     QUIET,
-    SEND_OPEN,
     arm,
     clear_round,
     code_for,
@@ -64,7 +63,7 @@ def listen_first(station, params, now, cause, out):
 def leave_sequence(station, params, now, wait_us):
     """Leave the sequence; a new one may be opened `wait_us` from now."""
     rest_round(station, params)
-    station.mode = IDLE
+    station.mode = modes.IDLE
     station.credit = 0
     station.pending = 0
     station.act = 0
@@ -96,7 +95,7 @@ def end_sequence(station, params, now, out):
 
 def offered(station, params, now, out):
     """A packet came; in an idle channel it goes out at once."""
-    if station.mode == IDLE and not station.armed:
+    if station.mode == modes.IDLE and not station.armed:
         station.at = now
         schedule(station, now, out)
 
@@ -140,7 +139,7 @@ def open_now(station, params, now, out):
         station.cur = station.pos
     station.last_ok = 0
     station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
-    station.mode = SEND_OPEN
+    station.mode = modes.SEND_OPEN
 
 
 def loads(station, params):

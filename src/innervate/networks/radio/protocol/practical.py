@@ -9,6 +9,7 @@ follow.py, openings in idle.py.
 
 from innervate.dialect.access import LEAVE, PACKET
 from innervate.dialect.arith import MASK30
+from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.constants import CRR, DATA, MAIN, OPEN, REPORT
 from innervate.networks.radio.protocol.follow import (
     garbled_turn,
@@ -25,19 +26,7 @@ from innervate.networks.radio.protocol.idle import (
     retry,
     schedule,
 )
-from innervate.networks.radio.protocol.modes import (
-    CARRIERS,
-    IDLE,
-    LEAD,
-    LOST,
-    SEND_DATA,
-    SEND_OPEN,
-    SEND_REPORT,
-    SEND_SLOT,
-    TURN,
-    WINDOW,
-    arm,
-)
+from innervate.networks.radio.protocol.modes import arm
 from innervate.networks.radio.protocol.reporter import (
     end_burst,
     end_of_window,
@@ -87,7 +76,7 @@ def on_frame(station, params, now, port, frame, out):
 def on_carrier(station, params, now, cd, voc, out):
     """The carrier came or went, or our radio listens again after sending."""
     mode = station.mode
-    if mode <= CARRIERS:
+    if mode <= modes.CARRIERS:
         came = cd and not station.cd
         went = station.cd and not cd
         station.cd = cd
@@ -105,26 +94,26 @@ def on_carrier(station, params, now, cd, voc, out):
         station.rise = now
     else:
         station.fall = now
-    if mode == SEND_OPEN:
+    if mode == modes.SEND_OPEN:
         if cd:
             retry(station, params, now, 1, out)
         else:
             opened(station, params, now, out)
-    elif mode == SEND_DATA:
+    elif mode == modes.SEND_DATA:
         sent_data(station, params, now, out)
-    elif mode == SEND_REPORT:
+    elif mode == modes.SEND_REPORT:
         sent_report(station, params, now, out)
-    elif mode == SEND_SLOT:
-        station.mode = WINDOW
+    elif mode == modes.SEND_SLOT:
+        station.mode = modes.WINDOW
 
 
 def carrier_came(station, now):
     """Somebody sends: what silence would have meant does not hold."""
     mode = station.mode
-    if mode == IDLE:
+    if mode == modes.IDLE:
         station.armed = 0
         station.tail = 0
-    elif mode == WINDOW or mode == LEAD:
+    elif mode == modes.WINDOW or mode == modes.LEAD:
         station.heard = max(station.heard, 1)
     else:
         station.armed = 0
@@ -134,25 +123,25 @@ def carrier_went(station, params, now, length, out):
     """A burst is over; a frame in it was handled by on_frame."""
     mode = station.mode
     noise = not station.decoded
-    if mode == IDLE:
+    if mode == modes.IDLE:
         if noise:
             heard_noise(station, params, now, length, out)
         else:
             schedule(station, now, out)
-    elif mode == LEAD:
+    elif mode == modes.LEAD:
         end_burst(station, params, now, length, noise, out)
-    elif mode == WINDOW:
+    elif mode == modes.WINDOW:
         if noise and length >= frame_from(params, station.used) + params.slot_us:
-            station.mode = LOST
+            station.mode = modes.LOST
             arm(station, now, join_after(params, station.used), out)
         elif not station.armed:
             enter_turn(station, params, now, station.cur, out)
-    elif mode == TURN:
+    elif mode == modes.TURN:
         if noise and length >= pass_slots(params) * params.slot_us:
             garbled_turn(station, params, now, out)
         else:
             arm(station, now, turn_timeout(params, station.used), out)
-    elif mode == LOST:
+    elif mode == modes.LOST:
         arm(station, now, join_after(params, station.used), out)
 
 
@@ -163,19 +152,19 @@ def on_timer(station, params, now, timer, out):
         if not station.armed:
             return
         station.armed = 0
-        if mode == IDLE:
+        if mode == modes.IDLE:
             open_now(station, params, now, out)
-        elif mode == LEAD:
+        elif mode == modes.LEAD:
             end_of_window(station, params, now, out)
-        elif mode == WINDOW:
+        elif mode == modes.WINDOW:
             pass_deadline(station, params, now, out)
-        elif mode == TURN:
+        elif mode == modes.TURN:
             silent_turn(station, params, now, out)
-        elif mode == LOST:
+        elif mode == modes.LOST:
             listen_first(station, params, now, 0, out)
     elif station.act:
         station.act = 0
-        if mode == WINDOW:
+        if mode == modes.WINDOW:
             use_slot(station, params, now, out)
-        elif mode == TURN and not station.cd and station.cur == station.pos:
+        elif mode == modes.TURN and not station.cd and station.cur == station.pos:
             send_turn(station, params, now, out)

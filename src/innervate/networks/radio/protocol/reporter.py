@@ -8,6 +8,7 @@ larger span. Splitting instead of drawing anew costs 2.3 minislots for each stat
 
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.rng import draw
+from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.bounds import EARLY, LATE, TOGETHER, notice
 from innervate.networks.radio.protocol.constants import (
     MINISLOTS,
@@ -21,9 +22,7 @@ from innervate.networks.radio.protocol.constants import (
 from innervate.networks.radio.protocol.idle import end_sequence, leave_sequence, retry, schedule
 from innervate.networks.radio.protocol.modes import (
     ACTIVE,
-    LEAD,
     QUIET,
-    SEND_REPORT,
     age_kept,
     arm,
     count_kept,
@@ -83,7 +82,7 @@ def count_bits(words, first, size):
 
 def lead(station, params, now, window, ack, out):
     """Listen to the window behind the frame that we have just sent."""
-    station.mode = LEAD
+    station.mode = modes.LEAD
     station.window = window
     station.ack = ack
     station.heard = 0
@@ -154,7 +153,7 @@ def check_bounds(station, params, rise, out):
 
 def hear_slot(station, params, now, out):
     """A CR-R or pulse, alone in its minislot."""
-    if station.mode != LEAD:
+    if station.mode != modes.LEAD:
         station.decoded = 0
         return
     rise = (now - params.slot_us) & MASK30
@@ -318,7 +317,7 @@ def send_report(station, params, now, bad, out):
     station.turns = 0
     station.armed = 0
     station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
-    station.mode = SEND_REPORT
+    station.mode = modes.SEND_REPORT
 
 
 def free_places(station, count):

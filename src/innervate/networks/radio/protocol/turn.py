@@ -7,6 +7,7 @@ that is the proof which the sender of that frame waits for.
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import report
 from innervate.dialect.rng import draw
+from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.constants import (
     ALONE,
     DATA,
@@ -18,8 +19,6 @@ from innervate.networks.radio.protocol.constants import (
 )
 from innervate.networks.radio.protocol.idle import leave_sequence, schedule
 from innervate.networks.radio.protocol.modes import (
-    SEND_DATA,
-    TURN,
     arm,
     arm_act,
     code_for,
@@ -69,13 +68,13 @@ def enter_turn(station, params, now, cur, out):
         if passes or station.fails >= FAILS_MOST:
             quit_round(station, params, now, out)
         elif wait:
-            station.mode = TURN
+            station.mode = modes.TURN
             station.armed = 0
             arm_act(station, now, wait, out)
         else:
             send_turn(station, params, now, out)
         return
-    station.mode = TURN
+    station.mode = modes.TURN
     if station.cd:
         station.armed = 0
     else:
@@ -168,7 +167,7 @@ def send_turn(station, params, now, out):
     station.pending = count
     station.last_ok = 0
     station.armed = 0
-    station.mode = SEND_DATA
+    station.mode = modes.SEND_DATA
     station.cur = behind
     if alone and not more:
         station.cur = NONE

@@ -2,14 +2,13 @@
 
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.rng import draw
+from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.bounds import adopt
 from innervate.networks.radio.protocol.constants import MINISLOTS, NO_PROOF, NONE, POSITIONS
 from innervate.networks.radio.protocol.idle import end_sequence
 from innervate.networks.radio.protocol.modes import (
     ACTIVE,
     QUIET,
-    SEND_SLOT,
-    WINDOW,
     age_kept,
     arm,
     arm_act,
@@ -51,7 +50,7 @@ def enter_window(station, params, now, window, fresh, span, ack, out):
     `span` is what to draw from for its last minislots; what is before them is for those that
     collided, who have chosen already.
     """
-    station.mode = WINDOW
+    station.mode = modes.WINDOW
     station.window = window
     station.ack = ack
     station.ref = now
@@ -86,7 +85,7 @@ def use_slot(station, params, now, out):
             arm_act(station, station.ref, guard(params, station.used) + behind, out)
         return
     expect_report(station, params, out)
-    station.mode = SEND_SLOT
+    station.mode = modes.SEND_SLOT
     send_crr(out)
 
 
@@ -140,13 +139,13 @@ def hear_report(station, params, now, frame, out):
                 station.live[place] = ACTIVE
                 if place == station.pos:
                     station.pos = NONE
-                if i == mine and station.mode == WINDOW:
+                if i == mine and station.mode == modes.WINDOW:
                     station.pos = place
             places = places + 1
         elif bit(frame.bad, i):
-            if i == mine and station.mode == WINDOW:
+            if i == mine and station.mode == modes.WINDOW:
                 station.pos = NONE  # a kept place of ours is somebody else's, too
-            if i == mine and station.mode == WINDOW and frame.split:
+            if i == mine and station.mode == modes.WINDOW and frame.split:
                 station.slot = parts * groups + draw(station, parts)
             groups = groups + 1
     station.joined = station.joined + places

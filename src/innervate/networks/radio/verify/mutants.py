@@ -16,7 +16,7 @@ MUTANTS = tuple(
         ("a collision's wait is not drawn",
          "wait + step * draw(station, bound // step)", "wait"),
         ("who was given a place does not note it",
-         "                if i == mine and station.mode == WINDOW:\n"
+         "                if i == mine and station.mode == modes.WINDOW:\n"
          "                    station.pos = place\n", ""),
         ("nothing is ever proved",
          "    if count:\n        delivered(station, count, out)\n",

@@ -1,12 +1,5 @@
-"""Numbers that the files of RPL share; sizes as in protocol.fields."""
+"""Numbers that the files of RPL share."""
 
-NODES = 254
-NEIGHBOURS = 24
-QUEUE = 6  # packets
-BODY = 8  # numbers of a message, 16 bytes
-TARGETS = 4  # of a DAO in storing mode
-NEAR = 4  # hops of a short source route, without the first
-ROUTE = 16  # of a long one
 NONE = -1
 NOBODY = 255
 
@@ -16,22 +9,6 @@ INITIAL = 240
 WINDOW = 16  # SEQUENCE_WINDOW
 ETX_ONE = 128  # an ETX of 1 [RFC 6719, 3.5]
 ETX_MOST = 4096
-
-# Kinds of frame.
-DIO = 1
-DIS = 2
-DAO = 3  # storing mode: to a parent
-ACK = 4  # of a hop
-DATA = 5  # without a source route, and with a short or a long one: so many more
-DAO_ACK = 8  # likewise
-DAO_UP = 11  # non-storing mode: to the root
-ROUTE_ERROR = 12  # non-storing mode: a source route is broken, to the root
-
-# Timers.
-TRICKLE = 0
-ACK_WAIT = 1
-DAO_DELAY = 2
-TICK = 3
 
 # What is under way.
 IDLE = 0

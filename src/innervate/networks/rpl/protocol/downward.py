@@ -3,7 +3,8 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import set_timer
 from innervate.dialect.rng import draw
-from innervate.networks.rpl.protocol.constants import DAO_DELAY, NOBODY, NODES, NONE, ROUTE, TARGETS
+from innervate.networks.rpl.protocol import sizes, timers
+from innervate.networks.rpl.protocol.constants import NOBODY, NONE
 from innervate.networks.rpl.protocol.counters import following, is_newer
 
 LIFE = 3  # times from DAO to DAO for which a way is good
@@ -19,7 +20,7 @@ def schedule(node, params, now, out):
     if not node.dao_armed and node.number != params.root:
         node.dao_armed = 1
         wait = params.dao_us + draw(node, params.dao_us)
-        set_timer(out, DAO_DELAY, (now + wait) & MASK30)
+        set_timer(out, timers.DAO_DELAY, (now + wait) & MASK30)
 
 
 def announce(node, params, now, out):
@@ -32,7 +33,7 @@ def announce(node, params, now, out):
 
 def announce_all(node, params, now, out):
     """A new parent is to hear of us, and of all that we can reach."""
-    for target in range(NODES):
+    for target in range(sizes.NODES):
         if node.via[target] >= 0:
             node.owed[target] = HERE
     announce(node, params, now, out)
@@ -41,7 +42,7 @@ def announce_all(node, params, now, out):
 def leave(node, params, now, old, out):
     """A parent is one no more: it is to hear that nothing is reached by us [9.8]."""
     node.old = old if params.storing else NOBODY
-    for target in range(NODES):
+    for target in range(sizes.NODES):
         there = node.via[target] >= 0 or target == node.number
         node.left[target] = 1 if there and params.storing else 0
     if params.storing:
@@ -51,9 +52,9 @@ def leave(node, params, now, old, out):
 def take_dao(node, params, now, frame, out):
     """Storing mode: a child says whom it reaches; what changes our own says so, too [9.8]."""
     changed = 0
-    for i in range(TARGETS):
+    for i in range(sizes.TARGETS):
         target = frame.targets[i]
-        if target < NODES and target != node.number:
+        if target < sizes.NODES and target != node.number:
             changed += learn(node, frame.src, target, frame.paths[i], frame.life)
     if changed:
         schedule(node, params, now, out)
@@ -94,7 +95,7 @@ def forget(node, target):
 
 def forget_all(node):
     """A new version of the DODAG: who hangs on whom is told anew."""
-    for target in range(NODES):
+    for target in range(sizes.NODES):
         node.via[target] = NONE
         node.owed[target] = 0
         node.left[target] = 0
@@ -104,7 +105,7 @@ def forget_all(node):
 def forget_child(node, params, now, child, out):
     """Storing mode: nothing is reached by this child any more [9.8]."""
     changed = 0
-    for target in range(NODES):
+    for target in range(sizes.NODES):
         if node.via[target] == child:
             changed += forget(node, target)
     if changed:
@@ -114,7 +115,7 @@ def forget_child(node, params, now, child, out):
 def grow_older(node, params, now, out):
     """A tick has passed: ways that nobody has told of for too long are forgotten."""
     changed = 0
-    for target in range(NODES):
+    for target in range(sizes.NODES):
         if node.via[target] >= 0 and node.life[target] != FOR_EVER:
             node.life[target] -= 1
             if node.life[target] <= 0:
@@ -127,9 +128,9 @@ def pick(node, params):
     """Storing mode: what the next DAO to our parent says, of what is owed; how many targets."""
     mark = 0
     count = 0
-    for target in range(NODES):
+    for target in range(sizes.NODES):
         owed = node.owed[target]
-        if owed and count < TARGETS and (mark == 0 or owed == mark):
+        if owed and count < sizes.TARGETS and (mark == 0 or owed == mark):
             mark = owed
             write(node, count, target)
             count += 1
@@ -141,8 +142,8 @@ def pick(node, params):
 def pick_left(node):
     """Storing mode: what the next DAO to the parent that we left says; how many targets."""
     count = 0
-    for target in range(NODES):
-        if node.left[target] and count < TARGETS:
+    for target in range(sizes.NODES):
+        if node.left[target] and count < sizes.TARGETS:
             write(node, count, target)
             count += 1
     blank_behind(node, count)
@@ -163,7 +164,7 @@ def path_of(node, target):
 
 def blank_behind(node, count):
     """The DAO names no more."""
-    for i in range(count, TARGETS):
+    for i in range(count, sizes.TARGETS):
         node.dao_target[i] = NOBODY
         node.dao_path[i] = 0
 
@@ -171,23 +172,23 @@ def blank_behind(node, count):
 def told(node):
     """Our parent has the DAO: what it said is owed no more."""
     mark = HERE if node.dao_life else GONE
-    for i in range(TARGETS):
+    for i in range(sizes.TARGETS):
         target = node.dao_target[i]
-        if target < NODES and node.owed[target] == mark:
+        if target < sizes.NODES and node.owed[target] == mark:
             if node.dao_path[i] == path_of(node, target):
                 node.owed[target] = 0
 
 
 def told_left(node):
     """The parent that we left has the DAO."""
-    for i in range(TARGETS):
-        if node.dao_target[i] < NODES:
+    for i in range(sizes.TARGETS):
+        if node.dao_target[i] < sizes.NODES:
             node.left[node.dao_target[i]] = 0
 
 
 def take_report(node, params, target, parent, path):
     """Non-storing mode, the root: a node says who its parent is; 0 if that is old news."""
-    if target >= NODES or parent >= NODES:
+    if target >= sizes.NODES or parent >= sizes.NODES:
         return 0
     if node.via[target] >= 0 and is_newer(node.path[target], path):
         return 0
@@ -203,8 +204,8 @@ def lay_route(node, i):
     """
     at = node.q_dest[i]
     count = 0
-    while at != node.number and count <= ROUTE:
-        at = node.via[at] if at < NODES else NONE
+    while at != node.number and count <= sizes.ROUTE:
+        at = node.via[at] if at < sizes.NODES else NONE
         if at < 0:
             return 0
         count += 1
@@ -212,7 +213,7 @@ def lay_route(node, i):
         return 0
     at = node.q_dest[i]
     for j in range(count - 1):
-        node.q_route[i * ROUTE + count - 2 - j] = at
+        node.q_route[i * sizes.ROUTE + count - 2 - j] = at
         at = node.via[at]
     node.q_length[i] = count - 1
     node.q_next[i] = 0

@@ -1,9 +1,8 @@
 """What nodes and frames of RPL hold."""
 
-from innervate.networks.rpl.protocol.constants import (
+from innervate.networks.rpl.protocol.constants import ETX_MOST, INFINITE
+from innervate.networks.rpl.protocol.sizes import (
     BODY,
-    ETX_MOST,
-    INFINITE,
     NEAR,
     NEIGHBOURS,
     NODES,

@@ -4,31 +4,16 @@ from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import deliver, report, set_timer
 from innervate.dialect.rng import draw
+from innervate.networks.rpl.protocol import kinds, sizes, timers
 from innervate.networks.rpl.protocol.constants import (
-    ACK,
-    ACK_WAIT,
-    BODY,
-    DAO,
-    DAO_ACK,
-    DAO_DELAY,
-    DAO_UP,
-    DATA,
-    DIO,
-    DIS,
     IDLE,
     INFINITE,
     INITIAL,
-    NEIGHBOURS,
     NOBODY,
-    NODES,
     NONE,
-    QUEUE,
     REPORT_FULL,
     REPORT_HOPS,
     REPORT_LOOP,
-    ROUTE_ERROR,
-    TICK,
-    TRICKLE,
 )
 from innervate.networks.rpl.protocol.counters import dag_rank, following
 from innervate.networks.rpl.protocol.downward import (
@@ -65,11 +50,11 @@ LONELY_MAX = 255  # ticks that are counted
 
 def on_start(node, params, now, cause, out):
     """The node is switched on, or has lost its memory; the root says so in DIOs."""
-    for k in range(NEIGHBOURS):
+    for k in range(sizes.NEIGHBOURS):
         node.nbr[k] = NONE
         node.nbr_rank[k] = INFINITE
         node.nbr_etx[k] = 0
-    for i in range(NODES):
+    for i in range(sizes.NODES):
         node.via[i] = NONE
         node.owed[i] = 0
         node.left[i] = 0
@@ -80,7 +65,7 @@ def on_start(node, params, now, cause, out):
         node.fresh = 1 if cause else 0
         node.rank = params.step
         begin_interval(node, params, now, out)
-    set_timer(out, TICK, (now + 1 + draw(node, params.tick_us)) & MASK30)
+    set_timer(out, timers.TICK, (now + 1 + draw(node, params.tick_us)) & MASK30)
 
 
 def begin(node):
@@ -112,7 +97,7 @@ def begin(node):
 
 def on_frame(node, params, now, port, frame, out):
     """A frame was received: acknowledge it if it is for us alone, once if it came before."""
-    if frame.kind == ACK:
+    if frame.kind == kinds.ACK:
         acked(node, params, now, frame, out)
         return
     k = meet(node, params, frame.src, frame.rssi)
@@ -122,13 +107,13 @@ def on_frame(node, params, now, port, frame, out):
             if node.nbr_dsn[k] == frame.dsn:
                 return
             node.nbr_dsn[k] = frame.dsn
-    if frame.kind == DIO:
+    if frame.kind == kinds.DIO:
         if k >= 0:
             hear_dio(node, params, now, k, frame, out)
-    elif frame.kind == DIS:
+    elif frame.kind == kinds.DIS:
         if node.known:
             reset_trickle(node, params, now, out)
-    elif frame.kind == DAO:
+    elif frame.kind == kinds.DAO:
         if node.parent < 0 or node.nbr[node.parent] != frame.src:
             take_dao(node, params, now, frame, out)
     else:
@@ -143,15 +128,15 @@ def on_sent(node, params, now, ok, out):
 
 def on_timer(node, params, now, timer, out):
     """Trickle, a missing acknowledgement, DelayDAO, a tick."""
-    if timer == ACK_WAIT:
+    if timer == timers.ACK_WAIT:
         if node.waiting:
             missed(node, params, now, out)
         return
-    if timer == TRICKLE:
+    if timer == timers.TRICKLE:
         if interval_point(node, params, now, out):
             node.dio_due = 1
-    elif timer == TICK:
-        set_timer(out, TICK, (now + params.tick_us) & MASK30)
+    elif timer == timers.TICK:
+        set_timer(out, timers.TICK, (now + params.tick_us) & MASK30)
         tick(node, params, now, out)
     else:
         node.dao_armed = 0
@@ -193,7 +178,7 @@ def tick(node, params, now, out):
 
 def flush(node, out):
     """Nobody has come who could take our packets."""
-    for _i in range(QUEUE):
+    for _i in range(sizes.QUEUE):
         if node.q_count > 0 and node.under == IDLE:
             give_up(node, out)
 
@@ -207,10 +192,10 @@ def delay_over(node, params, now, out):
         return
     node.dao_wait += 1
     node.dao_armed = 1
-    set_timer(out, DAO_DELAY, (now + AGAIN * params.dao_us) & MASK30)
+    set_timer(out, timers.DAO_DELAY, (now + AGAIN * params.dao_us) & MASK30)
     i = new_place(node)
     if i >= 0:
-        node.q_kind[i] = DAO_UP
+        node.q_kind[i] = kinds.DAO_UP
         node.q_dest[i] = params.root
         node.q_hops[i] = params.hops
         node.q_info[i] = node.nbr[node.parent]
@@ -221,7 +206,7 @@ def take_packet(node, params, now, frame, out):
     """A packet came: for us, or to be passed on; its ranks may say that it goes in circles."""
     error = frame.error
     if frame.back:
-        if frame.dest < NODES and node.via[frame.dest] == frame.src:
+        if frame.dest < sizes.NODES and node.via[frame.dest] == frame.src:
             forget(node, frame.dest)
             schedule(node, params, now, out)
     elif is_astray(node, params, frame):
@@ -257,16 +242,16 @@ def is_astray(node, params, frame):
 def consume(node, params, frame, out):
     """A packet is for us."""
     kind = base_of(frame.kind)
-    if kind == DATA:
+    if kind == kinds.DATA:
         hand_up(node, frame, out)
-    elif kind == DAO_ACK:
+    elif kind == kinds.DAO_ACK:
         if frame.path == node.path_seq:
             node.owed[node.number] = 0
-    elif kind == DAO_UP:
+    elif kind == kinds.DAO_UP:
         if take_report(node, params, frame.origin, frame.info, frame.path):
             answer(node, params, frame, out)
-    elif kind == ROUTE_ERROR:
-        if frame.info < NODES and node.via[frame.info] == frame.origin:
+    elif kind == kinds.ROUTE_ERROR:
+        if frame.info < sizes.NODES and node.via[frame.info] == frame.origin:
             forget(node, frame.info)
 
 
@@ -276,7 +261,7 @@ def answer(node, params, frame, out):
     if i < 0:
         report(out, REPORT_FULL, frame.origin, node.q_count)
         return
-    node.q_kind[i] = DAO_ACK
+    node.q_kind[i] = kinds.DAO_ACK
     node.q_dest[i] = frame.origin
     node.q_hops[i] = params.hops
     node.q_path[i] = frame.path
@@ -284,14 +269,14 @@ def answer(node, params, frame, out):
 
 def hand_up(node, frame, out):
     """A message is for our user."""
-    copy = out.frame[deliver(out, DATA)]
+    copy = out.frame[deliver(out, kinds.DATA)]
     clean(copy)
-    copy.kind = DATA
+    copy.kind = kinds.DATA
     copy.to = node.number
     copy.src = frame.src
     copy.origin = frame.origin
     copy.dest = frame.dest
     copy.hops = frame.hops
     copy.made_at = frame.made_at
-    for j in range(BODY):
+    for j in range(sizes.BODY):
         copy.body[j] = frame.body[j]

@@ -1,26 +1,16 @@
 """Packets that wait to be sent: a ring."""
 
-from innervate.networks.rpl.protocol.constants import (
-    BODY,
-    DAO_ACK,
-    DAO_UP,
-    DATA,
-    NEAR,
-    NOBODY,
-    NONE,
-    QUEUE,
-    ROUTE,
-    TARGETS,
-)
+from innervate.networks.rpl.protocol import kinds, sizes
+from innervate.networks.rpl.protocol.constants import NOBODY, NONE
 
 
 def new_place(node):
     """A place behind all packets, blank; -1 if there is none."""
-    if node.q_count == QUEUE:
+    if node.q_count == sizes.QUEUE:
         return NONE
-    i = (node.q_first + node.q_count) % QUEUE
+    i = (node.q_first + node.q_count) % sizes.QUEUE
     node.q_count += 1
-    node.q_kind[i] = DATA
+    node.q_kind[i] = kinds.DATA
     node.q_origin[i] = node.number
     node.q_dest[i] = node.number
     node.q_from[i] = NOBODY
@@ -33,25 +23,25 @@ def new_place(node):
     node.q_length[i] = 0
     node.q_next[i] = 0
     node.q_made[i] = 0
-    for j in range(ROUTE):
-        node.q_route[i * ROUTE + j] = 0
-    for j in range(BODY):
-        node.q_body[i * BODY + j] = 0
+    for j in range(sizes.ROUTE):
+        node.q_route[i * sizes.ROUTE + j] = 0
+    for j in range(sizes.BODY):
+        node.q_body[i * sizes.BODY + j] = 0
     return i
 
 
 def drop_first(node):
     """The first packet is done with."""
-    node.q_first = (node.q_first + 1) % QUEUE
+    node.q_first = (node.q_first + 1) % sizes.QUEUE
     node.q_count -= 1
     node.rounds = 0
 
 
 def base_of(kind):
     """A kind of frame without what a source route adds."""
-    if kind >= DAO_ACK and kind < DAO_ACK + 3:
-        return DAO_ACK
-    return DATA if kind >= DATA and kind < DATA + 3 else kind
+    if kind >= kinds.DAO_ACK and kind < kinds.DAO_ACK + 3:
+        return kinds.DAO_ACK
+    return kinds.DATA if kind >= kinds.DATA and kind < kinds.DATA + 3 else kind
 
 
 def keep(node, i, frame):
@@ -64,20 +54,20 @@ def keep(node, i, frame):
     node.q_down[i] = frame.down
     node.q_error[i] = frame.error
     node.q_made[i] = frame.made_at
-    if frame.kind > DAO_ACK + 2:
+    if frame.kind > kinds.DAO_ACK + 2:
         node.q_info[i] = frame.info
-    if frame.kind == DAO_UP or node.q_kind[i] == DAO_ACK:
+    if frame.kind == kinds.DAO_UP or node.q_kind[i] == kinds.DAO_ACK:
         node.q_path[i] = frame.path
     if frame.kind != node.q_kind[i]:
         node.q_length[i] = frame.length
         node.q_next[i] = frame.next
-        for j in range(min(frame.length, NEAR)):
-            node.q_route[i * ROUTE + j] = frame.near[j]
-        for j in range(NEAR, frame.length):
-            node.q_route[i * ROUTE + j] = frame.far[j - NEAR]
-    if node.q_kind[i] == DATA:
-        for j in range(BODY):
-            node.q_body[i * BODY + j] = frame.body[j]
+        for j in range(min(frame.length, sizes.NEAR)):
+            node.q_route[i * sizes.ROUTE + j] = frame.near[j]
+        for j in range(sizes.NEAR, frame.length):
+            node.q_route[i * sizes.ROUTE + j] = frame.far[j - sizes.NEAR]
+    if node.q_kind[i] == kinds.DATA:
+        for j in range(sizes.BODY):
+            node.q_body[i * sizes.BODY + j] = frame.body[j]
 
 
 def clean(frame):
@@ -104,14 +94,14 @@ def clean(frame):
     frame.next = 0
     frame.rssi = 0
     frame.made_at = 0
-    for i in range(TARGETS):
+    for i in range(sizes.TARGETS):
         frame.targets[i] = 0
         frame.paths[i] = 0
-    for i in range(NEAR):
+    for i in range(sizes.NEAR):
         frame.near[i] = 0
-    for i in range(ROUTE - NEAR):
+    for i in range(sizes.ROUTE - sizes.NEAR):
         frame.far[i] = 0
-    for i in range(BODY):
+    for i in range(sizes.BODY):
         frame.body[i] = 0
 
 
@@ -120,7 +110,7 @@ def fill(node, i, frame):
     length = node.q_length[i]
     frame.kind = node.q_kind[i]
     if length > 0:
-        frame.kind += 1 if length <= NEAR else 2
+        frame.kind += 1 if length <= sizes.NEAR else 2
     frame.origin = node.q_origin[i]
     frame.dest = node.q_dest[i]
     frame.hops = node.q_hops[i]
@@ -132,9 +122,9 @@ def fill(node, i, frame):
     frame.made_at = node.q_made[i]
     frame.length = length
     frame.next = node.q_next[i]
-    for j in range(NEAR):
-        frame.near[j] = node.q_route[i * ROUTE + j]
-    for j in range(NEAR, ROUTE):
-        frame.far[j - NEAR] = node.q_route[i * ROUTE + j]
-    for j in range(BODY):
-        frame.body[j] = node.q_body[i * BODY + j]
+    for j in range(sizes.NEAR):
+        frame.near[j] = node.q_route[i * sizes.ROUTE + j]
+    for j in range(sizes.NEAR, sizes.ROUTE):
+        frame.far[j - sizes.NEAR] = node.q_route[i * sizes.ROUTE + j]
+    for j in range(sizes.BODY):
+        frame.body[j] = node.q_body[i * sizes.BODY + j]

@@ -1,11 +1,11 @@
 """Neighbours, the preferred parent, our rank: RFC 6550, 8.2, with MRHOF (RFC 6719) on ETX."""
 
 from innervate.dialect.outbox import report
+from innervate.networks.rpl.protocol import sizes
 from innervate.networks.rpl.protocol.constants import (
     ETX_MOST,
     ETX_ONE,
     INFINITE,
-    NEIGHBOURS,
     NOBODY,
     NONE,
     REPORT_DETACHED,
@@ -25,7 +25,7 @@ OF = 4  # of an estimate that a new sample leaves
 
 def place_of(node, who):
     """The place of a neighbour; -1 if it has none."""
-    for k in range(NEIGHBOURS):
+    for k in range(sizes.NEIGHBOURS):
         if node.nbr[k] == who:
             return k
     return NONE
@@ -36,7 +36,7 @@ def meet(node, params, who, rssi):
     k = place_of(node, who)
     if k >= 0:
         return k
-    for i in range(NEIGHBOURS):
+    for i in range(sizes.NEIGHBOURS):
         if node.nbr[i] < 0:
             k = i
     if k < 0:
@@ -55,7 +55,7 @@ def meet(node, params, who, rssi):
 def farthest(node):
     """The neighbour that is missed least: of highest rank, not the parent, not being sent to."""
     k = NONE
-    for i in range(NEIGHBOURS):
+    for i in range(sizes.NEIGHBOURS):
         if i != node.parent and node.nbr[i] != node.to:
             if k < 0 or node.nbr_rank[i] > node.nbr_rank[k]:
                 k = i
@@ -122,7 +122,7 @@ def choose(node, params, now, out):
         return
     best = NONE
     least = NO_WAY
-    for k in range(NEIGHBOURS):
+    for k in range(sizes.NEIGHBOURS):
         cost = cost_of(node, params, k)
         if cost < least:
             best = k
@@ -166,7 +166,7 @@ def detach(node, params, now, out):
     if node.rank == INFINITE:
         return
     report(out, REPORT_DETACHED, node.rank, 0)
-    for k in range(NEIGHBOURS):
+    for k in range(sizes.NEIGHBOURS):
         if node.nbr_rank[k] >= node.rank:
             node.nbr_rank[k] = INFINITE
     if node.nbr_fails[node.parent] < GIVEN_UP:

@@ -7,30 +7,18 @@ is acknowledged, a few times; then the link looks worse, and another way is look
 from innervate.dialect.access import ALL
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import URGENT, report, send, set_timer
+from innervate.networks.rpl.protocol import kinds, sizes, timers
 from innervate.networks.rpl.protocol.constants import (
     A_DAO,
     A_DIO,
     A_DIS,
     A_PACKET,
-    ACK,
-    ACK_WAIT,
-    BODY,
-    DAO,
-    DAO_ACK,
-    DATA,
-    DIO,
-    DIS,
     IDLE,
     INFINITE,
     NOBODY,
-    NODES,
     NONE,
-    QUEUE,
     REPORT_FULL,
     REPORT_NO_ROUTE,
-    ROUTE,
-    ROUTE_ERROR,
-    TARGETS,
 )
 from innervate.networks.rpl.protocol.counters import dag_rank, following
 from innervate.networks.rpl.protocol.downward import (
@@ -67,7 +55,7 @@ def go(node, params, out):
     elif node.dis_due:
         node.dis_due = 0
         node.under = A_DIS
-        blank(node, DIS, ALL, out)
+        blank(node, kinds.DIS, ALL, out)
     elif not node.dao_due or not send_dao(node, params, out):
         node.dao_due = 0
         go_on(node, params, out)
@@ -87,7 +75,7 @@ def send_dao(node, params, out):
 def go_on(node, params, out):
     """Send the first packet that has somewhere to go; those before it are dropped."""
     to = NONE
-    for _i in range(QUEUE):
+    for _i in range(sizes.QUEUE):
         if node.q_count > 0 and to == NONE:
             to = next_hop(node, params, node.q_first)
             if to == NONE:
@@ -111,16 +99,16 @@ def next_hop(node, params, i):
     """
     dest = node.q_dest[i]
     kind = node.q_kind[i]
-    to_any = kind == DATA or kind == DAO_ACK
+    to_any = kind == kinds.DATA or kind == kinds.DAO_ACK
     if to_any and not params.storing:
         if node.number == params.root:
             node.q_down[i] = 1
             return node.q_info[i] if lay_route(node, i) else NONE
         if node.q_length[i] > 0:
             at = node.q_next[i]
-            return node.q_route[i * ROUTE + at - 1] if at <= node.q_length[i] else NONE
+            return node.q_route[i * sizes.ROUTE + at - 1] if at <= node.q_length[i] else NONE
     elif to_any:
-        if dest < NODES and node.via[dest] >= 0:
+        if dest < sizes.NODES and node.via[dest] >= 0:
             node.q_down[i] = 1
             node.q_back[i] = 0
             return node.via[dest]
@@ -147,7 +135,7 @@ def send_dio(node, params, out):
     """Say where we stand; the lowest rank that we ever said counts [RFC 6550, 8.2.2.4]."""
     node.tries = 0
     node.lowest = min(node.lowest, node.rank)
-    frame = blank(node, DIO, ALL, out)
+    frame = blank(node, kinds.DIO, ALL, out)
     frame.version = node.version
     frame.rank = node.rank
     frame.dtsn = node.dtsn
@@ -167,9 +155,9 @@ def transmit(node, params, out):
     """Hand down the frame that is under way."""
     node.waiting = 0
     if node.under == A_DAO:
-        frame = blank(node, DAO, node.to, out)
+        frame = blank(node, kinds.DAO, node.to, out)
         frame.life = node.dao_life
-        for i in range(TARGETS):
+        for i in range(sizes.TARGETS):
             frame.targets[i] = node.dao_target[i]
             frame.paths[i] = node.dao_path[i]
         return
@@ -198,7 +186,7 @@ def sent(node, params, now, ok, out):
         go(node, params, out)
     elif node.under != IDLE and ok:
         node.waiting = 1
-        set_timer(out, ACK_WAIT, (now + params.ack_us) & MASK30)
+        set_timer(out, timers.ACK_WAIT, (now + params.ack_us) & MASK30)
     elif node.under != IDLE:
         missed(node, params, now, out)
 
@@ -207,7 +195,7 @@ def acknowledge(node, frame, out):
     """Say that a frame has come, at once and whatever is on the air."""
     answer = out.frame[send(out, 0, 0, URGENT)]
     clean(answer)
-    answer.kind = ACK
+    answer.kind = kinds.ACK
     answer.to = frame.src
     answer.src = node.number
     answer.dsn = frame.dsn
@@ -256,7 +244,7 @@ def lose_child(node, params, now, out):
     """A child is not reached: what leads to it is forgotten, and DAOs are asked for anew [9.6]."""
     if params.storing:
         forget_child(node, params, now, node.to, out)
-    elif node.to < NODES:
+    elif node.to < sizes.NODES:
         forget(node, node.to)
     node.dtsn = following(node.dtsn)
     reset_trickle(node, params, now, out)
@@ -268,7 +256,7 @@ def tell_root(node, params, missing, out):
     if i < 0:
         report(out, REPORT_FULL, params.root, 0)
         return
-    node.q_kind[i] = ROUTE_ERROR
+    node.q_kind[i] = kinds.ROUTE_ERROR
     node.q_dest[i] = params.root
     node.q_hops[i] = params.hops
     node.q_info[i] = missing
@@ -304,5 +292,5 @@ def new_message(node, params, dest, item, out):
     node.q_dest[i] = dest
     node.q_hops[i] = params.hops
     node.q_made[i] = item.made_at
-    for j in range(BODY):
-        node.q_body[i * BODY + j] = item.body[j]
+    for j in range(sizes.BODY):
+        node.q_body[i * sizes.BODY + j] = item.body[j]

@@ -3,7 +3,7 @@
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import set_timer
 from innervate.dialect.rng import draw
-from innervate.networks.rpl.protocol.constants import TRICKLE
+from innervate.networks.rpl.protocol import timers
 
 MS = 1000
 LONGEST = 19  # bits of an interval, ms: half of what clocks tell apart
@@ -17,7 +17,7 @@ def begin_interval(node, params, now, out):
     node.counter = 0
     node.phase = 0
     node.rest = length - at
-    set_timer(out, TRICKLE, (now + at) & MASK30)
+    set_timer(out, timers.TRICKLE, (now + at) & MASK30)
 
 
 def note_consistent(node):
@@ -39,5 +39,5 @@ def interval_point(node, params, now, out):
         begin_interval(node, params, now, out)
         return False
     node.phase = 1
-    set_timer(out, TRICKLE, (now + node.rest) & MASK30)
+    set_timer(out, timers.TRICKLE, (now + node.rest) & MASK30)
     return params.dio_k == 0 or node.counter < params.dio_k
