@@ -1,5 +1,8 @@
+import json
 import os
 import signal
+import subprocess
+import sys
 
 import pytest
 
@@ -34,6 +37,16 @@ def test_a_closed_pipe_is_no_error(process, tmp_path):
     assert "Traceback" not in started.stderr.read()
     assert started.wait(timeout=TIMEOUT_S) in (0, 141)
     started.stderr.close()
+
+
+def test_with_standard_error_closed_the_answer_is_the_same(tmp_path):
+    command = ["bash", "-c", "exec 2>&-; exec $0 -m innervate.cli run line --json --no-report"]
+    done = subprocess.run(
+        [*command, sys.executable], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
+        timeout=TIMEOUT_S,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    assert json.loads(done.stdout)["headline"]["level"] == "ok"
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")

@@ -200,3 +200,16 @@ def test_mistakes_are_one_line(toy, tmp_path):
         with pytest.raises(PapersError, match=words) as caught:
             main(*arguments)
         assert "\n" not in str(caught.value)
+
+
+def test_two_at_once_in_one_folder_are_one_too_many(toy, tmp_path):
+    said = []
+
+    def at_work(step):
+        with pytest.raises(PapersError, match="another innervate papers is at work in"):
+            main("toy", tmp_path)
+        said.append(step.done)
+
+    main("toy", tmp_path, progress=at_work)
+    assert said
+    assert main("toy", tmp_path, only=["a"]).exists()

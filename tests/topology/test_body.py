@@ -49,8 +49,11 @@ def test_poses_follow_the_joints(tmp_path: Path) -> None:
         (URDF.replace("0.02 0 0", "0.02 0"), "skin_*", "takes three numbers"),
         (URDF.replace("0.02 0 0", "nan 0 0"), "skin_*", "takes three numbers"),
         (URDF.replace('parent link="base"', 'parent link="skin_0"'), "skin_*", "form a ring"),
-        (URDF.replace('<link name="skin_1"/>', 2 * '<link name="skin_0"/>'), "skin_*",
-         'r.urdf has 3 links called "skin_0"; name them apart'),
+        (
+            URDF.replace('<link name="skin_1"/>', 2 * '<link name="skin_0"/>'),
+            "skin_*",
+            'r.urdf has 3 links called "skin_0"; name them apart',
+        ),
     ],
 )
 def test_wrong_files(tmp_path: Path, text: str, pattern: str, words: str) -> None:

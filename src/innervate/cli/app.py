@@ -1,6 +1,7 @@
 """The command `innervate`: which commands there are, and what is done when one fails."""
 
 import io
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -274,6 +275,8 @@ examples.add_to(app)
 
 def main(tokens: Sequence[str] | None = None) -> int:
     """Carry out a command line; its exit code, see docs/commands.md."""
+    if sys.stderr is None:  # closed: what would be said there is no part of the answer
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):  # a terminal that is not UTF-8 gets escapes
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

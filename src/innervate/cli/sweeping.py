@@ -45,7 +45,8 @@ def sweep(file: str, options: SweepOptions) -> int:
                    f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
     drawn = draw_plots(done, folder)
     if options.json:
-        told = record(done, wanted) | {"folder": str(folder), "drawn": [str(path) for path in drawn]}
+        told = {"folder": str(folder), "drawn": [str(path) for path in drawn]}
+        told |= record(done, wanted)
         print(json.dumps(told, indent=2, ensure_ascii=False, allow_nan=False))
     else:
         for line in result_lines(done, wanted):

@@ -6,13 +6,15 @@ is missing: after an interrupt, for other figures, or when the sources have chan
 
 import os
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from innervate.kernel.cache import is_free
 from innervate.network import networks
 from innervate.papers import output
 from innervate.papers.errors import PapersError
@@ -70,21 +72,21 @@ def main(
     """
     paper = book_of(system)
     chosen, folder, mark = _chosen(paper, only), Path(out), stamp()
-    _prepare(folder)
-    store = Store(folder / RESULTS, mark, any_stamp=redraw)
-    there = _there(paper, output.page_of(folder, system), store, quick, chosen)
-    names = [name for name in paper.FIGURES if name in (*chosen, *there)]
-    experiments = [paper.experiment(name) for name in names]
-    book = _Book(folder, store, quick, progress or (lambda step: None), paper.warm_up)
-    started = time.perf_counter()
-    with style.house():
-        book.work(experiments)
-    command = _command(system, quick, names if len(names) < len(paper.FIGURES) else [])
-    heading = output.Heading(
-        system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
-    )
-    wall_s = time.perf_counter() - started
-    return output.write(folder, heading, experiments, book.made, wall_s)
+    with _taken(folder):
+        store = Store(folder / RESULTS, mark, any_stamp=redraw)
+        there = _there(paper, output.page_of(folder, system), store, quick, chosen)
+        names = [name for name in paper.FIGURES if name in (*chosen, *there)]
+        experiments = [paper.experiment(name) for name in names]
+        book = _Book(folder, store, quick, progress or (lambda step: None), paper.warm_up)
+        started = time.perf_counter()
+        with style.house():
+            book.work(experiments)
+        command = _command(system, quick, names if len(names) < len(paper.FIGURES) else [])
+        heading = output.Heading(
+            system, paper.TITLE, paper.AUTHORS, quick, mark, redraw, command, paper.READINGS
+        )
+        wall_s = time.perf_counter() - started
+        return output.write(folder, heading, experiments, book.made, wall_s)
 
 
 def into_page(page: Path, system: str, folder: Path, only: Iterable[str] = ()) -> None:
@@ -161,13 +163,20 @@ def _there(paper: Any, page: Path, store: Store, quick: bool, chosen: Sequence[s
     return others
 
 
-def _prepare(folder: Path) -> None:
+@contextmanager
+def _taken(folder: Path) -> Iterator[None]:
+    """While no other process draws there, where files can be locked at all."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with (folder / RESULTS).open("a", encoding="utf-8"):
-            pass
+        results = (folder / RESULTS).open("a", encoding="utf-8")
     except OSError as error:
         raise PapersError(f"{folder}: {error.strerror or error}; name another folder") from None
+    with results:
+        if not is_free(results):
+            raise PapersError(
+                f"another innervate papers is at work in {folder}; wait for it, or choose --out"
+            )
+        yield
 
 
 @dataclass(slots=True)
