@@ -23,7 +23,6 @@ from innervate.networks.mesh.protocol.standby import (
     SPARE_HOPS,
 )
 from innervate.networks.mesh.sim.simulate import simulate
-from tests.networks.mesh.bench import Frame
 from tests.networks.mesh.net import Net, geometric, line, ring
 from tests.networks.mesh.sim.test_standby import GUARD, SOON, SURE, guarded, kill, leaders
 
