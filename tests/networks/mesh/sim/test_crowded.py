@@ -159,6 +159,31 @@ def test_new_tables_give_hope_for_whom_they_know(mode, left_out, kept):
     assert is_unreachable(node, 2) == kept
 
 
+def test_who_brings_something_from_there_is_asked_first_again():
+    """Behind a bridge there is no other way: the near side was searched, and the packet given up.
+
+    Node 0 has what is for 5 given back once by 1, the bridge, whose acks got lost.
+    """
+    clump = [(a, b) for a in (0, 6, 7, 8) for b in (6, 7, 8) if a < b]
+    bench = settled(9, [(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), *clump])
+    mark_bad(bench.nodes[0], 1, 5)
+    bench.send(5, 0)
+    bench.run(bench.now + 50_000)
+    bench.sent.clear()
+    bench.send(0, 5)
+    bench.run(bench.now + 50_000)
+    first = [f.link_dst for _, i, f in bench.sent if i == 0 and f.kind == DATA]
+    assert first == [1]
+
+
+def test_after_some_ticks_who_gave_packets_back_is_asked_first_again():
+    bench = settled(3, LINE)
+    mark_bad(bench.nodes[0], 1, 2)
+    round = bench.nodes[0].round
+    bench.run(bench.now + 4_500_000)
+    assert (bench.nodes[0].round, is_bad(bench.nodes[0], 1, 2)) == (round, 0)
+
+
 def test_a_new_round_asks_again_who_gave_packets_back_but_not_for_whom_nobody_reaches():
     """Else, where links lose much and no table changes, ever more good neighbours came last."""
     bench = settled(3, LINE)

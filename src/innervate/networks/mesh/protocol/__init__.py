@@ -26,7 +26,8 @@ Instead, all can have the whole graph, or none a table, and the gateway writes r
 neighbour is suspect, and the same packet goes another way (A4): recipient, table, alternate,
 uplink, any neighbour not on the packet's path; else back to its giver (A6, A7). A duplicate cache
 drops what comes again (A12). To whom the table knows no way a packet goes up, where tables come
-first, and whoever brought a packet, or what climbs, is the way to its origin (decision 0044).
+first, and whoever brought a packet, or what climbs, is the way to its origin (decision 0044). Who
+gave one back comes last for that recipient, until it brings one from there, or some ticks are over.
 
 *End to end.* An origin keeps a message until its recipient acknowledges it; both keep to a window
 of sequence numbers, so that a retransmission is delivered once. Timeouts adapt to round trips.
@@ -134,8 +135,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
 | a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns patience   |                |
-| a `rank`   | the gateway's frames, or for it | `hear_of_gateway`: it lives; it  |                |
-|            |                                 | is looked for everywhere         |                |
+| a `rank`   | the gateway's frames            | `hear_of_gateway`: it lives      |                |
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
 | any        | `REQUEST` of another gateway,   | `redirect`: alarms go to it; who |                |
 |            | or `lead`                       | led before is `gone`             |                |
@@ -221,8 +221,8 @@ Timers
 | `RETRY = 4`    | first end-to-end timeout: `e2e_us`, or with `e2e_adapt` 4 round trips; doubled, |
 |                | at most 4 times                                                                 |
 | `JOBS = 5`     | gateway: a table's acks: `job_us`, more by tries, parts and hops; standby:      |
-|                | `guard_us`, so many as stand by before it, more with `patience`; after a        |
-|                | request of a gateway that is new or has no table `collect_us` more              |
+|                | `guard_us`, so many as stand by before it; before a question more with          |
+|                | `patience`; after a request of who is new or has no table `collect_us` more     |
 | `BACKOFF = 0`  | access: a draw below 2^exponent times `backoff_us`                              |
 
 `TIMERS = 6`, of access `TIMERS = 1`. Exponents: `exponent_min` and a transmission each, at most
@@ -319,11 +319,9 @@ Constants and settings
 | `SLACK = 2`                                    | ticks: nodes count them from different moments  |
 | `guard_us`                                     | decision 0042: a standby's wait; one more for   |
 |                                                | each that is before it                          |
-| `IN_VAIN = 4`, `PATIENCE = 12`,                | questions in vain; quarters of one more, and of |
-| `PATIENCE_MAX = 24`                            | a longer wait: at first, after a late answer    |
+| `IN_VAIN = 4`, `PATIENCE = 40`,                | questions in vain; eighths of one more: at      |
+| `PATIENCE_MAX = 64`                            | first, after a late answer (decision 0067)      |
 | `SPARE_HOPS = 3`                               | decision 0053: of a question, beyond the depth  |
-| `EVERYWHERE = 14`                              | decision 0049: so many had a packet for the     |
-|                                                | gateway: no patience                            |
 | `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | neighbours in a response: counted; table-free   |
 | `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |
 |                                                | MTU of 64                                       |

@@ -209,11 +209,18 @@ def is_unreachable(node, dest):
 
 def mark_reachable(node, dest):
     """`dest` is heard of: it is not unreachable, and searches wait no longer than at first."""
+    if forget_bad(node, UNREACHABLE, dest):
+        node.search_backoff = 0
+
+
+def forget_bad(node, who, dest):
+    """`who` leads to `dest` after all: 1 if it counted as one that gave back a packet for it."""
+    found = 0
     for k in range(SKIPS):
-        if node.bad_dest[k] == dest:
-            if node.bad_neighbour[k] == UNREACHABLE:
-                node.bad_neighbour[k] = ALL
-                node.search_backoff = 0
+        if node.bad_neighbour[k] == who and node.bad_dest[k] == dest:
+            node.bad_neighbour[k] = ALL
+            found = 1
+    return found
 
 
 def retry_unreachable(node):
@@ -228,10 +235,10 @@ def retry_unreachable(node):
 
 
 def forgive(node):
-    """A new round: whoever gave packets back may lead on now, even where no table changes.
+    """After some ticks, and in a new round: whoever gave packets back may lead on now.
 
-    Where links lose much a packet comes back from good neighbours, too, one by one; without new
-    tables they would never be asked first again.
+    Where links lose much a packet comes back from good neighbours, too, one by one; what is for
+    those behind a bridge would be looked for on the near side alone.
     """
     for k in range(SKIPS):
         if node.bad_neighbour[k] != UNREACHABLE:

@@ -136,7 +136,7 @@ OWN = (
     ("quiet", 0, 0, 65535, "ticks", "since the newest request"),
     ("leading", 0, 0, 1, "flag", "we are the gateway now"),
     ("silent", 0, 0, 15, "waits", "standby: since the gateway's newest sign of life"),
-    ("patience", 0, 0, 24, "quarters", "standby: of a question more in vain, and of longer waits"),
+    ("patience", 0, 0, 64, "eighths", "standby: of a question more in vain, for answers were late"),
     ("places", 0, QUEUE, PLACES_MAX, "frames", "our queue holds"),
     ("kept", 0, WAITING, PLACES_MAX, "messages", "are kept until acknowledged end to end"),
     ("round_trip", 0, 0, 16777215, "us", "smoothed, of end-to-end acks; 0 unknown"),

@@ -53,6 +53,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.duplicates import (
     age,
     clear_duplicates,
+    forgive,
     mark_reachable,
     record_packet,
     retry_unreachable,
@@ -182,7 +183,7 @@ def on_frame(node, gate, params, now, port, frame, out):
         hear_again(node, params, frame.link_src)
         return
     k = hear(node, params, frame.link_src, frame.rssi)
-    hear_of_gateway(node, params, now, frame, out)
+    hear_of_gateway(node, frame)
     if frame.kind == ACK:
         on_hop_ack(node, params, now, frame, k, out)
     elif frame.link_dst == ALL:
@@ -343,6 +344,7 @@ def on_tick(node, gate, params, now, out):
     age(node, params)
     if node.ticks & ((UNREACHABLE_TICKS << node.search_backoff) - 1) == 0:
         retry_unreachable(node)
+        forgive(node)
     watch(node, params, now, out)
     if node.robot and node.placed:
         repeat_alarm(node, params, now, out)

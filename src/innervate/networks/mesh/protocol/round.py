@@ -179,7 +179,9 @@ def is_spared(node, frame):
 def arm_guard(node, params, now, out):
     """A standby looks again whether the gateway lives, the later the more there are before it."""
     if node.rank >= 0 and params.guard_us:
-        waits = max(node.rank, 1) + (node.patience >> 2)
+        waits = max(node.rank, 1)
+        if node.silent == 0:  # who is answered late asks less often
+            waits = waits + (node.patience >> 5)
         set_timer(out, JOBS, (now + params.guard_us * waits) & MASK30)
 
 

@@ -18,7 +18,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLES,
     WHOLE_GRAPH,
 )
-from innervate.networks.mesh.protocol.duplicates import forwarded_at, is_bad, is_skipped
+from innervate.networks.mesh.protocol.duplicates import forget_bad, forwarded_at, is_bad, is_skipped
 from innervate.networks.mesh.protocol.frames import was_at
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
@@ -49,7 +49,9 @@ def learn_way(node, params, frame):
     """Who brought a packet leads to its origin, as far as no table says who does.
 
     The answer goes back so, and what follows it: nobody has to search for a way that was found.
+    If it gave packets for the origin back before, it leads there now.
     """
+    forget_bad(node, frame.link_src, frame.origin)
     if params.mode == TABLES and params.failover == SEARCH:
         at = node.bank * params.width + frame.origin
         if node.version == 0 or node.next[at] == NONE:

@@ -7,7 +7,6 @@ sent and a standby hears is an answer, too.
 from innervate.networks.mesh.protocol.constants import (
     ALARMS,
     ALL,
-    DETOURED,
     GRAPH,
     PARTS_MAX,
     TABLES,
@@ -22,18 +21,16 @@ from innervate.networks.mesh.protocol.send import send_on
 from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_edges
 
 IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
-PATIENCE = 12  # quarters, at first
-PATIENCE_MAX = 24  # after an answer that came late
-SPARE_HOPS = 3  # of a question of who has no patience: it is not looked for everywhere
-EVERYWHERE = 14  # nodes that had a packet for the gateway: then it does not answer anybody
+PATIENCE = 40  # eighths of a question more, at first
+PATIENCE_MAX = 64  # after an answer that came late
+SPARE_HOPS = 3  # of a question: it is not looked for everywhere
 
 
-def hear_of_gateway(node, params, now, frame, out):
+def hear_of_gateway(node, frame):
     """What a frame says of the gateway, or of the one before it: whoever made it lives.
 
     Without a table it leads no more. Where more than one question was needed, a few in vain prove
-    nothing; but whoever has something for a gateway that is looked for everywhere does: links that
-    lose much, or a full channel, make for detours that are not as long.
+    nothing.
     """
     if frame.origin == node.gone:
         node.gone = ALL
@@ -41,28 +38,20 @@ def hear_of_gateway(node, params, now, frame, out):
         if node.silent > 2:
             node.patience = PATIENCE_MAX
         node.silent = 0
-    if node.patience and frame.dest == node.gateway and frame.path_len >= EVERYWHERE:
-        if frame.flags & DETOURED:
-            node.patience = 0
-            arm_guard(node, params, now, out)
 
 
 def guard(node, gate, params, now, out):
-    """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain.
-
-    Who is patient has its question looked for everywhere: that tells it whether it need be.
-    """
+    """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain."""
     node.silent = node.silent + 1
     if node.silent == 1:
         node.patience = max(node.patience - 1, 0)
-    elif node.silent > 1 + IN_VAIN + (node.patience >> 2):
+    elif node.silent > 1 + IN_VAIN + (node.patience >> 3):
         lead(node, gate, params, now, out)
         return
     else:
         i = compose(node, now, ALARMS, GRAPH, node.gateway, 0, out)
         if i >= 0:
-            if not node.patience:
-                node.q_ttl[i] = min(node.depth + SPARE_HOPS, TTL)
+            node.q_ttl[i] = min(node.depth + SPARE_HOPS, TTL)
             fill_graph(node, gate, params, i, gate.part, 0)  # of no parts: a question
             send_on(node, params, now, i, out)
         kick(node, params, now, out)
