@@ -93,7 +93,18 @@ def restarts(stage):
 
 def stall(stage):
     """A process gets no processor for a while."""
-    stage.chance.choice(stage.hosts).stall(stage.chance.choice((0.02, 0.1, 0.5, 3.0)))
+    host, some_s = stage.chance.choice(stage.hosts), stage.chance.choice((0.02, 0.1, 0.5, STALL_S))
+    if host.life is None or host.life.loop.stalled_until <= stage.world.now + STALL_S * SECOND:
+        host.stall(some_s)
+
+
+def held_up(stage):
+    """A process is stopped for long, as by SIGSTOP, and then finds what came meanwhile."""
+    now, shortest_s = stage.world.now, stage.chance.choice((5, 60))
+    some_s = stage.chance.uniform(shortest_s, 150) * (10 if stage.plan.slow > 1 else 1)
+    if all(host.life is None or host.life.loop.stalled_until <= now for host in stage.hosts):
+        left_s = (stage.storm_ends - now) / SECOND
+        stage.chance.choice(stage.hosts).stall(min(some_s, left_s))
 
 
 def clock(stage):
@@ -129,18 +140,21 @@ USUAL = {lossy: 4, doubled: 2, changing: 2, late: 2, sluggish: 1, cut: 4, flappi
 SEALED = (rotation, replays)
 OPEN_ONLY = (full,)  # see test_known.py
 EVERY_S = (0.3, 1.0, 4.0)
+NAMED = {held_up: 4}  # where a plan says so
+STALL_S = 3.0
 RARELY = 60  # so much more time passes between them where a mesh is slow
-BY_NAME = {hurt.__name__: hurt for hurt in USUAL}
 
 
 def storm(stage, seconds):
     """Hurt a network for so long."""
     stage.storm += 1
     stage.quiet_since = None
+    stage.storm_ends = stage.world.now + int(seconds * SECOND)
     named = stage.plan.hurts
-    usual = {one: weight for one, weight in USUAL.items()
+    usual = {one: weight for one, weight in {**USUAL, **NAMED}.items()
              if (one.__name__ in named if named is not None
-                 else one not in (OPEN_ONLY if stage.plan.sealed else SEALED))}  # fmt: skip
+                 else one not in (OPEN_ONLY if stage.plan.sealed else SEALED)
+                 and (one in USUAL or stage.plan.held_up))}  # fmt: skip
     at_s, every_s = 0.0, stage.chance.choice(EVERY_S) * (RARELY if stage.plan.slow > 1 else 1)
     while usual and at_s < seconds:
         hurt = stage.chance.choices(list(usual), list(usual.values()))[0]

@@ -2,11 +2,15 @@
 
 from collections import Counter
 from itertools import combinations
+from types import SimpleNamespace
 
 from innervate.live import files
 from innervate.live.receipts import DELIVERED, FINAL
+from innervate.networks.mesh.live.parameters import IP
+from innervate.networks.mesh.protocol.timeout import lifetime
 from tests.livesim.checks import Messages
 from tests.livesim.host import TERM
+from tests.livesim.slowly import Slowly
 from tests.livesim.stage import GRACE_S, Stage
 from tests.livesim.world import SECOND, PowerCut, inside
 
@@ -15,6 +19,7 @@ AGAIN_TICKS = 120
 ENDS_S = 60.0  # a message has its end, if its sender lives
 GONE_S = 30.0  # a message to a node that is not there has its end
 TICK_US = 250_000
+TRIED_S = 26.25
 ALL = 255
 PIECES_MOST = 16 * 65_536  # bytes of messages that a node puts together
 PIECES_EACH = 2  # of a sender
@@ -35,6 +40,9 @@ class Plan:
         long: share of messages that are longer than a frame.
         in_c: every so many-th node runs its protocol as C; 0 = none does.
         slow: by how much its ticks are longer than usual.
+        near_ends: counters have nearly gone round when it begins.
+        held_up: now and then a process is stopped for long.
+        longer_s: so much longer than usual a message may be tried, as its recipient remembers.
     """
 
     def __init__(self, world, **given):
@@ -55,10 +63,16 @@ class Plan:
         self.long = longer.choice((0.0, 0.05, 0.3))
         self.in_c = 0
         self.slow = 1
+        self.near_ends = False
+        self.held_up = world.chance("long stops").random() < 0.15
+        if self.held_up:
+            self.storm_s = 300
         self.old_lives = False  # what a process received is played back to those after it, too
         for name, value in given.items():
             assert hasattr(self, name), name
             setattr(self, name, value)
+        tried = SimpleNamespace(forget=IP["forget"], tick_us=TICK_US * self.slow)
+        self.longer_s = max(0.0, lifetime(tried) / 1e6 - TRIED_S)
         self.links = links(chance, self.nodes)
         if self.multicast:
             self.links = list(combinations(range(self.nodes), 2))
@@ -78,6 +92,7 @@ class Weeks(Plan):
             "rate": chance.choice((0.005, 0.02, 0.1)),
             "standbys": chance.randint(0, 2),
             "multicast": chance.random() < 0.05,
+            "near_ends": world.chance("ends").random() < 0.5,
         }
         super().__init__(world, **slow | given)
 
@@ -98,11 +113,12 @@ class Mesh(Stage):
 
     def __init__(self, world, plan):
         super().__init__(world, plan)
-        self.messages = Messages(self, ENDS_S)
+        self.messages = Messages(self, ENDS_S + plan.longer_s)
         self.look_s = 0.2 * plan.slow
         self.places = {}
         self.is_sending = False
         self.lengths = world.chance("lengths")
+        self.slowly = Slowly(self) if plan.slow > 1 else None
 
     def file(self, number):
         """The text of a node's file, with the keys as they are now."""
@@ -126,9 +142,13 @@ class Mesh(Stage):
             self.messages.handed_up(number, life, sender, payload, in_order)
 
         life.node.receive_messages(take, in_order=in_order)
+        if self.slowly:
+            self.slowly.listen(life)
 
     def begin(self):
         """Start all nodes, and users who send."""
+        if self.plan.near_ends:
+            self.slowly.near_ends()
         super().begin()
         self.world.after(self.look_s, self._look)
         self.world.after(1.0, self._send_some)
@@ -139,6 +159,8 @@ class Mesh(Stage):
             if host.life is not None:
                 self._look_at_pieces(host.life)
         self.messages.forget()
+        if self.slowly:
+            self.slowly.look()
         self.world.after(self.look_s, self._look)
 
     def _look_at_pieces(self, life):
@@ -248,10 +270,12 @@ class Mesh(Stage):
         gone, *others = self.chance.sample(running, 4)
         gone.kill()
         sent = [self.send(host, gone.number) for host in others]
-        self.world.run(GONE_S)
+        self.world.run(GONE_S + self.plan.longer_s)
         for one in sent:
             if one.receipt.state not in FINAL:
                 self.world.fail(f"message {one.ident} to a node that is gone has no end")
+        if self.slowly:
+            self.slowly.gone()
         self.world.check()
 
     def drain(self):

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from tests.livesim import hurts, mesh, radio, skin
 from tests.livesim.checks import Nonces
+from tests.livesim.slowly import MET_S
 from tests.livesim.world import SECOND, Broken, World
 
 
@@ -77,17 +78,25 @@ def _mesh(world, watch, told, given, plan_of=mesh.Plan):
 
 def _mesh_storm(world, stage):
     """Hurt it, heal it, and look whether all is as it was."""
-    plan = stage.plan
+    plan, slowly = stage.plan, stage.slowly
     stage.is_sending = True
     hurts.storm(stage, plan.storm_s)
     world.run(plan.storm_s)
     hurts.over(stage)
     stage.is_sending = False
-    world.run(stage.again_s())
+    if slowly:
+        world.run(MET_S)
+        slowly.met()
+    world.run(stage.again_s() - (MET_S if slowly else 0))
     sent = stage.everybody_reaches_everybody()
     world.run(10.0)
     stage.check_reach(sent)
-    world.run(mesh.ENDS_S - 10.0 + plan.calm_s)
+    if slowly:
+        slowly.heard()
+    rest_s = mesh.ENDS_S + plan.longer_s - 10.0 + plan.calm_s
+    world.run(rest_s)
+    if slowly:
+        slowly.rested(rest_s)
     stage.messages.look()
     stage.check_memory()
     stage.check_rest()

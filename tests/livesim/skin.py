@@ -31,6 +31,9 @@ class Plan:
         self.delay_us = (50, 300)
         self.in_c = 0
         self.slow = 1
+        self.held_up = world.chance("long stops").random() < 0.15
+        if self.held_up:
+            self.storm_s = 300
         self.old_lives = False
         for name, value in given.items():
             assert hasattr(self, name), name

@@ -41,6 +41,14 @@ def test_who_was_switched_on_again_is_heard_by_all_and_in_order(seed):
     assert runs.run(seed, "mesh").broken == []
 
 
+# A node that was stopped for two minutes passed on what had waited at its sockets.
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [7, 9])
+def test_what_waits_for_who_was_stopped_for_long_does_not_come_twice(seed):
+    hurts = ("held_up", "lossy", "cut")
+    assert broken(seed, storm_s=300, rate=10, long=0.0, hurts=hurts) == []
+
+
 # The last pieces of two long messages were tried one after the other, and in vain, for 52 s.
 @pytest.mark.slow
 def test_who_was_started_anew_says_which_long_messages_it_cannot_have():

@@ -66,7 +66,8 @@ def test_what_was_under_way_has_expired_and_says_why(seconds):
 @pytest.mark.parametrize(("seconds", "settings"), [(14, {}), (100, {"tick_us": 2_000_000})])
 def test_a_while_that_others_remember_is_no_matter(seconds, settings):
     found, begun, _ = held_up(seconds, **settings)
-    assert found[2:] == (DELIVERED, found[3]) and found[3][-1] == b"after"
+    assert found[2:] == (DELIVERED, found[3])
+    assert found[3][-1] == b"after"
     assert begun == [0, 0]
 
 
