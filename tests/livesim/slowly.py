@@ -17,7 +17,7 @@ HANDSHAKES = 2  # on a path, with each renewal: both may begin one
 GONE_TICKS = 130  # nodes are gone: so soon nobody knows them, no table has them, no session is left
 TICK_S = 0.25
 TICKS_END, EPOCHS_END = 65_536, 256
-USES_LEFT = 40  # of a session, where very much was sealed in it
+USES_LEFT = 12  # of a session, where very much was sealed in it
 FIRST = range(seal.FIRST, 256)
 
 
