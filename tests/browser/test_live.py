@@ -74,10 +74,15 @@ def test_a_station_is_cut_off_and_let_back(look, short, monkeypatch):
     with up(RADIO, short, monkeypatch), serving("live") as address:
         page, other = look(address), look(address, colours="dark")
         expect(page.locator("#unconnected .more")).to_have_text("of 3 stations")
+        page.keyboard.press("?")
+        expect(page.locator("#keys")).to_contain_text("kill or revive the node")
+        for absent in ("pause or go on", "one event further", "slower", "next colouring"):
+            expect(page.locator("#keys dd", has_text=absent)).to_be_hidden()
+        page.keyboard.press("Escape")
         expect(page.locator("#timeline")).to_be_hidden()
         click(page, "s1")
         expect(page.locator("#selected-facts")).to_have_text("cut off")
-        expect(page.locator("#headline")).to_contain_text("Robot s1 is off")
+        expect(page.locator("#headline")).to_contain_text("Robot s1 is silent")
         expect(other.locator("#unconnected output")).to_have_text("1")
         click(other, "s1")
         expect(page.locator("#selected-facts")).to_have_text("idle")

@@ -278,6 +278,8 @@ def test_keys_are_listed(look, skin):
     page.keyboard.press("?")
     expect(page.locator("#help")).to_be_visible()
     assert "cut or heal the link" in text(page, "#keys")
+    expect(page.locator("#keys dd", has_text="pause or go on")).to_be_visible()
+    expect(page.locator("#keys dd", has_text="next colouring")).to_be_visible()
     page.keyboard.press("Escape")
     expect(page.locator("#help")).to_be_hidden()
 

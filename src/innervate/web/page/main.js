@@ -2,7 +2,7 @@
 import { setUpTheme } from "./colours.js";
 import { CommandBox } from "./command.js";
 import { Controls } from "./controls.js";
-import { setUpKeys } from "./keys.js";
+import { setUpKeys, showKeys } from "./keys.js";
 import { showLegend } from "./legend.js";
 import { Network } from "./network.js";
 import { Card, Log, commandFor, showNumbers, showState } from "./panel.js";
@@ -134,6 +134,7 @@ function showScene(scene) {
     ["look", "only selects"],
   ]);
   $("stage").classList.toggle("acts", acts);
+  showKeys(new Set([...can, acts && "act", choices.length > 1 && "colour"]));
   $("stage").setAttribute("aria-label", `Map of ${scene.name}: `
     + `${plural(scene.nodes.length, "node")}, ${plural(scene.links.length, "link")}`);
   const runs = scene.kind === "radio" && !isLive; // nobody tells who sent when
@@ -219,14 +220,14 @@ $("zoom-in").addEventListener("click", () => stage.zoomBy(1.5));
 $("zoom-out").addEventListener("click", () => stage.zoomBy(1 / 1.5));
 $("zoom-fit").addEventListener("click", () => stage.fit());
 setUpKeys([
-  [" ", "Space", "pause or go on", () => controls.toggle()],
-  [".", ".", "one event further, when paused", () => send({ do: "step" })],
-  ["[", "[", "slower", () => controls.shift(-1)],
-  ["]", "]", "faster", () => controls.shift(1)],
+  [" ", "Space", "pause or go on", () => controls.toggle(), "pause"],
+  [".", ".", "one event further, when paused", () => send({ do: "step" }), "step"],
+  ["[", "[", "slower", () => controls.shift(-1), "speed"],
+  ["]", "]", "faster", () => controls.shift(1), "speed"],
   ["+", "+", "zoom in", () => stage.zoomBy(1.5)],
   ["-", "−", "zoom out", () => stage.zoomBy(1 / 1.5)],
   ["0", "0", "show all", () => stage.fit()],
-  ["c", "c", "next colouring", nextColour],
+  ["c", "c", "next colouring", nextColour, "colour"],
   ["t", "t", "light, dark or as the system", () => nextTheme()],
 ]);
 
