@@ -50,6 +50,10 @@ def test_a_rate_is_a_mean_and_waits_are_drawn():
     assert min(waits) >= 1
 
 
+def test_of_the_least_of_all_rates_nothing_comes():
+    assert times(start_s=2, rate_hz=5e-324) == []
+
+
 def test_jitter_comes_late_by_no_more_than_it_says():
     at = times(start_s=2, every_s=0.1, jitter_s=0.05)
     late = [one - 2 * SECOND - 100_000 * k for k, one in enumerate(at)]

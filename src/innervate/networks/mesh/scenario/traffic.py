@@ -149,7 +149,8 @@ def _times(flow: FlowTable, settled_s: float, duration_us: int, draw: Stream) ->
     jitter_us = round(flow.jitter_s * 1e6)
     periodic = flow.every_s is not None or flow.rate_hz is not None
     most = flow.count or (OFFERS_MAX + 1 if periodic else 1)
-    mean_us = max(1, round(1e6 / flow.rate_hz)) if flow.rate_hz is not None else 0
+    # The least of all numbers is a rate, too: its wait is longer than any run.
+    mean_us = max(1, round(min(1e6 / flow.rate_hz, 1e18))) if flow.rate_hz is not None else 0
     every_us = round((1.0 if flow.every_s is None else flow.every_s) * 1e6)
     found: list[int] = []
     at += exponential(draw, mean_us) if mean_us else 0
