@@ -140,7 +140,7 @@ def test_a_network_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
         raise OSError(28, "no space left")
 
     monkeypatch.setattr(Path, "write_text", fails)
-    with pytest.raises(OSError, match="no space left"):
+    with pytest.raises(errors.UserError, match="talk cannot be written: no space left"):
         making.make(tmp_path / "talk", "cables")
     assert list(tmp_path.iterdir()) == []
 

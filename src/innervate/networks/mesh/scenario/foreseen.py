@@ -21,7 +21,7 @@ HALF = 0.5
 # with eight such links each 92, 60, 38 or 23 %.
 ACKED_MIN = RATIO_MIN / (ALL_ACKED + 1)
 # What a standby waits on links that lose much (decision 0066), and as the template has it.
-PATIENT_US = 1_000_000
+PATIENT_US = 500_000
 ON_A_LEG = 8  # places that are looked at between two points of a robot's way
 MOMENTS_MAX = 300
 BadLinks = dict[int, tuple[float, int, int]]  # by node, see _badly_reached()

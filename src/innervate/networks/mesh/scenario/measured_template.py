@@ -27,7 +27,7 @@ COMMENTS = {  # of the keys of [import], in their order
 TUNED = {
     "copies": 4, "transmissions": 10, "jitter_s": 0.1, "listen_s": 1.0, "spread_s": 0.4,
     "collect_s": 4.0, "period_s": 10.0, "period_max_s": 20.0, "table_tries": 3, "e2e_s": 3.0,
-    "e2e_tries": 8, "forget_s": 120.0, "guard_s": 1.0,
+    "e2e_tries": 8, "forget_s": 120.0, "guard_s": 0.5,
 }  # fmt: skip
 # In large networks, and where a hub has many neighbours that do not hear each other, what they
 # pass on meets at it: they have to take their time, and tables do not get through.
