@@ -62,6 +62,14 @@ def test_a_cable_is_named_once_by_both_its_ends():
     assert live_status.broken(told) == ["broken: n0 port 0 - n1 port 0", "broken: n1 port 0"]
 
 
+def test_nodes_that_have_one_number_are_named():
+    nodes = (("mesh", "n0", 0), ("mesh", "arm", 1), ("mesh", "leg", 1), ("skin", "c1", 1))
+    told = [dict(zip(("kind", "name", "number"), node, strict=True)) for node in nodes]
+    told.append({"kind": "skin", "name": "pc"})
+    same = "number 1: arm and leg have it; in one network others take them for the same node"
+    assert live_status.twins(told) == [same]
+
+
 def test_nodes_are_in_order_of_their_numbers(tmp_path, monkeypatch):
     monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
     for name in ("n10", "pc", "n2", "n0"):

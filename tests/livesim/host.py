@@ -206,6 +206,10 @@ class Life(Machine):
         self._check()
         return str(path) in self.host.disk.names
 
+    def inode(self, path):
+        self._check()
+        return 1
+
     def read_text(self, path):
         self._check()
         return self.host.disk.read_text(path)

@@ -63,7 +63,7 @@ def show(names: list[str], as_json: bool) -> int:
         for one in told:
             for line in live_status.lines(one):
                 print(line)
-        for line in live_status.broken(told):
+        for line in (*live_status.twins(told), *live_status.broken(told)):
             print(line)
     for path in silent:
         print(f"{path.stem}: does not answer; its process was killed, or hangs", file=sys.stderr)

@@ -36,6 +36,16 @@ def broken(told: list[dict[str, Any]]) -> list[str]:
     return [f"broken: {' - '.join(ends)}" for ends in found.values()]
 
 
+def twins(told: list[dict[str, Any]]) -> list[str]:
+    """A line for each number that several of these nodes have."""
+    names: dict[tuple[str, int], list[str]] = {}
+    for one in told:
+        if "number" in one:
+            names.setdefault((one["kind"], one["number"]), []).append(one["name"])
+    return [f"number {number}: {' and '.join(both)} have it; in one network others take them for "
+            "the same node" for (_, number), both in names.items() if len(both) > 1]  # fmt: skip
+
+
 def lines(told: dict[str, Any]) -> list[str]:
     """A node's status, line by line."""
     from innervate.web.live_map import is_put_out

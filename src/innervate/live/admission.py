@@ -64,14 +64,23 @@ class BoundedListener:
 
     def close(self) -> None:
         """Listen no more; whoever is in is hung up on."""
+        self._turn_away()
+        for task in self._inside:
+            task.cancel()
+
+    def move(self, sock: socket.socket) -> None:
+        """Listen at another socket from now on; whoever is in stays."""
+        self._turn_away()
+        self._sock = sock
+        self.open()
+
+    def _turn_away(self) -> None:
         if self._sock.fileno() < 0:
             return
         self._loop.remove_reader(self._sock.fileno())
         if self._rest is not None:
             self._rest.cancel()
         self._sock.close()
-        for task in self._inside:
-            task.cancel()
 
     def _knock(self) -> None:
         for _ in range(self._bounds.burst):

@@ -138,6 +138,12 @@ class Machine:
         """True if there is such a file."""
         return path.exists()
 
+    def inode(self, path: Path) -> int:
+        """Which file bears this name; 0 = none does."""
+        with suppress(OSError):
+            return path.lstat().st_ino
+        return 0
+
     def read_text(self, path: Path) -> str:
         """What stands in a file; UnicodeDecodeError if that is no text."""
         return path.read_text(encoding="utf-8")

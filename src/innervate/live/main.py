@@ -137,7 +137,13 @@ class Process:
         self._say(f"keys reloaded: {keys.use} seals after {keys.grace_s:g} s{restart}")
 
     def _look(self) -> None:
-        """Say what is the matter with state's file, callers and network, once in a while."""
+        """Say what is the matter with files, callers and network, once in a while."""
+        try:
+            self.server.look()
+        except LiveError as error:
+            self.notices.tell("socket", f"{error}; going on, trying again")
+        else:
+            self.notices.over("socket", f"{self.server.path}: there again")
         state = self.node.state
         if state.trouble:
             text = f"{state.path}: cannot be written: {state.trouble}; going on, trying again"
@@ -181,7 +187,7 @@ class Process:
         machine().say(f"{self.loaded.name}: {text}")
 
     async def _answer(self, request: dict[str, Any], writer: status.Writer) -> None:
-        what = request.get("do")
+        what = str(request["do"])
         if what == "status":
             await writer.line(self.node.status())
         elif what == "capture":
@@ -191,8 +197,10 @@ class Process:
         elif what == "listen":
             await self._listen(request, writer)
         elif what in ("cut", "restore", "loose"):
-            loss = float(request["loss"]) if what == "loose" else 0.0
-            path = self.node.change(int(request["port"]), what, loss)
+            port, loss = request["port"], request["loss"] if what == "loose" else 0.0
+            if type(port) is not int or type(loss) not in (int, float):
+                raise ValueError("port is a whole number, loss a share from 0 to 1")
+            path = self.node.change(port, what, float(loss))
             await writer.line({"path": path.name, "cut": path.cut, "loss": path.loss})
         elif what in self.node.requests:
             await writer.line(self.node.requests[what](request))
@@ -203,7 +211,8 @@ class Process:
             await writer.line({"ok": True})
         else:
             known = ", ".join((*REQUESTS, *self.node.requests))
-            raise ValueError(f'a request has "do": {known}')
+            kind = self.loaded.table.kind
+            raise ValueError(f'a {kind} node cannot do "{what}"; it can: {known}')
 
     def _revoke(self, data: bytes) -> dict[str, Any]:
         sealer = self.node.sealer

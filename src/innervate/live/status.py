@@ -147,14 +147,12 @@ class Server:
         self._counts = Counter() if counts is None else counts
         self._handle = handle
         self.listener: BoundedListener | None = None
+        self._inode = 0
 
     async def start(self) -> None:
         """Listen; LiveError if the socket cannot be made, or a running node has it."""
         try:
-            if self.is_ours:  # somebody else can have been quicker to make it
-                self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
-                private.checked(self.path.parent)
-            sock = machine().listen_at(self.path)
+            sock = self._bind()
             self.listener = BoundedListener("status", sock, self._serve, BOUNDS, self._counts)
             try:
                 self.listener.open()
@@ -162,14 +160,36 @@ class Server:
                 await self.stop()
                 raise
         except OSError as error:
-            raise LiveError(f"{self.path}: no socket here: {error.strerror or error}") from None
+            raise self._none_here(error) from None
+
+    def _bind(self) -> socket.socket:
+        if self.is_ours:  # somebody else can have been quicker to make it
+            self.path.parent.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+            private.checked(self.path.parent)
+        sock = machine().listen_at(self.path)
+        self._inode = machine().inode(self.path)
+        return sock
+
+    def _none_here(self, error: OSError) -> LiveError:
+        return LiveError(f"{self.path}: no socket here: {error.strerror or error}")
+
+    def look(self) -> None:
+        """Make the socket anew if somebody took it away; LiveError as of `start`."""
+        if self.listener is None or machine().inode(self.path) == self._inode:
+            return
+        try:
+            self.listener.move(self._bind())
+        except OSError as error:
+            raise self._none_here(error) from None
 
     async def stop(self) -> None:
         """Close the socket and every connection."""
-        if self.listener is not None:
-            self.listener.close()
-            with suppress(OSError):
-                machine().remove(self.path)
+        listener, self.listener = self.listener, None
+        if listener is not None:
+            listener.close()
+            if machine().inode(self.path) == self._inode:  # else it is another's by now
+                with suppress(OSError):
+                    machine().remove(self.path)
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
         writer = Writer(stream, reader)
@@ -187,7 +207,9 @@ async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
         if not isinstance(request, dict):
             raise ValueError("a request is a JSON object")
         await handle(request, writer)
-    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
+    except KeyError as error:
+        await writer.line({"error": f'this request needs "{error.args[0]}"'})
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
         await writer.line({"error": str(error)})
 
 

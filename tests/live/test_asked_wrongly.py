@@ -1,0 +1,70 @@
+"""A node's socket comes back when somebody takes it away, and says in words what it cannot do."""
+
+import asyncio
+import json
+import shutil
+import socket
+from collections import Counter
+
+import pytest
+
+from innervate.live import status
+from innervate.live.errors import LiveError
+from tests.live.test_trouble import running, wait_until
+
+WRONG = [
+    ({"do": "command", "code": 1}, 'a mesh node cannot do "command"; it can: status, send, '),
+    ({"do": ["status"]}, "a mesh node cannot do \"['status']\"; it can: status, send, "),
+    ({"to": 3}, 'this request needs "do"'),
+    ({"do": "cut"}, 'this request needs "port"'),
+    ({"do": "cut", "port": None}, "port is a whole number, loss a share from 0 to 1"),
+    ({"do": "loose", "port": 0, "loss": "much"}, "port is a whole number, loss a share from 0 "),
+]
+
+
+def test_a_nodes_socket_that_was_taken_away_is_made_anew(tmp_path):
+    with running(tmp_path) as node, socket.socket(socket.AF_UNIX) as listener:
+        listener.settimeout(10)
+        listener.connect(str(node.where))
+        lines = listener.makefile("rw")
+        print(json.dumps({"do": "listen"}), file=lines, flush=True)
+        assert json.loads(lines.readline()) == {"listening": "n0"}
+        node.where.unlink()
+        wait_until(node.where.is_socket)
+        assert node.told()["name"] == "n0"
+        listener.settimeout(0.3)
+        with pytest.raises(TimeoutError):  # whoever listened does so still
+            listener.recv(1)
+        assert node.end() == 0
+        assert not node.where.exists()
+    assert not node.lines("Traceback")
+
+
+def test_a_socket_whose_folder_was_taken_away_is_made_anew_and_anothers_is_let_alone(tmp_path):
+    where = tmp_path / "run" / "n0.sock"
+
+    async def main():
+        server, other = (status.Server(where, None, Counter()) for _ in range(2))
+        await server.start()
+        shutil.rmtree(where.parent)
+        server.look()
+        assert await asyncio.to_thread(status.answers, where)
+        where.unlink()
+        await other.start()
+        with pytest.raises(LiveError, match="a node with this name runs already"):
+            server.look()
+        await server.stop()
+        assert await asyncio.to_thread(status.answers, where)
+        await other.stop()
+        assert not where.exists()
+
+    asyncio.run(main())
+
+
+def test_a_request_that_a_node_cannot_do_is_answered_in_words(tmp_path):
+    with running(tmp_path) as node:
+        for request, why in WRONG:
+            with pytest.raises(LiveError) as told:
+                status.ask_one(node.where, request)
+            assert str(told.value).startswith(f"n0: {why}"), request
+        assert node.end() == 0
