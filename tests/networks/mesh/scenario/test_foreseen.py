@@ -136,7 +136,8 @@ def test_a_robot_that_leaves_everybody_behind():
 
 @pytest.mark.parametrize(("quality", "protocol", "said"), [
     (0.6, {}, True), (0.8, {}, False),
-    (0.6, {"guard_s": 0.5}, False), (0.6, {"guard_s": 0.4}, True), (0.6, {"guard_s": 0}, False), (0.6, {"dead_s": 25}, False),
+    (0.6, {"guard_s": 0.5}, False), (0.6, {"guard_s": 0.4}, True),
+    (0.6, {"guard_s": 0}, False), (0.6, {"dead_s": 25}, False),
 ])  # fmt: skip
 def test_a_standby_behind_lossy_links_that_waits_for_a_short_time_is_told(quality, protocol, said):
     links = [*LINE[:1], LINE[1] | {"quality": quality}, *LINE[2:]]
