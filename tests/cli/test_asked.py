@@ -91,7 +91,7 @@ def test_a_window_lies_in_the_run(from_s, to_s, window, pcapng):
 )
 def test_what_is_missing_is_said(of, given, why):
     with pytest.raises(UserError, match=why):
-        exporting.export(of, ExportOptions(**given))
+        exporting.export(of, wanted=ExportOptions(**given))
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_the_dissector_is_written_alone_or_besides(monkeypatch, capsys, of, give
     monkeypatch.setattr(exporting.dissector, "install", lambda to: asked.append(to) or "x.lua")
     monkeypatch.setattr(exporting, "_Source", lambda *given: asked.append(given) or made)
     wanted = ExportOptions(dissector=True, **given)
-    assert exporting.export(of, wanted) == 0
+    assert exporting.export(of, wanted=wanted) == 0
     assert asked == [*([("there", ["seed=4"], 7), wanted] if files else []), where]
     assert "Written: x.lua" in capsys.readouterr().out
 

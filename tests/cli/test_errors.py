@@ -1,4 +1,6 @@
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -65,7 +67,7 @@ def failing(error):
     ],
 )  # fmt: skip
 def test_exit_codes(sh, monkeypatch, error, code, says):
-    monkeypatch.setattr("innervate.cli.files.scenarios", failing(error))
+    monkeypatch.setattr("innervate.scenario.bundled", failing(error))
     assert sh("scenarios") == code
     assert says in sh.err
     assert sh.err.count("\n") == 1
@@ -73,7 +75,7 @@ def test_exit_codes(sh, monkeypatch, error, code, says):
 
 
 def test_a_traceback_on_request(sh, monkeypatch):
-    monkeypatch.setattr("innervate.cli.files.scenarios", failing(RuntimeError("x")))
+    monkeypatch.setattr("innervate.scenario.bundled", failing(RuntimeError("x")))
     monkeypatch.setenv("INNERVATE_TRACEBACK", "1")
     assert sh("scenarios") == 1
     assert "Traceback" in sh.err
@@ -85,7 +87,7 @@ def test_a_traceback_on_request(sh, monkeypatch):
 )
 def test_a_missing_part_says_what_to_install(sh, monkeypatch, module, extra):
     error = ModuleNotFoundError(f"No module named '{module}'", name=module)
-    monkeypatch.setattr("innervate.cli.files.scenarios", failing(error))
+    monkeypatch.setattr("innervate.scenario.bundled", failing(error))
     assert sh("scenarios") == 2
     name = module.partition(".")[0]
     assert f"needs {name}; install it with: pip install 'innervate[{extra}]'" in sh.err
@@ -93,7 +95,7 @@ def test_a_missing_part_says_what_to_install(sh, monkeypatch, module, extra):
 
 def test_a_missing_module_of_our_own_is_our_mistake(sh, monkeypatch):
     error = ModuleNotFoundError("No module named 'innervate.nowhere'", name="innervate.nowhere")
-    monkeypatch.setattr("innervate.cli.files.scenarios", failing(error))
+    monkeypatch.setattr("innervate.scenario.bundled", failing(error))
     assert sh("scenarios") == 1
 
 
@@ -157,3 +159,13 @@ def test_sys_exit_inside_is_kept():
     assert errors.conclude(SystemExit(3)) == 3
     assert errors.conclude(SystemExit()) == 0
     assert errors.conclude(SystemExit("why")) == 1
+
+
+@pytest.mark.parametrize(("words", "close"), [(["runn"], "run"), (["live", "stauts"], "status")])
+def test_a_word_that_is_no_command_needs_no_part(tmp_path, words, close):
+    code = (f"import sys; sys.modules |= dict.fromkeys({list(errors.EXTRA_OF)!r})\n"
+            f"from innervate.cli import main; sys.exit(main({words!r}))")  # fmt: skip
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                          cwd=tmp_path, check=False)  # fmt: skip
+    assert done.returncode == 2
+    assert f'Did you mean "{close}"?' in done.stderr

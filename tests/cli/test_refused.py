@@ -42,8 +42,8 @@ def test_a_folder_is_a_run_but_for_live_and_what_comes_with_innervate(
         (tmp_path / name).mkdir()
     monkeypatch.setattr("innervate.scenario.bundled", lambda: {"hello-skin"})
     for what in ("run", "hello-skin", "a.toml"):
-        assert watching.watch(what, [], PLAIN, page(65_535)) == 0
-    assert watching.watch("live", ["n1", "n2"], PLAIN, page()) == 0
+        assert watching.watch(what, page=page(65_535)) == 0
+    assert watching.watch("live", "n1", "n2", page=page()) == 0
     run, bundled, file, live = served
     assert run[1:] == ("::1", 65_535, Path("report.html"))
     assert bundled == ("scenario hello-skin", "::1", 65_535, None)
@@ -60,24 +60,24 @@ def test_a_browser_is_opened_if_one_is_wanted(served, monkeypatch, is_open):
         watching.threading, "Thread",
         lambda target, args, daemon: Of(start=lambda: target(*args)),
     )  # fmt: skip
-    watching.watch("a.toml", [], PLAIN, page(open_=is_open))
+    watching.watch("a.toml", page=page(open_=is_open))
     assert opened == ["http://here"] * is_open
 
 
 @pytest.mark.parametrize(
-    ("what", "nodes", "settings", "port", "why"),
+    ("what", "nodes", "speed", "port", "why"),
     [
-        ("a.toml", [], PLAIN, -1, "--port is 0 to 65535, not -1"),
-        ("a.toml", [], PLAIN, 65_536, "--port is 0 to 65535, not 65536"),
-        ("a.toml", ["n1"], PLAIN, 0, '"n1" is too much'),
-        ("a.toml", [], Settings([], None, -1.0), 0, "--speed: .*, not -1"),
-        ("a.toml", [], Settings([], None, 1e6 + 1), 0, "--speed: .*, not 1e"),
-        ("live", [], Settings([], None, 0.0005), 0, "--speed: .*, not 0.0005"),
+        ("a.toml", [], None, -1, "--port is 0 to 65535, not -1"),
+        ("a.toml", [], None, 65_536, "--port is 0 to 65535, not 65536"),
+        ("a.toml", ["n1"], None, 0, '"n1" is too much'),
+        ("a.toml", [], -1.0, 0, "--speed: .*, not -1"),
+        ("a.toml", [], 1e6 + 1, 0, "--speed: .*, not 1e"),
+        ("live", [], 0.0005, 0, "--speed: .*, not 0.0005"),
     ],
 )
-def test_what_watch_refuses(served, what, nodes, settings, port, why):
+def test_what_watch_refuses(served, what, nodes, speed, port, why):
     with pytest.raises(errors.UserError, match=why):
-        watching.watch(what, nodes, settings, page(port))
+        watching.watch(what, *nodes, speed=speed, page=page(port))
     assert served == []
 
 

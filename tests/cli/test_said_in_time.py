@@ -8,7 +8,7 @@ import polars
 import pytest
 
 from innervate import scenario
-from innervate.cli import errors, exporting, files, live_app, main, running, sizing
+from innervate.cli import capturing, errors, exporting, files, live, main, running, sizing
 from innervate.cli.options import ExportOptions, SizeOptions, UpOptions
 from innervate.export import recording
 from innervate.network import networks
@@ -21,8 +21,8 @@ TABLES = line(3, duration_s=0.05)
 
 @pytest.mark.parametrize("seconds", [-3.0, float("nan"), float("inf")])
 def test_live_commands_end_after_a_time_that_can_be(seconds):
-    for command in (lambda: live_app.live_up("line", options=UpOptions(for_s=seconds)),
-                    lambda: live_app.live_capture(for_=seconds)):  # fmt: skip
+    for command in (lambda: live.up("line", options=UpOptions(for_s=seconds)),
+                    lambda: capturing.capture(for_=seconds)):  # fmt: skip
         with pytest.raises(errors.UserError, match="--for must be a number of seconds from 0"):
             command()
 
@@ -54,7 +54,7 @@ def test_a_missing_package_is_said_before_the_simulation(monkeypatch, tmp_path):
     monkeypatch.setattr(builtins, "__import__", without_mcap)
     monkeypatch.setattr(exporting._Source, "_frames", lambda _self: pytest.fail("simulated"))
     with pytest.raises(ModuleNotFoundError, match="mcap"):
-        exporting.export("line", ExportOptions(mcap=tmp_path / "run.mcap"))
+        exporting.export("line", wanted=ExportOptions(mcap=tmp_path / "run.mcap"))
 
 
 def test_every_bundled_scenario_has_a_whole_sentence(capsys):
@@ -94,7 +94,7 @@ def test_a_sweep_that_cannot_start_leaves_no_folder(tmp_path):
 )
 def test_size_names_the_option(given, message):
     with pytest.raises(errors.UserError, match=re.escape(message)):
-        sizing.size("none.urdf", SizeOptions(links="*", ports="1", **given))
+        sizing.size("none.urdf", options=SizeOptions(links="*", ports="1", **given))
 
 
 def test_a_run_of_other_settings_is_kept(tmp_path, monkeypatch):
@@ -137,7 +137,7 @@ def test_a_size_is_of_the_seed_that_was_given_or_of_the_first(tmp_path, monkeypa
     )
     monkeypatch.setattr(room, "size", lambda question, **how: asked.append(how) or answer)
     options = SizeOptions(links="*", ports="1..2", seed=given, repeat=5, out=tmp_path / "o")
-    assert sizing.size("arm.urdf", options) == 0
+    assert sizing.size("arm.urdf", options=options) == 0
     assert [(how["seed"], how["repeat"], how["out"]) for how in asked] == [
         (seed, 5, tmp_path / "o")]  # fmt: skip
 

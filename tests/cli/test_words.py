@@ -10,7 +10,7 @@ import pytest
 
 from innervate.cli import doctor, live, live_status, live_table, main
 from innervate.cli.capturing import EVENT, Recorder
-from innervate.cli.options import SweepOptions
+from innervate.cli.options import SendOptions, SweepOptions
 from innervate.export import pcapng
 from innervate.export.reading import Capture
 from innervate.live import status
@@ -216,24 +216,24 @@ def answers(monkeypatch):
 def test_a_message_is_followed_to_its_end(answers, capsys, states, reliable, to, code, lines):
     said, asked = answers
     said += [{"state": state, "reason": "why" if state == "expired" else ""} for state in states]
-    assert live.send("n0", to, "\u00e4", {"reliable": reliable}, as_json=False) == code
+    assert live.send("n0", to, "\u00e4", how=SendOptions(reliable=reliable)) == code
     out = capsys.readouterr().out.splitlines()
     assert len(out) == lines
     assert ("expired: why" in out) == ("expired" in states)
-    assert asked == [{"do": "send", "to": to, "payload": "c3a4", "reliable": reliable,
-                      "wait": reliable and to != 255}]  # fmt: skip
+    assert asked == [{"do": "send", "to": to, "payload": "c3a4", "priority": False,
+                      "reliable": reliable, "wait": reliable and to != 255}]  # fmt: skip
 
 
 def test_so_many_messages_are_listened_to_and_missed_ones_are_said(answers, capsys):
     said, asked = answers
     said += [{"kind": "mesh", "listening": "n0"}, {"missed": 3}]
     said += [{"from": 1, "payload": b"m%d".decode().encode().hex()} for _ in range(5)]
-    assert live.listen("n0", 2, in_order=True, as_json=False) == 0
+    assert live.listen("n0", count=2, in_order=True) == 0
     shown = capsys.readouterr()
     assert shown.out.splitlines() == ["1: m%d"] * 2
     assert shown.err == "3 missed here: they were not read in time\n"
     assert asked[1] == {"do": "listen", "alarms": True, "in_order": True}
-    live.listen("n0", 0, in_order=False, as_json=True)
+    live.listen("n0", as_json=True)
     shown = capsys.readouterr()
     assert len(shown.out.splitlines()) == 5
     assert "in_order" not in asked[3]
@@ -247,10 +247,10 @@ def test_so_many_messages_are_listened_to_and_missed_ones_are_said(answers, caps
 def test_a_command_that_is_sent_down(answers, capsys, ports, cell, words, code):
     said, asked = answers
     said.append({"number": 4, "ports": ports})
-    assert live.command("pc", 1, 2, cell, as_json=False) == code
+    assert live.command("pc", 1, 2, cell=cell) == code
     assert capsys.readouterr().out == words
     assert asked == [{"do": "command", "code": 1, "value": 2, "cell": cell}]
-    assert live.command("pc", 1, 2, cell, as_json=True) == code
+    assert live.command("pc", 1, 2, cell=cell, as_json=True) == code
 
 
 @pytest.mark.parametrize(

@@ -133,5 +133,5 @@ def test_a_reader_that_is_too_slow_costs_frames_and_not_memory(tmp_path, monkeyp
 def test_without_a_node_there_is_nothing_to_capture(tmp_path, monkeypatch):
     monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
     with pytest.raises(UserError, match="no node runs here"):
-        capturing.capture([], tmp_path / "none.pcapng", 0)
+        capturing.capture(out=tmp_path / "none.pcapng")
     assert list(tmp_path.iterdir()) == []

@@ -89,7 +89,7 @@ def test_where_all_were_killed_there_is_nothing_to_capture(tmp_path, monkeypatch
     for name in ("n0", "n1"):
         left_socket(tmp_path / f"{name}.sock")
     with pytest.raises(UserError, match="no node answers here"):
-        capturing.capture([], tmp_path / "none.pcapng", 0)
+        capturing.capture(out=tmp_path / "none.pcapng")
 
 
 def capture(folder, *words, room=None, **more):

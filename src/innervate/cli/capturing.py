@@ -7,10 +7,12 @@ import sys
 import time
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Annotated, Any, BinaryIO
+
+from cyclopts import Parameter
 
 import innervate
-from innervate.cli.errors import UserError, say
+from innervate.cli.errors import UserError, check_seconds, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.live import private, status
@@ -24,9 +26,20 @@ LINE_MAX = 1 << 22
 EVENT = "event: "  # what happened, without a frame
 
 
-def capture(names: list[str], out: Path | None, for_s: float) -> int:
-    """Capture until Ctrl-C, until `for_s` seconds are over, or until all nodes are gone."""
-    sockets = [status.find(name) for name in names] if names else status.sockets()
+def capture(
+    *nodes: str,
+    out: Path | None = None,
+    for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
+) -> int:
+    """Capture until Ctrl-C, until `for_` seconds are over, or until all nodes are gone.
+
+    Args:
+        nodes: Names or sockets; all nodes of this user if left out.
+        out: The capture; it can be read while it grows. Standard output if left out.
+        for_: End after so many seconds; 0 = never.
+    """
+    check_seconds("--for", for_)
+    sockets = [status.find(name) for name in nodes] if nodes else status.sockets()
     if not sockets:
         where = f"no node runs here (folder {status.where()})"
         raise UserError(f"{where}; start one with: innervate live node FILE")
@@ -34,10 +47,10 @@ def capture(names: list[str], out: Path | None, for_s: float) -> int:
         if sys.stdout.isatty():
             raise UserError("a capture is no text; name a file with --out, or pipe it to: "
                             "wireshark -k -i -")  # fmt: skip
-        return asyncio.run(Recorder(sockets, sys.stdout.buffer, bool(names)).run(for_s))
+        return asyncio.run(Recorder(sockets, sys.stdout.buffer, bool(nodes)).run(for_))
     try:
         with private.create(out) as file:
-            return asyncio.run(Recorder(sockets, file, bool(names)).run(for_s))
+            return asyncio.run(Recorder(sockets, file, bool(nodes)).run(for_))
     except OSError as error:
         raise ExportError(f"{out} cannot be written: {error.strerror}") from None
 

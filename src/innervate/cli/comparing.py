@@ -6,14 +6,22 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from innervate.cli.options import Json
+
 if TYPE_CHECKING:
     from innervate.running.compare import Comparison
 
 DIFFERENCES_MAX = 40
 
 
-def compare(first: Path, second: Path, as_json: bool) -> int:
-    """Say what differs between two runs; 1 if anything happened otherwise."""
+def compare(first: Path, second: Path, /, *, as_json: Json = False) -> int:
+    """Say what differs between two runs; 1 if anything happened otherwise.
+
+    Args:
+        first: A run folder.
+        second: Another one.
+        as_json: Print all that differs as JSON and nothing else.
+    """
     from innervate.plot.words import headline_line
     from innervate.running import compare as room
 

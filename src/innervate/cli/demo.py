@@ -5,18 +5,25 @@ from pathlib import Path
 from typing import Any
 
 from innervate.cli import errors
+from innervate.cli.options import Flag, Seed
 from innervate.cli.running import simulate
 from innervate.network import networks
 
 
-def demo(seed: int | None, out: Path | None, open_report: bool) -> int:
-    """Run all chapters; print what happened and where the reports are."""
+def demo(*, seed: Seed = None, out: Path | None = None, open_: Flag = False) -> int:
+    """Run all chapters; print what happened and where the reports are.
+
+    Args:
+        seed: Root seed in place of the scenario's; same seed, same run.
+        out: Folder to write into, a run folder for each; runs/ if left out.
+        open_: Open the reports in a browser.
+    """
     able = {name: network.demo for name, network in networks().items() if network.has("demo")}
     for i, (name, chapter) in enumerate(able.items()):
         if i:
             print()
         report, interrupted = _tell(chapter, seed, None if out is None else out / name)
-        if open_report:
+        if open_:
             webbrowser.open(report.resolve().as_uri())
         if interrupted:
             return errors.INTERRUPTED

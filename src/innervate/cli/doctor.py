@@ -10,6 +10,7 @@ from typing import Any
 
 import innervate
 from innervate.cli import errors
+from innervate.cli.options import Json
 from innervate.network import networks
 from innervate.trace.provenance import version_of
 
@@ -36,8 +37,12 @@ PROGRAMS = {
 SMALL_BYTES = 500_000_000
 
 
-def doctor(as_json: bool) -> int:
-    """Say how things are; 1 if nothing can be simulated."""
+def doctor(*, as_json: Json = False) -> int:
+    """Say how things are; 1 if nothing can be simulated.
+
+    Args:
+        as_json: Print it as JSON and nothing else.
+    """
     found = look()
     if as_json:
         print(json.dumps(found, indent=2))

@@ -1,7 +1,5 @@
 """What stands below the help of each command: examples, and the page that says more."""
 
-from cyclopts import App
-
 # Command: its page of `innervate docs`, and examples, each of which a test parses.
 BELOW: dict[str, tuple[str, tuple[str, ...]]] = {
     "demo": ("tutorial", ("innervate demo --open",)),
@@ -54,15 +52,6 @@ BELOW: dict[str, tuple[str, tuple[str, ...]]] = {
     "live enrol": ("threats", ("innervate live enrol keys --nodes 9",)),
     "live revoke": ("threats", ("innervate live revoke keys 3",)),
 }  # fmt: skip
-
-
-def add_to(app: App) -> None:
-    """Put them below the help of the commands."""
-    for words in BELOW:
-        command = app
-        for word in words.split():
-            command = command[word]
-        command.help_epilogue = text_of(words)
 
 
 def text_of(words: str) -> str:

@@ -3,22 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from innervate import scenario as scenarios
 from innervate.cli.errors import UserError
+from innervate.cli.options import ExportOptions
 from innervate.cli.progress import Progress, is_compiled
 from innervate.export import dissector
 from innervate.network import networks
 from innervate.scenario import ScenarioError
 
 if TYPE_CHECKING:
-    from innervate.cli.options import ExportOptions
     from innervate.scenario import Scenario
 
 
-def export(source: str | None, wanted: ExportOptions) -> int:
-    """Write what is wanted of a run folder or a scenario; with nothing else, only the dissector."""
+def export(
+    source: str | None = None,
+    /,
+    *,
+    wanted: Annotated[ExportOptions, Parameter(name="*")] = ExportOptions(),
+) -> int:
+    """Write what is wanted of a run folder or a scenario; with nothing else, only the dissector.
+
+    Args:
+        source: A run folder, a scenario file, or the name of a bundled one; with --dissector alone
+            the
+            folder for that, Wireshark's own if left out.
+        wanted: Which files are written.
+    """
     folder = None if wanted.has_files or source is None else Path(source)
     if wanted.has_files:
         _write_files(source, wanted)

@@ -7,17 +7,23 @@ import shlex
 from dataclasses import fields
 from itertools import takewhile
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter
 
 from innervate import scenario
 from innervate.cli.errors import UserError
-from innervate.cli.options import MeasuredOptions
+from innervate.cli.options import Json, MeasuredOptions, OwnOptions, Seed, Sets
 from innervate.export import files
 from innervate.network import networks
 
 
-def scenarios(as_json: bool) -> int:
-    """List the bundled scenarios, a line each: the first sentence of the file's first comment."""
+def scenarios(*, as_json: Json = False) -> int:
+    """List the bundled scenarios, a line each: the first sentence of the file's first comment.
+
+    Args:
+        as_json: Print names, sentences and files as JSON.
+    """
     known = scenario.bundled()
     if as_json:
         listed = [
@@ -52,8 +58,28 @@ def check_unused(options: Any, whose: str) -> None:
             raise UserError(f"--{one.name.replace('_', '-')} is for {whose}")
 
 
-def new(kind: str, file: Path | None, measured: MeasuredOptions) -> int:
-    """Write a commented scenario; never over a file that is there."""
+def new(
+    kind: str,
+    file: Path | None = None,
+    /,
+    *,
+    measured: Annotated[MeasuredOptions, Parameter(name="*")] = MeasuredOptions(),
+    own: Annotated[OwnOptions, Parameter(name="*")] = OwnOptions(),
+) -> int:
+    """Write a commented scenario or a network's folder; never over what is there.
+
+    Args:
+        kind: What it describes: skin, radio or mesh. network: a folder with a network of your own.
+        file: Where to write it; a scenario is printed if left out. Of a network, its folder: NAME.
+        measured: Which nodes and links of a measured network count.
+        own: What a network of your own is joined by.
+    """
+    if kind == "network":
+        from innervate.cli import making
+
+        check_unused(measured, "a measured network, not for your own")
+        return making.make(file, own.on, own.over)
+    check_unused(own, "a network of your own: innervate new network NAME")
     found = ""
     if measured.network is not None:
         text, found = _of_network(kind, file, measured)
@@ -100,9 +126,16 @@ def _seen_from(folder: Path, file: Path) -> str:
     return Path(os.path.relpath(place, os.path.realpath(folder))).as_posix()
 
 
-def check(file: str, sets: list[str], seed: int | None, as_json: bool) -> int:
-    """Say what a scenario holds."""
-    loaded = scenario.load(file, overrides=sets, seed=seed)
+def check(file: str, /, *, set_: Sets = None, seed: Seed = None, as_json: Json = False) -> int:
+    """Say what a scenario holds.
+
+    Args:
+        file: A scenario file, or the name of a bundled one.
+        set_: Change a key, as for run.
+        seed: Root seed in place of the scenario's.
+        as_json: Print it as JSON and nothing else.
+    """
+    loaded = scenario.load(file, overrides=set_ or [], seed=seed)
     said = scenario.summary(loaded)
     if as_json:
         print(json.dumps(_held(loaded, said), indent=2, ensure_ascii=False))
@@ -123,8 +156,12 @@ def _held(loaded: scenario.Scenario, said: str) -> dict[str, Any]:
     }
 
 
-def schema(out: Path | None) -> int:
-    """Print or write the JSON Schema of scenario files."""
+def schema(*, out: Path | None = None) -> int:
+    """Print or write the JSON Schema of scenario files.
+
+    Args:
+        out: File to write it to.
+    """
     text = json.dumps(scenario.json_schema(), indent=2, ensure_ascii=False) + "\n"
     if out is None:
         print(text, end="")

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from innervate.cli.options import Flag, Json, Whole
 from innervate.firmware import emit, library
 from innervate.firmware.emulated import Emulated
 from innervate.live.board import roles_of
@@ -13,8 +14,28 @@ from innervate.live.nodefile import load
 from innervate.network import networks
 
 
-def write(files: library.Files, out: Path, as_json: bool) -> int:
-    """Write a library, and say what was written."""
+def firmware(
+    network: str,
+    /,
+    *settings: str,
+    out: Path = Path("lib"),
+    nodes: Whole | None = None,
+    prefix: str = "",
+    sealed: Flag = False,
+    as_json: Json = False,
+) -> int:
+    """Write a library, and say what was written.
+
+    Args:
+        network: skin, radio, mesh, csma, or a folder with a network of your own.
+        settings: Parameters of the protocol in place of the usual ones, like beacon_us=20000.
+        out: Folder to write into.
+        nodes: How many a network of this kind has at most, where arrays depend on it.
+        prefix: In front of all names; the network's name if left out.
+        sealed: With a driver that shakes hands and seals, with a network's key, as live nodes do.
+        as_json: Print what was written as JSON and nothing else.
+    """
+    files = library.made_of(network, list(settings), nodes, prefix, sealed)
     lines, made = library.write(files, out), files.library
     if as_json:
         said = {"out": str(out), "source": made.digest(), "abi": emit.ABI, "lines": lines}

@@ -4,11 +4,20 @@ import json
 from pathlib import Path
 
 from innervate.cli.errors import say
-from innervate.export import files, fitting, measure
+from innervate.cli.options import Json
 
 
-def fit(capture: Path, out: Path | None, as_json: bool) -> int:
-    """Write the scenario, or print it; say how well its simulation matches. 1 if links differ."""
+def fit(capture: Path, /, *, out: Path | None = None, as_json: Json = False) -> int:
+    """Write the scenario, or print it; say how well its simulation matches. 1 if links differ.
+
+    Args:
+        capture: A capture by innervate, of a run or of live nodes; or what `live status --json`
+            said.
+        out: The scenario file to write; it is printed if left out.
+        as_json: Print the scenario and how well it matches as JSON and nothing else.
+    """
+    from innervate.export import files, fitting, measure  # not for who mistypes a command
+
     found = measure.measure(capture)
     text = fitting.scenario_of(found, capture.stem)
     if out is not None:

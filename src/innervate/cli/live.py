@@ -7,20 +7,53 @@ import json
 import sys
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Annotated
+
+from cyclopts import Parameter
 
 from innervate.cli import errors, live_status
+from innervate.cli.options import Engine, Flag, Json, SendOptions, UpOptions, Whole
 from innervate.live import status
 from innervate.live.errors import LiveError
 from innervate.live.receipts import ALL, FINAL
 from innervate.network import known
 
-if TYPE_CHECKING:
-    from innervate.cli.options import UpOptions
+Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
 
-def up(file: str, options: UpOptions) -> int:
-    """Bring a scenario up as processes."""
+def node(file: Path, /, *, engine: Engine | None = None, firmware: Path | None = None) -> int:
+    """Run one node.
+
+    Args:
+        file: A node file (see: innervate docs live).
+        engine: What runs its protocol here, in place of what the file says; auto: C where it can be
+            made.
+        firmware: What runs its protocol, on an emulated board: an image (see: innervate docs
+            firmware).
+    """
+    from innervate.live.main import run
+
+    if firmware is None:
+        return run(file, engine=engine or "")
+    if engine is not None:
+        raise errors.UserError("--engine and --firmware exclude each other; name one")
+    from innervate.cli.firmware import engine_for
+
+    return run(file, engine_for(file, firmware), "python")
+
+
+def up(file: str, /, *, options: Annotated[UpOptions, Parameter(name="*")] = UpOptions()) -> int:
+    """Bring a scenario up as processes.
+
+    Args:
+        file: A scenario, or the name of a bundled one.
+        options: How it is brought up.
+    """
+    if options.netns and options.pty:
+        raise errors.UserError("--netns and --pty exclude each other; name one")
+    errors.check_seconds("--for", options.for_s)
+    if options.sealed and options.identities:
+        raise errors.UserError("--sealed and --identities exclude each other; name one")
     from innervate import scenario as scenarios
     from innervate.live import run_up as room
 
@@ -41,9 +74,14 @@ def up(file: str, options: UpOptions) -> int:
         return asyncio.run(room.run(plan, way, text, options.for_s, options.json))
 
 
-def show(names: list[str], as_json: bool) -> int:
-    """What nodes say of themselves; 1 if nobody was named and some do not answer."""
-    sockets = [status.find(name) for name in names] if names else status.sockets()
+def show(*nodes: str, as_json: Json = False) -> int:
+    """What nodes say of themselves; 1 if nobody was named and some do not answer.
+
+    Args:
+        nodes: Names or sockets; all nodes of this user if left out.
+        as_json: Print JSON.
+    """
+    sockets = [status.find(name) for name in nodes] if nodes else status.sockets()
     if not sockets:
         where = f"no node runs here (folder {status.where()})"
         raise errors.UserError(f"{where}; start one with: innervate live node FILE")
@@ -52,13 +90,13 @@ def show(names: list[str], as_json: bool) -> int:
         try:
             told.append(status.ask_one(path, {"do": "status"}))
         except LiveError:
-            if names:
+            if nodes:
                 raise
             silent.append(path)
     if as_json:
-        print(json.dumps(told if len(told) != 1 or not names else told[0]))
+        print(json.dumps(told if len(told) != 1 or not nodes else told[0]))
     else:
-        if not names:
+        if not nodes:
             print(live_status.headline(told, silent))
         for one in told:
             for line in live_status.lines(one):
@@ -70,12 +108,28 @@ def show(names: list[str], as_json: bool) -> int:
     return 1 if silent else 0
 
 
-def send(name: str, to: int, text: str, how: dict[str, bool], as_json: bool) -> int:
-    """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for."""
-    where = status.find(name)
+def send(
+    node: str,
+    to: Whole,
+    text: Text,
+    /,
+    *,
+    how: Annotated[SendOptions, Parameter(name="*")] = SendOptions(),
+    as_json: Json = False,
+) -> int:
+    """Send a message; 0 if it was delivered, or only accepted where no receipt is asked for.
+
+    Args:
+        node: Name or socket of the node that sends.
+        to: Number of the recipient; 255 all, 254 the monitor.
+        text: The message; - reads standard input.
+        how: How it is sent.
+        as_json: Print JSON lines.
+    """
+    where = status.find(node)
     payload = _read() if text == "-" else text.encode(errors="surrogateescape")
-    request = {"do": "send", "to": to, "payload": payload.hex(), **how,
-               "wait": how["reliable"] and to != ALL}  # fmt: skip
+    request = {"do": "send", "to": to, "payload": payload.hex(), **how.asked,
+               "wait": how.reliable and to != ALL}  # fmt: skip
     state = "refused"
     for answer in status.ask(where, request):
         state = answer["state"]
@@ -97,11 +151,18 @@ def _read() -> bytes:
     return sys.stdin.buffer.read()
 
 
-def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
-    """Print messages that come in at a node."""
+def listen(node: str, /, *, count: int = 0, in_order: Flag = False, as_json: Json = False) -> int:
+    """Print messages that come in at a node.
+
+    Args:
+        node: Name or socket.
+        count: End after so many; 0 = never.
+        in_order: Each sender's messages as it sent them, where it sent them in order.
+        as_json: Print JSON lines.
+    """
     if count < 0:
         raise errors.UserError(f"--count must be a whole number from 0, not {count}")
-    heard, where = 0, status.find(name)
+    heard, where = 0, status.find(node)
     words = known(status.ask_one(where, {"do": "status"})["kind"]).live_words
     request = {"do": "listen", "alarms": True, **({"in_order": True} if in_order else {})}
     for answer in status.ask(where, request):
@@ -119,10 +180,26 @@ def listen(name: str, count: int, in_order: bool, as_json: bool) -> int:
     return 0
 
 
-def command(name: str, code: int, value: int, cell: int | None, as_json: bool) -> int:
-    """Have the PC of a skin send a command down; 0 if somebody was there to hand it down."""
+def command(
+    node: str,
+    code: Whole,
+    value: Whole = 0,
+    /,
+    *,
+    cell: Whole | None = None,
+    as_json: Json = False,
+) -> int:
+    """Have the PC of a skin send a command down; 0 if somebody was there to hand it down.
+
+    Args:
+        node: Name or socket of the PC.
+        code: What to do, 0 to 255; your cells know what it means.
+        value: With what, 0 to 65535.
+        cell: Number of the cell it is for; all cells if left out.
+        as_json: Print JSON.
+    """
     request = {"do": "command", "code": code, "value": value, "cell": cell}
-    sent = status.ask_one(status.find(name), request)
+    sent = status.ask_one(status.find(node), request)
     if as_json:
         print(json.dumps(sent))
     elif sent["ports"]:
@@ -137,7 +214,55 @@ def command(name: str, code: int, value: int, cell: int | None, as_json: bool) -
     return 0 if sent["ports"] else 1
 
 
-def change(name: str, port: int, what: str) -> int:
-    """Cut or restore a cable at one node."""
-    status.ask_one(status.find(name), {"do": what, "port": port})
+def change(node: str, port: int, /, *, restore: Flag = False) -> int:
+    """Cut or restore a cable at one node.
+
+    Args:
+        node: Name or socket.
+        port: Number of the path, as status shows it.
+        restore: Put it back.
+    """
+    status.ask_one(status.find(node), {"do": "restore" if restore else "cut", "port": port})
+    return 0
+
+
+def medium(
+    address: str = "127.0.0.1:4600",
+    /,
+    *,
+    slot_us: Whole = 10_000,
+    turnaround_us: Whole = 5_000,
+) -> int:
+    """Run a radio channel until it is ended.
+
+    Args:
+        address: Where stations find it.
+        slot_us: Time of a slot on the air.
+        turnaround_us: From deciding to send to being on the air, and back.
+    """
+    from innervate.live import channel
+
+    asyncio.run(channel.run(address, slot_us, turnaround_us))
+    return 0
+
+
+def modem(
+    device: str,
+    address: str = "127.0.0.1:4600",
+    /,
+    *,
+    number: Whole = 0,
+    baud: Whole = 1_000_000,
+) -> int:
+    """Put a board on a radio channel until it is ended.
+
+    Args:
+        device: The serial port, like /dev/ttyUSB0.
+        address: Where the channel is.
+        number: The board's, as its firmware has it.
+        baud: Bits per second.
+    """
+    from innervate.live import modem as room
+
+    asyncio.run(room.run(device, baud, number, address))
     return 0

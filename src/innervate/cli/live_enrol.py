@@ -4,13 +4,22 @@ import json
 from pathlib import Path
 
 from innervate.cli import errors
+from innervate.cli.options import Json
 from innervate.live import status
-from innervate.live.enrolment import LIST, Authority, read_list
 from innervate.live.errors import LiveError
 
 
-def enrol(folder: Path, numbers: list[int], nodes: int) -> int:
-    """Make identities: a file for each number, besides those below `nodes`."""
+def enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
+    """Make identities: a file for each number, besides those below `nodes`.
+
+    Args:
+        folder: Of the network's authority; made if it is not there. Its authority.key stays with
+            you.
+        numbers: Of the nodes.
+        nodes: Those with numbers 0 to nodes - 1, besides.
+    """
+    from innervate.live.enrolment import Authority
+
     wanted = list(dict.fromkeys([*range(nodes), *numbers]))
     if not wanted:
         raise errors.UserError("which nodes? name their numbers, or how many with --nodes")
@@ -22,13 +31,21 @@ def enrol(folder: Path, numbers: list[int], nodes: int) -> int:
     return 0
 
 
-def revoke(where: Path, numbers: list[int], as_json: bool) -> int:
-    """Put nodes out, and tell running nodes; 0 if one of them was told."""
+def revoke(where: Path, /, *numbers: int, as_json: Json = False) -> int:
+    """Put nodes out, and tell running nodes; 0 if one of them was told.
+
+    Args:
+        where: The authority's folder; or a revoked.list from it, to tell nodes on this machine.
+        numbers: Of the nodes; none tells of the list as it is.
+        as_json: Print JSON.
+    """
+    from innervate.live.enrolment import LIST, Authority, read_list
+
     if where.is_dir():
         authority = Authority(where)
         if not numbers and not authority.version:
             raise errors.UserError(f"{where}: nobody is put out; name the numbers of nodes")
-        data = authority.revoke(numbers).data if numbers else read_list(where / LIST)
+        data = authority.revoke(list(numbers)).data if numbers else read_list(where / LIST)
     elif numbers:
         raise errors.UserError(f"{where}: no folder of an authority; only it can put nodes out")
     else:

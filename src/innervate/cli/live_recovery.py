@@ -4,17 +4,23 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
+from innervate.cli.options import Json
 from innervate.export import links
 from innervate.export.reading import Capture
 from innervate.network import networks
 
 
-def show(path: Path, as_json: bool) -> int:
-    """Print what happened to a network, and how soon all was well again."""
+def show(capture: Path, /, *, as_json: Json = False) -> int:
+    """Print what happened to a network, and how soon all was well again.
+
+    Args:
+        capture: What `live capture --out` wrote; or `export --pcapng` of a run.
+        as_json: Print JSON.
+    """
     able = [network for network in networks().values() if network.has("recovery")]
-    kinds = _kinds(path)
+    kinds = _kinds(capture)
     recovery = next((one for one in able if one.name in kinds), able[0]).recovery
-    found = recovery.recoveries(path)
+    found = recovery.recoveries(capture)
     if as_json:
         print(json.dumps([asdict(one) for one in found]))
         return 0

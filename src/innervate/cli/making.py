@@ -13,6 +13,7 @@ from typing import Any
 
 from innervate import folders
 from innervate.cli.errors import UserError
+from innervate.cli.options import Json
 from innervate.network import Network, accesses, networks, read
 from innervate.parts import MEDIA
 
@@ -100,14 +101,20 @@ def _is_module(name: str) -> bool:
     return spec is not None and spec.origin is not None
 
 
-def check_protocol(folder: Path, as_json: bool, with_tests: bool) -> int:
-    """Say all that is wrong with a network's protocol; 2 if something is, 1 if it can break."""
+def check_protocol(folder: Path, /, *, tests: bool = True, as_json: Json = False) -> int:
+    """Say all that is wrong with a network's protocol; 2 if something is, 1 if it can break.
+
+    Args:
+        folder: The network's folder.
+        tests: Run its tests, and say which functions of the protocol they do not reach.
+        as_json: Print what was found as JSON and nothing else.
+    """
     network = read(folder)
     found = folders.findings(folder.resolve(), network)
     said: dict[str, Any] = {"network": network.name, "wrong": [str(one) for one in found]}
     lines = [*said["wrong"]]
     if not found:
-        _look_further(folder, network, with_tests, said, lines)
+        _look_further(folder, network, tests, said, lines)
     if as_json:
         print(json.dumps(said, indent=2))
     else:

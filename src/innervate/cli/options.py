@@ -34,6 +34,7 @@ Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
 _SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
 Sets = Annotated[list[str] | None, _SET]
 Flag = Annotated[bool, Parameter(negative="")]
+Json = Annotated[bool, Parameter(name=["--json"], negative="")]
 Texts = Annotated[list[str] | None, Parameter(negative="")]
 Numbers = Annotated[list[float] | None, Parameter(negative="")]
 

@@ -14,8 +14,12 @@ NAMED = re.compile(r"^::: \S+\.(\w+)$", re.MULTILINE)  # where the site has a na
 COMMANDS = re.compile(r"^::: cyclopts\n(?: +.*\n?)*", re.MULTILINE)  # likewise their arguments
 
 
-def show(page: str) -> int:
-    """Print a page, or the list of them."""
+def show(page: str = "", /) -> int:
+    """Print a page, or the list of them.
+
+    Args:
+        page: Its name, as the list has it.
+    """
     there = pages()
     if not page:
         width = max(map(len, there))

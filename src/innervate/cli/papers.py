@@ -1,24 +1,42 @@
 """`innervate papers`: figures and claims of a paper, made anew."""
 
 import csv
-from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from innervate.cli import errors
+from innervate.cli.options import Flag, Texts
 from innervate.cli.progress import Display
+from innervate.network import first
 
 
-def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) -> int:
+def papers(
+    paper: str | None = None,
+    /,
+    *,
+    only: Texts = None,
+    quick: Flag = False,
+    redraw: Flag = False,
+    page: Path | None = None,
+    out: Path = Path("papers"),
+) -> int:
     """Draw and tabulate a paper's figures; say how many claims hold.
 
-    The tables of a `page` of Markdown are made anew; `how` is quick, only, redraw of papers.main.
+    Args:
+        paper: Which paper: skin (if left out), radio or mesh; or compare: networks beside others.
+        only: A figure by its name, like fig8a of the skin, fig12 of the radio or skin of compare;
+            may be given again.
+        quick: Few seeds and settings: in about a minute.
+        redraw: Use kept results even if the sources have changed since.
+        page: Of compare: a page of Markdown whose tables are made anew between its marks.
+        out: Folder for pictures, tables and kept results.
     """
     from innervate.papers.book import into_page, ready_for  # draws: not before it is wanted
 
     room: Any = import_module("innervate.papers")
-    ready_for(system, page, how["only"])
+    system, only = first() if paper is None else paper, only or []
+    ready_for(system, page, only)
     with Display() as display:
         display.begin(f"papers {system}: figures and table into {out}", line=True)
 
@@ -27,14 +45,14 @@ def papers(system: str, out: Path, page: Path | None, how: Mapping[str, Any]) ->
             display.show(what, step.done, step.total, step.left_s)
 
         try:
-            made = room.main(system, out, progress=tell, **how)
+            made = room.main(system, out, quick=quick, only=only, progress=tell, redraw=redraw)
         except KeyboardInterrupt:
             errors.say(
                 "interrupted; what was done is kept, and the same command goes on from there"
             )
             return errors.INTERRUPTED
     if page is not None:
-        into_page(page, system, out, how["only"])
+        into_page(page, system, out, only)
     for line in verdict_lines(made.with_suffix(".csv")):
         print(line)
     print(f"Look at them in a browser: {made}")

@@ -6,18 +6,25 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from innervate.cli import errors
+from innervate.cli.options import Flag, Json
 from innervate.cli.progress import Display
 from innervate.cli.verifying import named
 from innervate.kernel.words import number_of
-from innervate.network import Network
+from innervate.network import Network, first
 
 if TYPE_CHECKING:
     from innervate.prove.theory import Outcome
 
 
-def prove(system: str, faults: bool, as_json: bool) -> int:
-    """Prove a network's theories; 1 if one does not come out as it should."""
-    network = named(system, "prove knows")
+def prove(system: str | None = None, /, *, faults: Flag = False, as_json: Json = False) -> int:
+    """Prove a network's theories; 1 if one does not come out as it should.
+
+    Args:
+        system: Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
+        faults: Plant small mistakes in the protocol, one after the other: each must be refuted.
+        as_json: Print the results as JSON and nothing else.
+    """
+    network = named(first() if system is None else system, "prove knows")
     if faults:
         return _faults(network, as_json)
     return _theories(network, as_json)

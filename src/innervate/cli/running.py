@@ -4,28 +4,41 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from innervate.cli import errors
+from innervate.cli.options import Json, RunOptions, Seed, Sets
 from innervate.cli.progress import Progress, is_compiled
 from innervate.folders import for_plain
 from innervate.network import networks
 
 if TYPE_CHECKING:
-    from innervate.cli.options import RunOptions
     from innervate.running import Run
 
 
 def run(
     file: str,
-    sets: list[str],
-    seed: int | None,
-    out: Path | None,
-    as_json: bool,
-    how: RunOptions,
+    /,
+    *,
+    set_: Sets = None,
+    seed: Seed = None,
+    out: Path | None = None,
+    as_json: Json = False,
+    how: Annotated[RunOptions, Parameter(name="*")] = RunOptions(),
 ) -> int:
-    """Run a scenario, write its folder, say what came of it."""
-    done = simulate(file, sets, seed, out, as_json, how.plain)
+    """Run a scenario, write its folder, say what came of it.
+
+    Args:
+        file: A scenario file, or the name of a bundled one (see: innervate scenarios).
+        set_: Change a key, like protocol.k=3 or event.0.at_s=1.5; may be given again.
+        seed: Root seed in place of the scenario's; same seed, same run.
+        out: Folder to write; runs/NAME-SEED if left out.
+        as_json: Print the summary as JSON and nothing else.
+        how: How it runs.
+    """
+    done = simulate(file, set_ or [], seed, out, as_json, how.plain)
     folder = done.write(out, report=how.report)
     if as_json:
         print(json.dumps(done.summary, indent=2, allow_nan=False))

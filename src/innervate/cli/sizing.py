@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
+
+from cyclopts import Parameter
 
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
+from innervate.cli.options import SizeOptions
 from innervate.cli.sweeping import failed_lines
 from innervate.network import networks
 
-if TYPE_CHECKING:
-    from innervate.cli.options import SizeOptions
 
+def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")]) -> int:
+    """Answer how many ports a robot needs, with a table and a picture; 1 if none is enough.
 
-def size(robot: str, options: SizeOptions) -> int:
-    """Answer how many ports a robot needs, with a table and a picture; 1 if none is enough."""
+    Args:
+        robot: A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
+        options: What is asked of its skin, and how often it is tried.
+    """
     sizing = next(one.sizing for one in networks().values() if one.has("sizing"))
     question = {
         "urdf": robot, "links": options.links, "rates_hz": tuple(options.rate or [250.0]),

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from innervate.analysis.headline import LEVELS
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
+from innervate.cli.options import SweepOptions
 
 if TYPE_CHECKING:
-    from innervate.cli.options import SweepOptions
     from innervate.sweeping import Sweep, SweepPlan
 
 POINTS_MAX = 40
@@ -20,8 +22,16 @@ REASONS_MAX = 5
 TORN_MAX = 5
 
 
-def sweep(file: str, options: SweepOptions) -> int:
-    """Run a sweep behind a live table; say what came of it."""
+def sweep(
+    file: str, /, *, options: Annotated[SweepOptions, Parameter(name="*")] = SweepOptions()
+) -> int:
+    """Run a sweep behind a live table; say what came of it.
+
+    Args:
+        file: A scenario file, the name of a bundled one, or a plan file (see: innervate docs
+            sweeps).
+        options: What is varied, how often it runs, and where.
+    """
     from innervate import sweeping as room
     from innervate.running.folder import plain_name
     from innervate.sweeping.result import SHOWN

@@ -5,22 +5,38 @@ from __future__ import annotations
 import json
 from itertools import count as numbers
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from innervate.cli import errors
+from innervate.cli.options import Json, VerifyOptions
 from innervate.cli.progress import Display
 from innervate.export import files
 from innervate.kernel.words import number_of
-from innervate.network import Network, find, networks, use
+from innervate.network import Network, find, first, networks, use
 
 if TYPE_CHECKING:
-    from innervate.cli.options import VerifyOptions
     from innervate.verify.cases import Case
 
 
-def verify(system: str, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
-    """Explore a protocol with the options of the command line; 1 if something is broken."""
-    network = named(system)
+def verify(
+    system: str | None = None,
+    /,
+    *,
+    options: Annotated[VerifyOptions, Parameter(name="*")] = VerifyOptions(),
+    as_json: Json = False,
+    out: Path | None = None,
+) -> int:
+    """Explore a protocol with the options of the command line; 1 if something is broken.
+
+    Args:
+        system: Which protocol: skin (if left out), radio, mesh, or one of your own, by its folder.
+        options: What to explore, and how much of it.
+        as_json: Print the results as JSON and nothing else.
+        out: Folder for counterexamples: scenario, story, picture.
+    """
+    network = named(first() if system is None else system)
     for name in ("cells", "starts", "states", "walks", "count"):
         if getattr(options, name) < 0:
             raise errors.UserError(f"--{name} must be 0 or more, not {getattr(options, name)}")

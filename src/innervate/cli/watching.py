@@ -7,13 +7,15 @@ import threading
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from innervate.cli import errors
+from innervate.cli.options import PageOptions, Seed, Sets
 from innervate.cli.progress import Progress, is_compiled
 
 if TYPE_CHECKING:
-    from innervate.cli.options import PageOptions
     from innervate.web.recorded import Recorded
     from innervate.web.source import Source
 
@@ -29,22 +31,40 @@ class Settings:
     speed: float | None
 
 
-def watch(what: str, nodes: list[str], settings: Settings, page: PageOptions) -> int:
-    """Serve a page until Ctrl-C."""
+def watch(
+    what: str,
+    /,
+    *nodes: str,
+    set_: Sets = None,
+    seed: Seed = None,
+    speed: float | None = None,
+    page: Annotated[PageOptions, Parameter(name="*")] = PageOptions(),
+) -> int:
+    """Serve a page until Ctrl-C.
+
+    Args:
+        what: A scenario, the name of a bundled one, a run folder, or live: nodes that run.
+        nodes: With live: names or sockets; all nodes of this user if left out.
+        set_: Change a key of the scenario, as for run.
+        seed: Root seed in place of the scenario's.
+        speed: Seconds of the network per second; 0 is as fast as possible.
+        page: Where it is served.
+    """
     from innervate.scenario import bundled
     from innervate.web.serve import serve
 
     if not 0 <= page.port <= 65_535:
         raise errors.UserError(f"--port is 0 to 65535, not {page.port}")
+    settings = Settings(set_ or [], seed, speed)
     is_live = what == LIVE  # a folder of that name is ./live
     source: Source
-    if settings.speed is not None:
-        _check_speed(settings.speed)
+    if speed is not None:
+        _check_speed(speed)
     if nodes and not is_live:
         raise errors.UserError(f'"{nodes[0]}" is too much; nodes go with: innervate watch live')
     report: Path | None = None
     if is_live:
-        source = _live(nodes, settings)
+        source = _live(list(nodes), settings)
     elif Path(what).is_dir() and what not in bundled():
         source = recorded = _recorded(Path(what), settings)
         report = recorded.report
