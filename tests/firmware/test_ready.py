@@ -67,6 +67,14 @@ def test_one_can_go_without(installed, monkeypatch):
         node()
 
 
+def test_what_to_install_where_it_is_missing(installed, monkeypatch):
+    monkeypatch.setattr(compiled, "COMPILER", "cc")
+    monkeypatch.setenv("INNERVATE_READY", "0")
+    monkeypatch.setenv("PATH", str(installed))
+    with pytest.raises(LiveError, match=r"cc is missing; .*apt install gcc libc6-dev\)"):
+        node()
+
+
 def test_of_other_sources_none_is_taken(installed, monkeypatch):
     key = compiled.key_of
     monkeypatch.setattr(compiled, "key_of", lambda *of: key(*of)[::-1])

@@ -9,6 +9,7 @@ from innervate.firmware.errors import FirmwareError
 
 # Debian's packages of what is asked for.
 PACKAGES = {
+    "cc": "gcc libc6-dev",
     "arm-none-eabi-gcc": "gcc-arm-none-eabi libnewlib-arm-none-eabi",
     "riscv64-unknown-elf-gcc": "gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf",
     "qemu-system-arm": "qemu-system-arm",
