@@ -61,7 +61,7 @@ def test_a_socket_whose_folder_was_taken_away_is_made_anew_and_anothers_is_let_a
     asyncio.run(main())
 
 
-def test_a_node_that_ends_while_another_has_its_socket_does_not_say_that_it_is_there_again(tmp_path):
+def test_a_node_that_ends_while_another_has_its_socket_does_not_say_that_it_is_back(tmp_path):
     with running(tmp_path) as node, socket.socket(socket.AF_UNIX) as other:
         other.bind(str(tmp_path / "other.sock"))
         other.listen()
