@@ -61,6 +61,17 @@ def test_a_socket_whose_folder_was_taken_away_is_made_anew_and_anothers_is_let_a
     asyncio.run(main())
 
 
+def test_a_node_that_ends_while_another_has_its_socket_does_not_say_that_it_is_back(tmp_path):
+    with running(tmp_path) as node, socket.socket(socket.AF_UNIX) as other:
+        other.bind(str(tmp_path / "other.sock"))
+        other.listen()
+        (tmp_path / "other.sock").replace(node.where)
+        wait_until(lambda: node.lines("a node with this name runs already; stop it; going on"))
+        assert node.end() == 0
+        assert node.where.is_socket()
+    assert not node.lines("there again")
+
+
 def test_a_request_that_a_node_cannot_do_is_answered_in_words(tmp_path):
     with running(tmp_path) as node:
         for request, why in WRONG:

@@ -143,7 +143,8 @@ class Process:
         except LiveError as error:
             self.notices.tell("socket", f"{error}; going on, trying again")
         else:
-            self.notices.over("socket", f"{self.server.path}: there again")
+            if self.server.listener is not None:
+                self.notices.over("socket", f"{self.server.path}: there again")
         state = self.node.state
         if state.trouble:
             text = f"{state.path}: cannot be written: {state.trouble}; going on, trying again"

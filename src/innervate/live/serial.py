@@ -141,12 +141,14 @@ class SerialLink(Link):
         if not data:
             self._lost()
             return
-        before = self._decoder.dropped
-        frames = self._decoder.feed(data)
-        self.path.counters["dropped: framing"] += self._decoder.dropped - before
+        decoder = self._decoder
+        before = decoder.dropped
+        frames = decoder.feed(data)
+        self.path.counters["dropped: framing"] += decoder.dropped - before
         assert self._receive is not None
         for frame in frames:
-            self._receive(self.path, frame)
+            if decoder is self._decoder:  # else what was read is to be forgotten
+                self._receive(self.path, frame)
 
     def _writable(self) -> None:
         assert self._port is not None

@@ -90,6 +90,33 @@ def test_datagrams_that_wait_at_a_socket_are_thrown_away():
     assert asyncio.run(main()) == [b"new"]
 
 
+def test_what_was_read_from_a_serial_port_together_is_thrown_away_together():
+    """The first of several old frames shows how late it is; those read with it are as old."""
+
+    async def main():
+        master, slave = os.openpty()
+        tty.setraw(slave)
+        taken = []
+        link = SerialLink(os.ttyname(slave), 4_000_000)
+
+        def take(_, data):
+            taken.append(data)
+            if data == b"old":
+                link.forget()
+
+        await link.open(take)
+        os.write(master, b"\x04old\x00\x04old\x00")
+        await asyncio.sleep(0.05)
+        os.write(master, b"\x04new\x00")
+        await asyncio.sleep(0.05)
+        link.close()
+        os.close(master)
+        os.close(slave)
+        return taken
+
+    assert asyncio.run(main()) == [b"old", b"new"]
+
+
 def test_bytes_that_wait_at_a_serial_port_are_thrown_away():
     async def main():
         master, slave = os.openpty()

@@ -20,7 +20,7 @@ HALF = 0.5
 # node's only link 25, 16, 9 or 4 % are acknowledged, 99, 89, 82 or 17 % came; in a ring of 30 nodes
 # with eight such links each 92, 60, 38 or 23 %.
 ACKED_MIN = RATIO_MIN / (ALL_ACKED + 1)
-# What a standby waits on links that lose much (decision 0066), and as the template has it.
+# What a standby waits on links that lose much (decision 0067), and as the template has it.
 PATIENT_US = 500_000
 ON_A_LEG = 8  # places that are looked at between two points of a robot's way
 MOMENTS_MAX = 300
