@@ -95,9 +95,10 @@ docs: $(STAMP)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 	@echo "Written: site/. To read it with its search: $(BIN)/python -m http.server -d site"
 
-# Without a network: what builds the wheel is in .venv already. The wheel has loops for this system
-# and processor, compiled in some minutes; LOOPS=no leaves them out, and it is for any. ADDRESS is
-# where the project lies on the web, as https://HOST/OWNER/NAME; without it nothing links there.
+# Without a network: what builds the wheel is in .venv already. The wheel has loops, and by cc live
+# nodes, for this system and processor, compiled in some minutes; LOOPS=no leaves both out, and it
+# is for any. ADDRESS is where the project lies on the web, as https://HOST/OWNER/NAME; without it
+# nothing links there.
 LOOPS = yes
 dist: export INNERVATE_ADDRESS = $(ADDRESS)
 dist: docs

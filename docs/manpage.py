@@ -23,7 +23,7 @@ CODES = (("0", "Done."),
 VARIABLES = (
     ("INNERVATE_CACHE", "Folder for compiled loops."),
     ("INNERVATE_NETWORKS", "Folders of networks of one's own, separated as in PATH."),
-    ("INNERVATE_READY", "0: do not take loops that came ready with the toolkit."),
+    ("INNERVATE_READY", "0: take neither loops nor nodes as C that came ready with the toolkit."),
     ("INNERVATE_RUN", "Folder in which running nodes have their sockets."),
 )
 

@@ -195,6 +195,14 @@ def test_numbers_by_their_modules_names_do_the_same_everywhere(by_module, own, c
     assert "sizes" not in board
 
 
+def test_actions_are_counted_where_a_module_has_another_name_here(by_module, own, capsys):
+    path = own.folder / "protocol.py"
+    text = path.read_text().replace("import sizes", "import sizes as size")
+    path.write_text(text.replace("sizes.", "size."))
+    assert main(["check-protocol", "--no-tests", str(own.folder)]) == 0
+    assert "at most 5 actions a call of 8" in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_a_number_of_another_file_that_is_edited_is_compiled_anew(by_module, own):
     for step in (1, 3):

@@ -327,7 +327,7 @@ def actions_of(folder: Path, network: Any) -> dict[str, tuple[int | None, str]]:
     files: dict[str, Path] = {}
     for path in sources(folder, network):
         tree = checks.parsed(path)
-        constants |= checks.constants_of(tree, path.stem)
+        constants |= numbers_of(import_module(_name_of(path, folder, network)))
         functions |= {one.name: one for one in functions_of(tree)}
         files |= {one.name: path for one in functions_of(tree)}
     found: dict[str, tuple[int | None, str]] = {}

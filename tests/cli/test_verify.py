@@ -102,6 +102,11 @@ def test_a_place_that_is_none_for_counterexamples_is_told_before_anything_is_exp
     )  # fmt: skip
 
 
+def test_a_name_that_is_too_long_for_a_folder_is_a_mistake_in_what_was_given(sh):
+    assert sh("verify", *SMALL, "--out", "x" * 300) == 2
+    assert sh.err.endswith(" cannot be written: File name too long; choose another place\n")
+
+
 def test_json_is_all_there_is(sh):
     assert sh("verify", *SMALL, "--rule", "all", "--json") in (0, 1)
     cases = json.loads(sh.out)

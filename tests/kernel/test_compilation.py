@@ -142,19 +142,20 @@ def test_numbers_of_other_packages_are_what_the_next_loop_is_known_by(
 ):
     monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
     monkeypatch.setattr(numba.config, "CACHE_DIR", "")
-    sizes = ModuleType("sizes")
-    known = {"STEP": 1, "PLACES": (1, 2), "sizes": sizes, "MOST": 9}
-    code = compile("def f(n):\n    return n + STEP + PLACES[0] + sizes.FAR", "/ring/f.py", "exec")
-    exec(code, known)
+    sizes, times = ModuleType("sizes"), ModuleType("times")
+    known = {"STEP": 1, "PLACES": (1, 2), "sizes": sizes, "times": times, "MOST": 9}
+    text = "def f(n):\n    return n + STEP + PLACES[0] + sizes.FAR + times.FAR"
+    exec(compile(text, "/ring/f.py", "exec"), known)
 
-    def folder(step=1, places=(1, 2), far=3, most=9):
+    def folder(step=1, places=(1, 2), far=3, late=5, most=9):
         known.update(STEP=step, PLACES=places, MOST=most)
-        sizes.FAR = far
+        sizes.FAR, times.FAR = far, late
         compilation.register_functions(known["f"])
         return compilation.open_cache()
 
     assert folder() == folder(most=8)  # it does not look at that one
-    assert len({folder(), folder(step=2), folder(places=(1, 3)), folder(far=4)}) == 4
+    others = [folder(step=2), folder(places=(1, 3)), folder(far=4), folder(far=5, late=3)]
+    assert len({folder(), *others}) == 5
 
 
 @pytest.fixture

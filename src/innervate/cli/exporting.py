@@ -29,8 +29,7 @@ def export(
 
     Args:
         source: A run folder, a scenario file, or the name of a bundled one; with --dissector alone
-            the
-            folder for that, Wireshark's own if left out.
+            the folder for that, Wireshark's own if left out.
         wanted: Which files are written.
     """
     folder = None if wanted.has_files or source is None else Path(source)

@@ -62,10 +62,13 @@ def check_folder(path: Path) -> None:
     Raises:
         ExportError: it cannot.
     """
-    there = next((one for one in (path, *path.parents) if one.exists()), path)
-    why = "" if there.is_dir() else f"{there} is no folder"
-    if not why and not os.access(there, os.W_OK | os.X_OK):
-        why = "no permission"
+    try:
+        there = next((one for one in (path, *path.parents) if one.exists()), path)
+        why = "" if there.is_dir() else f"{there} is no folder"
+        if not why and not os.access(there, os.W_OK | os.X_OK):
+            why = "no permission"
+    except OSError as error:  # even to look
+        why = error.strerror or str(error)
     if why:
         raise ExportError(f"{path} cannot be written: {why}; choose another place")
 

@@ -26,7 +26,7 @@ CACHE_FOLDERS_MAX = 8
 
 _registered: set[Callable[..., Any]] = set()
 _foreign: set[Path] = set()  # files of other packages that the next loop is compiled from
-_numbers: set[str] = set()  # that functions of such files take from modules, by name and value
+_numbers: set[str] = set()  # that functions of such files take: module, name, value
 _not_kept: list[str] = []  # what was compiled and could not be written
 
 
@@ -96,7 +96,7 @@ def _taken(function: Callable[..., Any]) -> Iterator[str]:
     for home in (known, *(vars(known[n]) for n in used if inspect.ismodule(known.get(n)))):
         for name in used:
             if isinstance(home.get(name), int | float | tuple):
-                yield f"{name} {told(home[name])}"
+                yield f"{home.get('__name__')}.{name} {told(home[name])}"
 
 
 @cache
