@@ -8,6 +8,8 @@ TABLES = (
     ("due", 0, 0, 1_073_741_823, "us", "when"),
     ("seen", 4, 0, 1_073_741_823, "us", "when, at each port"),
     ("seq", 0, 0, 65_535, "number", "newest"),
+    ("age", 0, 0, 65_535, "number", "of a state"),
+    ("age", 0, 0, 1_073_741_823, "us", "of a frame: which is meant is not known"),
     ("wait_us", 0, 0, 1_000_000, "us", "how long"),
 )
 
@@ -55,6 +57,7 @@ def test_later_is_not_for_readings(tmp_path, line, name):
     "return after(now, node.due)",
     "return later(frame.seq, node.seq)",
     "return later(frame.seq, port)",
+    "return later(node.age, node.seq)",
     "return ((now - node.due) & MASK30) > params.wait_us",
     "return now != node.due and params.wait_us < port",
     "return (now + params.wait_us) & MASK30",

@@ -21,7 +21,7 @@ def of_clocks(path, tables):
     """
     most = {}
     for name, _length, _low, high, *_ in tables:
-        most[name] = max(most.get(name, 0), high)
+        most[name] = min(most.get(name, high), high)
     found = []
     for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(function, ast.FunctionDef):
