@@ -19,7 +19,7 @@ def of_clocks(path, tables):
         path: a file of the protocol, or of its invariants.
         tables: the declared fields of states, frames and parameters.
     """
-    most = {}
+    most = {}  # of two fields of one name the lesser: nothing is refused that may be right
     for name, _length, _low, high, *_ in tables:
         most[name] = min(most.get(name, high), high)
     found = []
