@@ -54,7 +54,7 @@ def test_a_group_whose_interface_is_away_is_joined_again_when_it_is_back():
         link = MulticastLink(("239.77.12.5", free_port()), "127.0.0.1")
         await link.open(lambda *_: None)
         make, link._make = link._make, nowhere
-        link._lost()
+        link._lost(OSError(errno.ENODEV, "No such device"))
         assert not link.paths[0].up
         await asyncio.sleep(2.2 * udp.RENEW_S)
         link.paths[0].send(b"lost")

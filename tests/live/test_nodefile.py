@@ -146,6 +146,16 @@ def test_no_node_is_made_that_could_not_send(tmp_path, text, says):
     assert says in str(caught.value)
 
 
+@pytest.mark.parametrize("peer", [
+    "0.0.0.0:4700", "239.77.0.1:4700", "224.0.0.1:4700", "255.255.255.255:4700", "10.0.0.2:0",
+])  # fmt: skip
+def test_what_no_neighbour_can_have_as_its_address_is_refused(tmp_path, peer):
+    with pytest.raises(LiveError) as caught:
+        build(load(write(tmp_path, CELL.format(peers=f'"127.0.0.1:4700", "{peer}"'))))
+    said = f"link.0.peers.1: {peer} is no address that a neighbour can have; write its own, like"
+    assert said in str(caught.value)
+
+
 @pytest.mark.parametrize("host", [
     "h", "n1", "my_host", "3com.example", "node-1.lan", "host.", "r\u00e4uber.local", "a." * 126,
 ])  # fmt: skip

@@ -1,6 +1,7 @@
 """What is the matter with a node is said by its process: what its sealer finds, too."""
 
 import asyncio
+import errno
 import os
 
 import pytest
@@ -10,6 +11,7 @@ from innervate.live.build import open_keys
 from innervate.live.machine import Machine, on
 from innervate.live.nodefile import load
 from innervate.live.serial import SerialLink
+from innervate.live.udp import MulticastLink
 
 KEY = bytes(range(32))
 FILE = """\
@@ -108,14 +110,14 @@ def test_a_node_whose_protocol_is_gone_says_why_and_ends(node):
 def test_a_device_that_is_not_there_is_said_and_when_it_is(node, tmp_path):
     process, machine = node
     device, link = tmp_path / "ttyUSB0", SerialLink(str(tmp_path / "ttyUSB0"), 115_200)
-    process.node.links.append(link)
+    process.node.paths.append(link.path)
 
     async def look():
         await link.open(lambda path, data: None)
         process._look()
         device.write_text("")
         link._try_open()
-        assert link.trouble == f"{device}: no serial port; trying again"
+        assert link.path.trouble == f"{device}: no serial port; trying again"
         device.unlink()
         far, near = os.openpty()
         device.symlink_to(os.ttyname(near))
@@ -129,6 +131,56 @@ def test_a_device_that_is_not_there_is_said_and_when_it_is(node, tmp_path):
     asyncio.run(look())
     assert machine.said == [f"n3: {device}: No such file or directory; trying again",
                             f"n3: serial {device}: there again"]  # fmt: skip
+
+
+class Away:
+    """A socket whose interface is there or not."""
+
+    error = None
+
+    def sendto(self, data, address):
+        if self.error is not None:
+            raise self.error
+
+    def setsockopt(self, *what):
+        self.sendto(b"", None)
+
+
+def test_a_neighbour_that_cannot_be_sent_to_is_said_and_when_it_can_again(node):
+    process, machine = node
+    (path,) = process.node.paths
+    path.link.socket = sock = Away()
+    for error in (OSError(errno.ENETUNREACH, "Network is unreachable"), BlockingIOError(), None):
+        sock.error = error
+        path.send(b"frame")
+        process._look()
+        process._look()
+    assert machine.said == [
+        "n3: udp 127.0.0.1:9: cannot be sent to: Network is unreachable; trying again",
+        "n3: udp 127.0.0.1:9: there again",
+    ]
+    assert path.counters["unsent: full"] == path.counters["unsent: Network is unreachable"] == 1
+
+
+def test_a_group_whose_interface_is_gone_is_said_and_when_it_is_back(node):
+    process, machine = node
+    link = MulticastLink(("239.77.0.1", 4700), "10.0.2.1")
+    process.node.paths[:] = link.paths
+    link.socket = sock = Away()
+
+    async def look():
+        for code in (errno.ENODEV, errno.EADDRINUSE):
+            sock.error = OSError(code, os.strerror(code))
+            link._renew()
+            process._look()
+            link._again.cancel()
+
+    asyncio.run(look())
+    assert machine.said == [
+        "n3: udp 239.77.0.1:4700: not in the group on interface 10.0.2.1: No such device; "
+        "trying again",
+        "n3: udp 239.77.0.1:4700: there again",
+    ]
 
 
 def test_keys_that_other_users_can_read_are_named(tmp_path):

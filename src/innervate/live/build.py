@@ -28,6 +28,9 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
 
 
+BROADCAST = "255.255.255.255"
+
+
 def build(loaded: Loaded, engine: str = "") -> LiveNode:
     """The node of a node file, not yet started; `engine` in place of what the file says.
 
@@ -60,7 +63,7 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, UdpTable):
         from innervate.live.udp import UdpLink
 
-        peers = [_ipv4(peer, f"{where}.peers.{i}") for i, peer in enumerate(table.peers)]
+        peers = [_peer(peer, f"{where}.peers.{i}") for i, peer in enumerate(table.peers)]
         if twice := next((one for one in peers if peers.count(one) > 1), None):
             raise LiveError(f"{where}.peers: {twice[0]}:{twice[1]} stands there twice")
         return UdpLink(address(table.bind, f"{where}.bind"), peers, port)
@@ -94,6 +97,18 @@ def _interface(text: str, where: str) -> str:
             f'{where}: "{shown(text)}" is no IPv4 address; write that of the interface, like '
             '"10.0.2.1"'
         ) from None
+
+
+def _peer(text: str, where: str) -> tuple[str, int]:
+    """A neighbour's address: one machine's, at which it can be sent to and comes from."""
+    host, port = _ipv4(text, where)
+    one = ipaddress.IPv4Address(host)
+    if one.is_multicast or one.is_unspecified or host == BROADCAST or not port:
+        raise LiveError(
+            f"{where}: {text} is no address that a neighbour can have; write its own, like "
+            '"10.0.0.2:4700", and for a group a link of kind = "multicast"'
+        )
+    return host, port
 
 
 def _ipv4(text: str, where: str) -> tuple[str, int]:

@@ -22,6 +22,7 @@ class Path:
         up: False while its device is away.
         cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
         loss: share of the frames that are lost as they come in, 0 to 1; as of a loose plug.
+        trouble: why it carries nothing now, for its user; "" = it does, or nothing is known.
         heard_at: when a good frame came in last, us of the driver's clock; 0 never.
         counters: frames and bytes out and in, and why frames were not sent.
     """
@@ -36,6 +37,7 @@ class Path:
         self.up = True
         self.cut = False
         self.loss = 0.0
+        self.trouble = ""
         self.heard_at = 0
         self.counters: Counter[str] = Counter()
 
@@ -65,12 +67,10 @@ class Link:
 
     Attributes:
         frame_max: bytes that it carries at once, as sealed; on IP what Ethernet does not cut up.
-        trouble: why it carries nothing now, for its user; "" = it does, or nothing is known.
     """
 
     paths: list[Any]
     frame_max = 1472
-    trouble = ""
 
     async def open(self, receive: Receiver) -> None:
         """Start to receive; LiveError if it cannot be opened as written."""

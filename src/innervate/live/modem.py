@@ -76,8 +76,8 @@ async def run(device: str, baud: int, number: int, medium: str) -> None:
     modem = Modem(SerialLink(device, baud), MediumRadio(number, address(medium, "modem")))
     await modem.start()
     print(f"modem: {device} is station {number} of {medium}", flush=True)
-    if modem.link.trouble:
-        print(f"modem: {modem.link.trouble}", flush=True)
+    if modem.link.path.trouble:
+        print(f"modem: {modem.link.path.trouble}", flush=True)
     try:
         await asyncio.Event().wait()
     finally:

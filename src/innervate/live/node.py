@@ -255,7 +255,7 @@ class LiveNode:
 
     def troubles(self) -> dict[str, str]:
         """What its user should mend, a line each, by a name for each."""
-        return {link.paths[0].name: link.trouble for link in self.links if link.trouble}
+        return {path.name: path.trouble for path in self.paths if path.trouble}
 
     def counters(self) -> Counter[str]:
         """What happened how often: handler calls, frames dropped by reason, outcomes."""

@@ -98,10 +98,10 @@ class SerialLink(Link):
         except OSError as error:
             none = error.errno == errno.ENOTTY
             why = "no serial port" if none else error.strerror or "cannot be opened"
-            self.trouble = f"{self.device}: {why}; trying again"
+            self.path.trouble = f"{self.device}: {why}; trying again"
             self._later()
             return
-        self.trouble = ""
+        self.path.trouble = ""
         self._decoder = cobs.Decoder(FRAME_MAX)
         self.path.up = True
         asyncio.get_running_loop().add_reader(self._port.fileno(), self._readable)

@@ -68,8 +68,11 @@ class UdpPath(Path):
         except BlockingIOError:
             self.counters["unsent: full"] += 1
         except OSError as error:
-            self.counters[f"unsent: {error.strerror or 'error'}"] += 1
+            why = error.strerror or "error"
+            self.counters[f"unsent: {why}"] += 1
+            self.trouble = f"{self.name}: cannot be sent to: {why}; trying again"
         else:
+            self.trouble = ""
             self.sent(data)
 
 
@@ -114,7 +117,7 @@ class UdpLink(Link):
         for one in (sock, *self._others):
             asyncio.get_running_loop().add_reader(one.fileno(), self._readable, one)
         for path in self.paths:
-            path.up = True
+            path.up, path.trouble = True, ""
 
     def _make(self) -> socket.socket:
         sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -192,8 +195,8 @@ class UdpLink(Link):
                 data, address = sock.recvfrom(DATAGRAM_MAX)
             except (BlockingIOError, ConnectionError):  # refused: a neighbour is not there yet
                 return
-            except OSError:
-                self._lost()
+            except OSError as error:
+                self._lost(error)
                 return
             path = self._origin(address)
             if path is None:
@@ -204,11 +207,12 @@ class UdpLink(Link):
     def _origin(self, address: Address) -> UdpPath | None:
         return self._by_address.get(address)
 
-    def _lost(self) -> None:
+    def _lost(self, error: OSError) -> None:
         """The interface went away: try until it is back."""
         self._drop()
         for path in self.paths:
             path.up = False
+            path.trouble = f"{path.own}: cannot be used: {error.strerror}; trying again"
         self._again = asyncio.get_running_loop().call_later(REOPEN_S, self._reopen)
 
     def _reopen(self) -> None:
@@ -216,8 +220,8 @@ class UdpLink(Link):
             return
         try:
             self._open()
-        except OSError:
-            self._lost()
+        except OSError as error:
+            self._lost(error)
 
 
 class MulticastLink(UdpLink):
@@ -274,12 +278,18 @@ class MulticastLink(UdpLink):
         self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
         if self.socket is None:
             return
+        group, why = self._group, ""
         try:
             self._join(self.socket)
         except OSError as error:
-            self._group.up = error.errno == errno.EADDRINUSE  # that says: it is a member
-        else:
-            self._group.up = True
+            if error.errno != errno.EADDRINUSE:  # that says: it is a member
+                why = error.strerror or "error"
+        if why:
+            where = f"not in the group on interface {self.interface}"
+            group.trouble = f"{group.name}: {where}: {why}; trying again"
+        elif not group.up:
+            group.trouble = ""
+        group.up = not why
 
     def _join(self, sock: socket.socket) -> None:
         own = socket.inet_aton(self.interface)
