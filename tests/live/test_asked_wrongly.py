@@ -1,6 +1,7 @@
 """A node's socket comes back when somebody takes it away, and says in words what it cannot do."""
 
 import asyncio
+import errno
 import json
 import shutil
 import socket
@@ -59,6 +60,47 @@ def test_a_socket_whose_folder_was_taken_away_is_made_anew_and_anothers_is_let_a
         assert not where.exists()
 
     asyncio.run(main())
+
+
+def test_a_socket_at_which_nobody_could_listen_is_made_anew_at_the_next_look(tmp_path, monkeypatch):
+    where = tmp_path / "n0.sock"
+
+    def no_room(self):
+        raise OSError(errno.ENOBUFS, "No buffer space available")
+
+    async def main():
+        server = status.Server(where, None, Counter())
+        await server.start()
+        where.unlink()
+        with monkeypatch.context() as now:
+            now.setattr(status.BoundedListener, "open", no_room)
+            with pytest.raises(LiveError, match="No buffer space available"):
+                server.look()
+        server.look()
+        assert await asyncio.to_thread(status.answers, where)
+        await server.stop()
+        assert not where.exists()
+
+    asyncio.run(main())
+
+
+def test_a_key_that_is_missing_in_the_node_itself_is_not_said_to_be_the_requests():
+    said = []
+
+    class Kept:
+        async def line(self, answer):
+            said.append(answer)
+
+    async def handle(request, writer):
+        {}[request["do"]]
+
+    with pytest.raises(KeyError):
+        asyncio.run(status.answer(b'{"do": "x"}', handle, Kept()))
+    asyncio.run(status.answer(b"{}", handle, Kept()))
+    assert said == [
+        {"error": "this node cannot answer, by a mistake of its own: KeyError('x')"},
+        {"error": 'this request needs "do"'},
+    ]
 
 
 def test_a_node_that_ends_while_another_has_its_socket_does_not_say_that_it_is_back(tmp_path):

@@ -1,6 +1,7 @@
 """What an engine does with what a protocol puts out: timers at their times, each action once."""
 
 import asyncio
+import time
 
 import pytest
 
@@ -202,3 +203,12 @@ def test_what_comes_is_told_with_when_it_came_and_what_is_not_taken_is_counted_b
     began = [("start", now, cause) for cause in (0, 1)]
     assert stack.heard == [*began, (now, 4), (77, 5), (now, 3, "item")]
     assert engine.counters == {"frames": 2, "dropped: too short": 1, "dropped: for another": 1}
+
+
+@pytest.mark.skipif(not hasattr(time, "CLOCK_BOOTTIME"), reason="this system has no such clock")
+def test_the_clock_goes_on_while_the_machine_is_suspended(monkeypatch):
+    read = time.clock_gettime_ns
+    slept_ns = {time.CLOCK_BOOTTIME: 20_000_000_000}
+    before_us = clock_us()
+    monkeypatch.setattr(time, "clock_gettime_ns", lambda which: read(which) + slept_ns.get(which, 0))
+    assert 20_000_000 <= clock_us() - before_us < 21_000_000

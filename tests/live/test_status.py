@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import shutil
 import socket
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,7 @@ from innervate.live.errors import LiveError
 from innervate.live.node import is_broken
 from innervate.live.up import Processes
 from tests.live.net import Mesh, Skin, until
+from tests.live import test_trouble
 
 
 def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():
@@ -248,6 +250,22 @@ def test_nodes_that_were_killed_are_named_and_the_others_are_shown(tmp_path, mon
     assert "n0: mesh gateway" in shown.out
     assert shown.err.count("n1: does not answer; its process was killed, or hangs") == 2
     assert "no node answers here" in shown.err
+
+
+def test_where_files_of_nodes_are_gone_it_is_said_that_the_dead_are_not_counted(
+    tmp_path, monkeypatch, capsys
+):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    monkeypatch.setenv("INNERVATE_RUN", str(folder))
+    gone = f"n0: {folder / 'n0.toml'} is gone; nodes that died since then may not be counted\n"
+    with test_trouble.running(folder) as node:
+        for said in ("", gone):
+            test_trouble.wait_until(node.where.is_socket)
+            assert app.main(["live", "status"]) == 0
+            assert capsys.readouterr().err == said
+            shutil.rmtree(folder)
+        test_trouble.wait_until(node.where.is_socket)
 
 
 def test_a_node_that_was_started_again_has_a_status_before_it_hears_a_gateway():

@@ -103,6 +103,10 @@ def show(*nodes: str, as_json: Json = False) -> int:
                 print(line)
         for line in (*live_status.twins(told), *live_status.broken(told)):
             print(line)
+    for one in told:
+        if not nodes and "file" in one and not Path(one["file"]).exists():
+            why = "is gone; nodes that died since then may not be counted"
+            print(f"{one['name']}: {one['file']} {why}", file=sys.stderr)
     for path in silent:
         print(f"{path.stem}: does not answer; its process was killed, or hangs", file=sys.stderr)
     return 1 if silent else 0

@@ -162,9 +162,15 @@ class Engine:
 
     def input(self, kind: int, item: Any) -> None:
         """Hand something down for the node's own user."""
-        now = clock_us()
+        now = self.look()
         self.stack.on_input(now & MASK30, kind, item)
         self._drain(now)
+
+    def look(self) -> int:
+        """Tell of a time in which the process did not run before anything is done; now, us."""
+        now = clock_us()
+        self._is_late(now)
+        return now
 
     def _is_late(self, now: int) -> bool:
         """True if the process did not run for long, and somebody was told."""

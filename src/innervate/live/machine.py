@@ -23,6 +23,7 @@ from innervate.live.errors import LiveError
 
 ANSWER_S = 5.0
 BOOT = Path("/proc/sys/kernel/random/boot_id")  # Linux
+AWAKE_OR_NOT = getattr(time, "CLOCK_BOOTTIME", time.CLOCK_MONOTONIC)  # Linux has both
 IDLE_STATES = Path("/dev/cpu_dma_latency")  # Linux: the longest that a wake-up may take, us
 
 Socket = socket.socket
@@ -70,8 +71,8 @@ class Machine:
     chance: random.Random = random.SystemRandom()
 
     def monotonic_ns(self) -> int:
-        """A clock that never jumps."""
-        return time.monotonic_ns()
+        """A clock that never jumps, and goes on while the machine is suspended."""
+        return time.clock_gettime_ns(AWAKE_OR_NOT)
 
     def boot(self) -> str:
         """Which start of the machine this is, no other has the same; "" = the system says none."""

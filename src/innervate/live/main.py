@@ -62,6 +62,7 @@ class Process:
         if loaded.table.metrics is not None:
             at = address(loaded.table.metrics, f"{loaded.path}: metrics")
             self.page = MetricsPage(at, self.node)
+        self.file = str(loaded.path.absolute())
         self.ending = asyncio.Event()
         self.failed = False
         self.node.ended = self._ended
@@ -190,7 +191,7 @@ class Process:
     async def _answer(self, request: dict[str, Any], writer: status.Writer) -> None:
         what = str(request["do"])
         if what == "status":
-            await writer.line(self.node.status())
+            await writer.line({**self.node.status(), "file": self.file})
         elif what == "capture":
             await tap.serve(self.node, writer)
         elif what == "send":

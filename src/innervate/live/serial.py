@@ -14,6 +14,7 @@ READ_BYTES = 4096
 FRAME_MAX = 512  # bytes of a frame, sealed
 WAITING_MAX = 16_384  # bytes that the line could not take yet; then frames are dropped
 REOPEN_S = 0.25
+END = b"\0"  # of a frame
 
 
 class SerialLink(Link):
@@ -69,8 +70,7 @@ class SerialLink(Link):
                     break
         self._decoder = cobs.Decoder(FRAME_MAX)
         if self._waiting:
-            self._waiting.clear()
-            asyncio.get_running_loop().remove_writer(self._port.fileno())
+            self._waiting[:] = END  # of a frame that may have begun
 
     def write(self, data: bytes) -> bool:
         """Put bytes on the line, or behind those that wait; False if there is no room."""

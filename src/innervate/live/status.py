@@ -103,6 +103,13 @@ def _forget(here: Path, own: Path) -> None:
         older.unlink()
 
 
+class Request(dict[str, Any]):
+    """What is asked of a node; what is looked for in it and is not there is the caller's mistake."""
+
+    def __missing__(self, key: str) -> None:
+        raise ValueError(f'this request needs "{key}"')
+
+
 class Writer:
     """Writes answers of one connection; `reader` is its other direction."""
 
@@ -180,6 +187,7 @@ class Server:
         try:
             self.listener.move(self._bind())
         except OSError as error:
+            self._inode = 0  # where it was bound nobody listens: the next look makes another
             raise self._none_here(error) from None
 
     async def stop(self) -> None:
@@ -206,11 +214,13 @@ async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
         request = json.loads(line)
         if not isinstance(request, dict):
             raise ValueError("a request is a JSON object")
-        await handle(request, writer)
-    except KeyError as error:
-        await writer.line({"error": f'this request needs "{error.args[0]}"'})
+        await handle(Request(request), writer)
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
         await writer.line({"error": str(error)})
+    except LookupError as error:
+        why = f"this node cannot answer, by a mistake of its own: {error!r}"
+        await writer.line({"error": why})
+        raise
 
 
 def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -84,7 +84,7 @@ def test_a_message_that_comes_shows_its_way_and_that_its_sender_is_there(kind, n
 )  # fmt: skip
 def test_how_a_message_is_sent(given, in_order, flags):
     node, sent = made(), []
-    node.in_order, node.engine = in_order, object()
+    node.in_order, node.engine = in_order, SimpleNamespace(look=int)
     node.outgoing.send = lambda *one: sent.append(one) or Receipt()
     to = given.get("to", 2)
     node.send_request({"payload": "c3a4", **given, "to": to})

@@ -121,6 +121,7 @@ class MeshNode(LiveNode):
         self.outcomes["messages accepted"] += 1
         if self.idle():
             return refused(self.idle())
+        self.running().look()
         return self.outgoing.send(recipient, flags, payload, most)
 
     def receive_messages(
