@@ -208,7 +208,7 @@ def test_what_comes_is_told_with_when_it_came_and_what_is_not_taken_is_counted_b
 @pytest.mark.skipif(not hasattr(time, "CLOCK_BOOTTIME"), reason="this system has no such clock")
 def test_the_clock_goes_on_while_the_machine_is_suspended(monkeypatch):
     read = time.clock_gettime_ns
-    slept_ns = {time.CLOCK_BOOTTIME: 20_000_000_000}
+    slept = {time.CLOCK_BOOTTIME: 20_000_000_000}
     before_us = clock_us()
-    monkeypatch.setattr(time, "clock_gettime_ns", lambda which: read(which) + slept_ns.get(which, 0))
+    monkeypatch.setattr(time, "clock_gettime_ns", lambda which: read(which) + slept.get(which, 0))
     assert 20_000_000 <= clock_us() - before_us < 21_000_000

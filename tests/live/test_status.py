@@ -17,8 +17,8 @@ from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
 from innervate.live.node import is_broken
 from innervate.live.up import Processes
-from tests.live.net import Mesh, Skin, until
 from tests.live import test_trouble
+from tests.live.net import Mesh, Skin, until
 
 
 def test_a_cells_ports_have_the_names_of_its_sockets_and_a_cut_is_shown():

@@ -104,7 +104,7 @@ def _forget(here: Path, own: Path) -> None:
 
 
 class Request(dict[str, Any]):
-    """What is asked of a node; what is looked for in it and is not there is the caller's mistake."""
+    """What is asked of a node; what is looked for and is not there is the caller's mistake."""
 
     def __missing__(self, key: str) -> None:
         raise ValueError(f'this request needs "{key}"')
