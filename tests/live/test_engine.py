@@ -2,6 +2,7 @@
 
 import asyncio
 import time
+from types import SimpleNamespace
 
 import pytest
 
@@ -29,6 +30,7 @@ class Stack:
     """A protocol of a few timers that does as it is told; `fired` is what fired, us since began."""
 
     timers, reasons = 3, ("read", "too short")
+    unhurried = frozenset()
 
     def __init__(self):
         self.out, self.fired, self.heard, self.began = Box(), [], [], clock_us()
@@ -212,3 +214,18 @@ def test_the_clock_goes_on_while_the_machine_is_suspended(monkeypatch):
     before_us = clock_us()
     monkeypatch.setattr(time, "clock_gettime_ns", lambda which: read(which) + slept.get(which, 0))
     assert 20_000_000 <= clock_us() - before_us < 21_000_000
+
+
+def test_frames_that_nobody_waits_for_leave_behind_the_others_in_order():
+    async def main():
+        stack, left = Stack(), []
+        engine = Engine(
+            stack, lambda port, frame, b, c: left.append((port, frame.kind)), *[lambda *_: None] * 3
+        )
+        stack.unhurried = {16}
+        for port, kind in enumerate([16, 8, 9, 16, 8]):
+            stack.out.put(SEND, port, frame=SimpleNamespace(kind=kind))
+        engine.input(1, None)
+        return left
+
+    assert asyncio.run(main()) == [(1, 8), (2, 9), (4, 8), (0, 16), (3, 16)]

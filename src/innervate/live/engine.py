@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from typing import Any, Protocol
 
 from innervate.dialect.arith import HALF30, MASK30
@@ -21,6 +21,7 @@ class Stack(Protocol):
         inbox: the frame record that received bytes are read into.
         timers: how many timers it has.
         reasons: words for what `decode` returns; 0 is "read".
+        unhurried: kinds of frames that nobody waits for; of an outbox they leave last.
         silent_us: a path on which nothing was heard for so long is broken; NEVER: none is.
     """
 
@@ -28,6 +29,7 @@ class Stack(Protocol):
     inbox: Any
     timers: int
     reasons: tuple[str, ...]
+    unhurried: Set[int]
     silent_us: int
 
     def on_start(self, now: int, cause: int) -> None:
@@ -162,15 +164,13 @@ class Engine:
 
     def input(self, kind: int, item: Any) -> None:
         """Hand something down for the node's own user."""
-        now = self.look()
+        now = clock_us()
         self.stack.on_input(now & MASK30, kind, item)
         self._drain(now)
 
-    def look(self) -> int:
-        """Tell of a time in which the process did not run before anything is done; now, us."""
-        now = clock_us()
-        self._is_late(now)
-        return now
+    def look(self) -> None:
+        """Tell of a time in which the process did not run, before something is handed down."""
+        self._is_late(clock_us())
 
     def _is_late(self, now: int) -> bool:
         """True if the process did not run for long, and somebody was told."""
@@ -186,12 +186,16 @@ class Engine:
         self.now = now
         count = out.count[0]
         out.count[0] = 0
-        armed = False
+        armed, unhurried = False, self.stack.unhurried if count > 1 else ()
+        behind = []
         for i in range(count):
             act = out.action[i]
             kind = act.kind
             if kind == SEND:
-                self._transmit(act.a, out.frame[i], act.b, act.c)
+                if unhurried and out.frame[i].kind in unhurried:
+                    behind.append((act.a, out.frame[i], act.b, act.c))
+                else:
+                    self._transmit(act.a, out.frame[i], act.b, act.c)
             elif kind == SET_TIMER:
                 wait = (act.b - now) & MASK30
                 self._due[act.a] = now + (wait if wait < HALF30 else 0)
@@ -200,6 +204,8 @@ class Engine:
                 self._report(act.a, act.b, act.c)
             elif kind == DELIVER:
                 self._deliver(act.a, out.frame[i])
+        for frame in behind:
+            self._transmit(*frame)
         if armed and not self._stopped:
             self._arm(now)
         self._settled()

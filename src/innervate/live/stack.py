@@ -1,5 +1,6 @@
 """What engines run of protocols whose handlers take a node, its parameters and an outbox."""
 
+from collections.abc import Set
 from typing import Any
 
 from innervate.dialect import plain
@@ -27,6 +28,7 @@ class CabledStack:
     """
 
     coder: Any
+    unhurried: Set[int] = frozenset()
 
     def __init__(
         self, do: Any, node: Any, params: Any, frame: Any, room: int, ports: list[int]

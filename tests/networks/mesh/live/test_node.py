@@ -11,6 +11,7 @@ from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import (
+    ACK,
     AGAIN,
     ALL,
     DATA,
@@ -23,6 +24,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_FULL,
     REPORT_GATEWAY,
 )
+from tests.live.net import Mesh
 
 
 class Kept(State):
@@ -123,3 +125,22 @@ def test_at_the_end_messages_under_way_are_waited_for_but_not_for_ever(ends_s, i
         return await node.drain(0.05)
 
     assert asyncio.run(main()) == is_drained
+
+
+def test_what_is_passed_on_leaves_before_it_is_acknowledged():
+    """Its sender has time; whoever waits for it has not."""
+
+    async def main():
+        async with Mesh(3, [(0, 1), (1, 2)]) as mesh:
+            left, reader = [], made().stack
+
+            def tap(at_ns, port, out, data, why):
+                if out and reader.decode(data) == 0:
+                    left.append(reader.inbox.kind)
+
+            mesh.nodes[1].taps.append(tap)
+            assert await mesh.nodes[0].send_message(2, b"x").wait() == DELIVERED
+        return left
+
+    left = asyncio.run(main())
+    assert left.index(DATA) < left.index(ACK)

@@ -192,6 +192,7 @@ class MeshNode(LiveNode):
         item = self._place
         unit_cm = self.stack.params.unit_cm
         item.x, item.y, item.vx, item.vy = place_of(at_cm, speed_cm_s, unit_cm)
+        engine.look()
         engine.input(const.SAMPLE, item)
 
     def receive_alarms(

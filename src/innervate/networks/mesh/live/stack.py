@@ -2,6 +2,7 @@
 
 import functools
 from collections import Counter
+from collections.abc import Set
 from types import SimpleNamespace
 from typing import Any
 
@@ -45,6 +46,7 @@ class MeshStack:
     """
 
     timers = const.TIMERS
+    unhurried: Set[int] = frozenset((const.ACK,))
     reasons: tuple[str, ...] = (*wire.REASONS, TOO_LONG)
 
     def __init__(
