@@ -5,18 +5,22 @@ import errno
 import json
 import shutil
 import socket
+import threading
 from collections import Counter
 
 import pytest
 
 from innervate.live import status
 from innervate.live.errors import LiveError
+from tests.live.net import until
 from tests.live.test_trouble import running, wait_until
 
 WRONG = [
     ({"do": "command", "code": 1}, 'a mesh node cannot do "command"; it can: status, send, '),
     ({"do": ["status"]}, "a mesh node cannot do \"['status']\"; it can: status, send, "),
     ({"to": 3}, 'this request needs "do"'),
+    ({"do": "send", "to": 1.5, "payload": "00"}, "to is a whole number, the recipient's"),
+    ({"do": "send", "to": "1", "payload": "00"}, "to is a whole number, the recipient's"),
     ({"do": "cut"}, 'this request needs "port"'),
     ({"do": "cut", "port": None}, "port is a whole number, loss a share from 0 to 1"),
     ({"do": "loose", "port": 0, "loss": "much"}, "port is a whole number, loss a share from 0 "),
@@ -121,3 +125,54 @@ def test_a_request_that_a_node_cannot_do_is_answered_in_words(tmp_path):
                 status.ask_one(node.where, request)
             assert str(told.value).startswith(f"n0: {why}"), request
         assert node.end() == 0
+
+
+def test_who_waits_for_an_end_and_leaves_gives_its_place_back(tmp_path, monkeypatch):
+    """A message to all has none: nobody acknowledges to have been one of them."""
+    monkeypatch.setattr(status, "LOOK_S", 0.01)
+    where, ended = tmp_path / "n0.sock", []
+
+    async def handle(request, writer):
+        await writer.line({"state": "accepted"})
+        try:
+            await asyncio.Event().wait()
+        finally:
+            ended.append(request["to"])
+
+    async def main():
+        server = status.Server(where, handle, Counter())
+        await server.start()
+        for to in range(status.BOUNDS.most + 1):
+            reader, writer = await asyncio.open_unix_connection(where)
+            writer.write(json.dumps({"do": "send", "to": to}).encode() + b"\n")
+            assert await reader.readline() == b'{"state": "accepted"}\n'
+            writer.close()
+            await asyncio.sleep(0.05)
+        await server.stop()
+
+    asyncio.run(main())
+    assert ended == list(range(status.BOUNDS.most + 1))
+
+
+def test_who_is_turned_away_before_it_has_asked_is_told_why(tmp_path, monkeypatch):
+    where = tmp_path / "n0.sock"
+    full = status.Bounds(most=0, burst=64, full=status.FULL, limit=status.LINE_MAX)
+    monkeypatch.setattr(status, "BOUNDS", full)
+    dumps, turned_away = json.dumps, threading.Event()
+
+    def late(request):
+        assert turned_away.wait(5)
+        return dumps(request)
+
+    async def main():
+        server = status.Server(where, None, counts := Counter())
+        await server.start()
+        monkeypatch.setattr(status.json, "dumps", late)
+        asking = asyncio.create_task(asyncio.to_thread(status.ask_one, where, {"do": "status"}))
+        await until(lambda: counts["status: turned away"])
+        turned_away.set()
+        with pytest.raises(LiveError, match="n0: 64 are connected to this node already"):
+            await asking
+        await server.stop()
+
+    asyncio.run(main())

@@ -122,13 +122,17 @@ class Writer:
         """Until the caller has gone, who may have said long ago that nothing more will be asked."""
         while self._reader is None or await self._reader.read(LINE_MAX):
             await asyncio.sleep(LOOK_S)
+        while not self.is_gone():
+            await asyncio.sleep(LOOK_S)
+
+    def is_gone(self) -> bool:
+        """True once both directions of the connection are closed."""
         sock = self._stream.get_extra_info("socket")
-        if sock is None:
-            return
+        if sock is None or sock.fileno() < 0:
+            return True
         look = select.poll()
         look.register(sock.fileno(), 0)  # tells of both directions being closed, whatever is asked
-        while not look.poll(0):
-            await asyncio.sleep(LOOK_S)
+        return bool(look.poll(0))
 
     async def line(self, answer: dict[str, Any]) -> None:
         """Write one answer as a line of JSON, and wait until there is room for more."""
@@ -201,11 +205,23 @@ class Server:
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
         writer = Writer(stream, reader)
+        watching = asyncio.ensure_future(_end_with(writer, asyncio.current_task()))
         try:
             while line := await reader.readline():
                 await answer(line, self._handle, writer)
         except (ConnectionError, ValueError):  # gone, or a line longer than any request
             pass
+        finally:
+            watching.cancel()
+
+
+async def _end_with(writer: Writer, serving: asyncio.Task[Any] | None) -> None:
+    """End what serves a caller who has gone: what it waits for may never come."""
+    assert serving is not None
+    while True:
+        await asyncio.sleep(LOOK_S)
+        if writer.is_gone():
+            serving.cancel()
 
 
 async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
@@ -233,7 +249,8 @@ def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
         sock.settimeout(ANSWER_S)
         try:
             sock.connect(str(path))
-            sock.sendall(json.dumps(request).encode() + b"\n")
+            with suppress(BrokenPipeError):  # who was turned away can read why
+                sock.sendall(json.dumps(request).encode() + b"\n")
             if request.get("do") != "status":  # that is answered at once, by a node that is well
                 sock.settimeout(None)
             with sock.makefile("rb") as lines:

@@ -61,8 +61,10 @@ class MeshNode(LiveNode):
 
     def send_request(self, request: dict[str, Any]) -> Receipt:
         """A message to a node, or to all: see send_message()."""
+        if type(to := request["to"]) is not int:
+            raise ValueError("to is a whole number, the recipient's")
         return self.send_message(
-            int(request["to"]),
+            to,
             bytes.fromhex(request["payload"]),
             reliable=bool(request.get("reliable", True)),
             priority=bool(request.get("priority", False)),
