@@ -4,6 +4,7 @@ import asyncio
 import json
 import os
 import socket
+import threading
 import stat
 import urllib.error
 import urllib.request
@@ -303,15 +304,19 @@ def test_a_file_that_is_no_socket_stays_where_a_node_was_to_have_one(tmp_path):
     assert mine.read_text() == "mine"
 
 
-def test_a_node_that_hangs_is_not_waited_for(tmp_path, monkeypatch):
-    """It takes the question, and says nothing."""
+@pytest.mark.parametrize("what", ["status", "revoke"])
+def test_a_node_that_hangs_is_not_waited_for(tmp_path, monkeypatch, what):
+    """It takes the question, and says nothing; others are still to be asked."""
     monkeypatch.setattr(status, "ANSWER_S", 0.05)
     path = tmp_path / "n0.sock"
     with socket.socket(socket.AF_UNIX) as hung:
         hung.bind(str(path))
         hung.listen()
-        with pytest.raises(LiveError, match="no node answers here"):
-            status.ask_one(path, {"do": "status"})
+        end = threading.Timer(5, hung.close)
+        end.start()
+        with pytest.raises(LiveError, match="no node answers here: timed out"):
+            status.ask_one(path, {"do": what})
+        end.cancel()
 
 
 def test_whoever_ended_asking_has_hung_up_once_both_directions_are_closed(tmp_path, monkeypatch):

@@ -21,6 +21,7 @@ from innervate.live.machine import is_left as is_left
 
 LOOK_S = 1.0  # between two looks whether who has ended asking has gone
 LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits
+AT_ONCE = ("status", "revoke")  # a node that is well answers so
 UP = "up."  # in a user's own folder, and a number: links to where each `live up` has its nodes
 FULL = b'{"error": "64 are connected to this node already; end a listen or a capture"}\n'
 BOUNDS = Bounds(most=64, burst=64, full=FULL, limit=LINE_MAX)
@@ -251,7 +252,7 @@ def ask(path: Path, request: dict[str, Any]) -> Iterator[dict[str, Any]]:
             sock.connect(str(path))
             with suppress(BrokenPipeError):  # who was turned away can read why
                 sock.sendall(json.dumps(request).encode() + b"\n")
-            if request.get("do") != "status":  # that is answered at once, by a node that is well
+            if request.get("do") not in AT_ONCE:
                 sock.settimeout(None)
             with sock.makefile("rb") as lines:
                 for line in lines:
