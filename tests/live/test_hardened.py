@@ -4,8 +4,8 @@ import asyncio
 import json
 import os
 import socket
-import threading
 import stat
+import threading
 import urllib.error
 import urllib.request
 from pathlib import Path
