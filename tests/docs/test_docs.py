@@ -1,5 +1,6 @@
 """What the documentation says is so: generated parts, keys, commands, files and numbers."""
 
+import contextlib
 import importlib.util
 import re
 import tomllib
@@ -10,6 +11,7 @@ import msgspec
 import pytest
 
 from innervate import scenario
+from innervate.cli import main
 from innervate.cli.app import app
 from innervate.live import nodefile
 from innervate.network import networks
@@ -18,6 +20,7 @@ from innervate.sweeping import make_plan, planfile
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
+ROOMS = ("benchmarks", "boards", "docs/decisions", "examples", "paper", "src", "tests")
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 TABLES = {
     model.PatchTable: "[[patch]]",
@@ -135,8 +138,6 @@ def test_links_lead_somewhere(page):
 
 
 def test_the_readmes_numbers_are_the_demos(capsys, tmp_path, monkeypatch):
-    from innervate.cli import main
-
     monkeypatch.chdir(tmp_path)
     assert main(["demo"]) == 0
     out = capsys.readouterr().out
@@ -158,3 +159,33 @@ def test_pages_have_no_long_lines():
         plain = [line for line in page.read_text(encoding="utf-8").splitlines()
                  if not line.startswith("|")]  # fmt: skip
         assert max(map(len, plain)) <= 150, page.name
+
+
+def named_files(text):
+    """Names of files and folders of ours that stand in running text, as code."""
+    for span in re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+        yield from re.findall(r"(?<![\w/.<-])(?:[\w-]+/)*(?!_)\w+\.(?:py|c|h)\b", span)
+        yield from re.findall(rf"(?<![\w/.-])(?:{'|'.join(ROOMS)})(?:/[\w-]+)+(?![\w.-])", span)
+
+
+def made_in(folder):
+    """What `new network gossip` and `firmware` write."""
+    with contextlib.chdir(folder):
+        assert main(["new", "network", "gossip"]) == 0
+        for words in ("skin", "skin --sealed", "radio", "mesh"):
+            assert main(["firmware", *words.split(), "--out", words]) == 0
+    return folder.rglob("*")
+
+
+def test_files_that_pages_name_are_there(tmp_path):
+    ours = [*ROOT.glob("*.py"), *DOCS.glob("*.py")]
+    ours += [path for room in ROOMS for path in (ROOT / room).rglob("*")]
+    files = "\n".join(f"{path}/" for path in [*ours, *made_in(tmp_path)])
+    more = [ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md", *(DOCS / "decisions").glob("*.md")]
+    missing = {
+        (page.name, name)
+        for page in PAGES + more
+        for name in named_files(page.read_text(encoding="utf-8"))
+        if f"/{name}/" not in files
+    }
+    assert not missing
