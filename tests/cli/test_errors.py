@@ -12,6 +12,7 @@ WRONG = {
     "unknown command": (("runn", "x"), 'Did you mean "run"?'),
     "unknown option": (("run", "four.toml", "--sed", "3"), "Did you mean --seed?"),
     "no file named": (("run",), "run needs FILE"),
+    "no option": (("size", "ur5.urdf"), "innervate: size needs --links; see: innervate size"),
     "no value": (("run", "four.toml", "--seed"), "--seed needs a value"),
     "not a number": (("run", "four.toml", "--seed", "x"), '"x"'),
     "negative seed": (("run", "four.toml", "--seed", "-3"), "seed must be a whole number from 0"),

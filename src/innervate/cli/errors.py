@@ -112,7 +112,7 @@ def _missing(error: Any) -> str:
     """An argument that was left out."""
     command = " ".join(error.command_chain or ())
     name = error.argument.name if error.argument is not None else "an argument"
-    what = f"{name} needs a value" if name.startswith("-") else f"{command} needs {name}"
+    what = f"{error.keyword} needs a value" if error.keyword else f"{command} needs {name}"
     return f"{what}; see: innervate {command} --help"
 
 

@@ -4,13 +4,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from innervate.kernel.words import number_of
-from innervate.plot.words import figure_words, headline_line, ms_words
+from innervate.plot.words import figure_words, headline_line, ms_words, wall_words
 
 
 def summary_lines(run: Any) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
-    took = f"{figure_words(run.result.ended_us / 1e6, 4)} s simulated in {summary['wall_s']:.2f} s"
+    simulated = figure_words(run.result.ended_us / 1e6, 4)
+    took = f"{simulated} s simulated in {wall_words(summary['wall_s'])}"
     first = f"{summary['name']}: {number_of(summary['nodes'], 'node')}; {took}, "
     lines = [f"{first}seed {summary['seed']}", headline_line(summary["headline"])]
     is_shared = run.result.counts.is_shared
