@@ -48,6 +48,15 @@ def test_a_line_number_where_there_is_one(sh):
     assert sh.err.startswith("innervate: bad.toml:3: ")
 
 
+def test_a_folder_that_is_gone_is_told_as_such(sh, tmp_path, monkeypatch):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert sh("prove", "gossip") == 2
+    assert sh.err.startswith("innervate: the current folder is not there any more; ")
+
+
 def failing(error):
     def fail(*_, **__):
         raise error
