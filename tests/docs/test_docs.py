@@ -11,6 +11,7 @@ import msgspec
 import pytest
 
 from innervate import scenario
+from innervate.analysis import summary, summary_common
 from innervate.cli import main
 from innervate.cli.app import app
 from innervate.live import nodefile
@@ -110,6 +111,16 @@ def test_scenarios_in_pages_can_be_run(page, tmp_path):
             nodefile.parse(tables)
         else:
             scenario.plan(scenario.loads(block))
+
+
+def test_keys_of_any_networks_summary_are_documented():
+    page = (DOCS / "reading-a-report.md").read_text(encoding="utf-8")
+    part = page.split("### Of any other network")[1].split("## ")[0]
+    there = {key for name in re.findall(r"`([\w.]+)`", part) for key in name.split(".")}
+    common = set(summary_common.Common.__annotations__) - {"headline"}
+    of = (summary.Summary, summary.Reports, summary.Frames, summary.Messages)
+    assert {key for one in of for key in one.__annotations__} - common - {"kind"} <= there
+    assert {f"{name}.parquet" for name in ("reports", "deliveries")} <= set(page.split("`"))
 
 
 def test_link_types_of_captures_are_those_of_the_page():
