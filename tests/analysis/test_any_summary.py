@@ -54,6 +54,9 @@ CASES = [
      "None of 10 frames arrived, 2 of 3 nodes are off."),
     (counts(offered=1, delivered=2), 1, OK,
      "1 message is delivered 2 times, none of 10 frames is lost."),
+    (counts(offered=1, delivered=4), 1, OK,
+     "1 message is delivered 4 times, more often than once at each of 3 nodes, "
+     "none of 10 frames is lost."),
     (counts(sent=0, arrived=0, offered=0, delivered=0), 1, NO_DATA, "No frame was sent."),
     (counts(sent=0, arrived=0, offered=0, delivered=0, off=(1,)), 1, DEGRADED,
      "1 of 3 nodes is off."),

@@ -12,6 +12,7 @@ WRONG = {
     "unknown command": (("runn", "x"), 'Did you mean "run"?'),
     "unknown option": (("run", "four.toml", "--sed", "3"), "Did you mean --seed?"),
     "no file named": (("run",), "run needs FILE"),
+    "no option": (("size", "ur5.urdf"), "innervate: size needs --links; see: innervate size"),
     "no value": (("run", "four.toml", "--seed"), "--seed needs a value"),
     "not a number": (("run", "four.toml", "--seed", "x"), '"x"'),
     "negative seed": (("run", "four.toml", "--seed", "-3"), "seed must be a whole number from 0"),
@@ -45,6 +46,15 @@ def test_a_line_number_where_there_is_one(sh):
     Path("bad.toml").write_text('kind = "skin"\n[[patch]]\ncolumns = 0\nrows = 1\n')
     assert sh("check", "bad.toml") == 2
     assert sh.err.startswith("innervate: bad.toml:3: ")
+
+
+def test_a_folder_that_is_gone_is_told_as_such(sh, tmp_path, monkeypatch):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert sh("prove", "gossip") == 2
+    assert sh.err.startswith("innervate: the current folder is not there any more; ")
 
 
 def failing(error):

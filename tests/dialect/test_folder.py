@@ -295,6 +295,17 @@ def test_kinds_that_are_sent_have_a_layout(file, kind, wrong):
     assert [(line, text.split()[4]) for line, text in found] == wrong
 
 
+@pytest.mark.parametrize(("imported", "name"), [
+    ("from gossip import sizes", "sizes.NONE"), ("from gossip import sizes as s", "s.NONE"),
+    ("import gossip.sizes as s", "s.NONE"), ("from gossip.sizes import NONE as NO", "NO"),
+])  # fmt: skip
+def test_kinds_of_other_files_have_a_layout_by_whatever_name(file, imported, name):
+    sizes = file("NONE = 3\n", "sizes.py")
+    path = file(f"{imported}\n{SENDS.format(kind=name)}")
+    found = said(sends.of_kinds([path, sizes], {1: {"seq"}, 2: set()}))
+    assert found == [(8, "a frame of kind 3 is sent, and has no layout; add one to LAYOUTS")]
+
+
 FILLS = """NEWS, HELLO = 1, 2
 def on_timer(state, params, now, timer, out):
     frame = out.frame[send(out, 0, 0, 0)]

@@ -1,5 +1,6 @@
 """What the documentation says is so: generated parts, keys, commands, files and numbers."""
 
+import contextlib
 import importlib.util
 import re
 import tomllib
@@ -10,6 +11,8 @@ import msgspec
 import pytest
 
 from innervate import scenario
+from innervate.analysis import summary, summary_common
+from innervate.cli import main
 from innervate.cli.app import app
 from innervate.live import nodefile
 from innervate.network import networks
@@ -18,6 +21,7 @@ from innervate.sweeping import make_plan, planfile
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
+ROOMS = ("benchmarks", "boards", "docs/decisions", "examples", "paper", "src", "tests")
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 TABLES = {
     model.PatchTable: "[[patch]]",
@@ -109,6 +113,16 @@ def test_scenarios_in_pages_can_be_run(page, tmp_path):
             scenario.plan(scenario.loads(block))
 
 
+def test_keys_of_any_networks_summary_are_documented():
+    page = (DOCS / "reading-a-report.md").read_text(encoding="utf-8")
+    part = page.split("### Of any other network")[1].split("## ")[0]
+    there = {key for name in re.findall(r"`([\w.]+)`", part) for key in name.split(".")}
+    common = set(summary_common.Common.__annotations__) - {"headline"}
+    of = (summary.Summary, summary.Reports, summary.Frames, summary.Messages)
+    assert {key for one in of for key in one.__annotations__} - common - {"kind"} <= there
+    assert {f"{name}.parquet" for name in ("reports", "deliveries")} <= set(page.split("`"))
+
+
 def test_link_types_of_captures_are_those_of_the_page():
     page = (DOCS / "export.md").read_text()
     rows = re.findall(r"^\| (\w+) \| (\d+), LINKTYPE_USER(\d+) ", page, re.MULTILINE)
@@ -135,8 +149,6 @@ def test_links_lead_somewhere(page):
 
 
 def test_the_readmes_numbers_are_the_demos(capsys, tmp_path, monkeypatch):
-    from innervate.cli import main
-
     monkeypatch.chdir(tmp_path)
     assert main(["demo"]) == 0
     out = capsys.readouterr().out
@@ -158,3 +170,33 @@ def test_pages_have_no_long_lines():
         plain = [line for line in page.read_text(encoding="utf-8").splitlines()
                  if not line.startswith("|")]  # fmt: skip
         assert max(map(len, plain)) <= 150, page.name
+
+
+def named_files(text):
+    """Names of files and folders of ours that stand in running text, as code."""
+    for span in re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL)):
+        yield from re.findall(r"(?<![\w/.<-])(?:[\w-]+/)*(?!_)\w+\.(?:py|c|h)\b", span)
+        yield from re.findall(rf"(?<![\w/.-])(?:{'|'.join(ROOMS)})(?:/[\w-]+)+(?![\w.-])", span)
+
+
+def made_in(folder):
+    """What `new network gossip` and `firmware` write."""
+    with contextlib.chdir(folder):
+        assert main(["new", "network", "gossip"]) == 0
+        for words in ("skin", "skin --sealed", "radio", "mesh"):
+            assert main(["firmware", *words.split(), "--out", words]) == 0
+    return folder.rglob("*")
+
+
+def test_files_that_pages_name_are_there(tmp_path):
+    ours = [*ROOT.glob("*.py"), *DOCS.glob("*.py")]
+    ours += [path for room in ROOMS for path in (ROOT / room).rglob("*")]
+    files = "\n".join(f"{path}/" for path in [*ours, *made_in(tmp_path)])
+    more = [ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md", *(DOCS / "decisions").glob("*.md")]
+    missing = {
+        (page.name, name)
+        for page in PAGES + more
+        for name in named_files(page.read_text(encoding="utf-8"))
+        if f"/{name}/" not in files
+    }
+    assert not missing

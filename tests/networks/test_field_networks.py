@@ -41,6 +41,7 @@ def test_nothing_breaks_in_whatever_order_things_happen(name):
     for graph, budget in (("pair", ""), ("line", "restart=0"), ("ring", "loss=2,restart=0")):
         (case,) = innervate.explore(name, graph=graph, budget=budget, states=400)
         assert not case.is_broken, case.lines
+        assert case.lines[0].startswith("n0 - n1")  # who hears whom: there are no cables
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ from innervate.plot import charts, paint, svg
 from innervate.plot.charts import Axis, Bar, Mark
 from innervate.plot.lines import traffic_lines
 from innervate.plot.svg import Drawing
+from innervate.sim.counts import Counts
 
 PLOT = charts._Plot(Drawing(charts.WIDTH, 100, ""), Axis(2.0, 8.0), Axis(0.0, 10.0), 0.0, 80.0)
 NONE = {"p50": None, "p99": None, "max": None}
@@ -101,9 +102,11 @@ def test_messages_in_words(sent, came, words):
                 "latency_ms": NONE}  # fmt: skip
     frames = {"sent": 1234, "arrived": 1200, "lost": 34,
               "lost_by": {"cut": 3, "noise": 31, "off": 0}}  # fmt: skip
-    lines = traffic_lines({"frames": frames, "messages": messages})
+    counts = Counts(offered=sent, delivered=came)
+    lines = traffic_lines({"frames": frames, "messages": messages}, counts)
     assert lines[0] == "Frames: 1,234 sent, 1,200 arrived, 34 lost: 31 noise, 3 cut"
     assert lines[1:] == ([words] if words else [])
-    shared = traffic_lines({"frames": frames, "messages": messages}, is_shared=True)
+    shared = traffic_lines({"frames": frames, "messages": messages},
+                           counts._replace(is_shared=True))  # fmt: skip
     assert shared[0] == "Receptions: 1,234 due, 1,200 arrived, 34 lost: 31 noise, 3 cut"
     assert shared[1:] == lines[1:]

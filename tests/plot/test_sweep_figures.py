@@ -46,6 +46,13 @@ def test_means_by_how_often_points_were_run_are_told():
         assert told in " ".join(drawn.get_xlabel().split())
 
 
+@pytest.mark.parametrize("over", [{}, None])
+@pytest.mark.parametrize("values", [(0, 0, 0), (0, None, 0), (0, 9, 0), (0, -9, 0)])
+def test_where_all_is_0_the_scale_goes_up(values, over):
+    (ax,) = draw({"k": [1, 1, 2], "lost": values}, Shown("k", "lost"), over).axes
+    assert (ax.get_ylim() == (-0.05, 1)) == (not any(values))
+
+
 def test_every_run_is_a_dot():
     b, a = axes("x_ms", "z", "rule").lines
     assert list(zip(b.get_xdata(), b.get_ydata(), strict=True)) == [

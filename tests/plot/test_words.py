@@ -17,6 +17,13 @@ def test_what_stood_did_not_stand_for_nothing():
 
 
 @pytest.mark.parametrize(
+    ("wall_s", "text"), [(0.0004, "less than 0.01 s"), (0.01, "0.01 s"), (12.345, "12.35 s")]
+)
+def test_what_was_quick_took_some_time(wall_s, text):
+    assert words.wall_words(wall_s) == text
+
+
+@pytest.mark.parametrize(
     ("value", "text"), [(0.5, "0.5"), (12.0, "12"), (12000, "12,000"), (3_077_159, "3.077 M")]
 )
 def test_counts(value, text):

@@ -33,7 +33,7 @@ OF_THE_MACHINE = (
     (r"the bundled ones are .*", "the bundled ones are -"),
     (re.escape(innervate.__version__), "-"),
     (r'"(wall_s|events_per_s|seconds|states_per_s)": [0-9.e+-]+', r'"\1": "-"'),
-    (r"simulated in [0-9.]+ s", "simulated in - s"),
+    (r"simulated in (?:less than )?[0-9.]+ s", "simulated in - s"),
     (r"(points|runs) in [0-9.]+ s\b", r"\1 in - s"),
     (r"(successors|schedules) +[0-9.]+ s ", r"\1  - s "),
     (r"folder /\S+\)", "folder -)"),

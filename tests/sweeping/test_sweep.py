@@ -89,8 +89,8 @@ def test_a_failed_run_is_a_row_with_its_reason(four):
     done = innervate.sweep(four, vary={"protocol.k": [0, 3, 1000]}, repeat=2, workers=1)
     assert done.results["status"].to_list() == ["failed"] * 2 + ["done"] * 2 + ["failed"] * 2
     assert set(done.failed["reason"]) == {
-        "--set protocol.k=0: protocol.k must be a whole number of missed beacons, 1 to 94, not 0",
-        "--set protocol.k=1000: protocol.k must be at most 94, not 1000",
+        "--vary protocol.k=0: protocol.k must be a whole number of missed beacons, 1 to 94, not 0",
+        "--vary protocol.k=1000: protocol.k must be at most 94, not 1000",
     }
     assert done.complete
 

@@ -90,3 +90,10 @@ def test_a_frame_on_the_air_comes_once_to_each_who_hears_it(graph, ways):
     assert [len(frames) for frames in state.ways if frames] == [1] * len(ways)
     assert sorted((end // 4, graph.node_of(graph.peer[end]))
                   for end, frames in enumerate(state.ways) if frames) == ways  # fmt: skip
+
+
+@pytest.mark.parametrize(("graph", "said"), [
+    ("pair", "n0 - n1"), ("line", "n0 - n1, n1 - n2"), ("ring", "n0 - n1, n0 - n2, n1 - n2"),
+])  # fmt: skip
+def test_on_the_air_a_graph_is_who_hears_whom(graph, said):
+    assert declared.hearing(graph_of(graph)) == said

@@ -252,7 +252,7 @@ def _well(counts: Counts) -> str:
         kept = f"{_part(lost, counts.sent, what, 'lost')}."
     if counts.delivered > counts.offered > 0 and not counts.unheard:
         many = f"{number_of(counts.offered, 'message')} {verb(counts.offered, 'is')}"
-        return f"{many} delivered {counts.delivered:,} times, {kept}"
+        return f"{many} {times_words(counts)}, {kept}"
     under_way = max(counts.offered - counts.delivered, counts.unheard)
     if under_way > 0:
         return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
@@ -260,6 +260,14 @@ def _well(counts: Counts) -> str:
         what = every(counts.offered, "message").capitalize()
         return f"{what} {verb(counts.offered, 'is')} delivered, {kept}"
     return kept.capitalize()
+
+
+def times_words(counts: Counts) -> str:
+    """How often messages were delivered; told is also what cannot be without repetitions."""
+    said = f"delivered {counts.delivered:,} times"
+    if counts.nodes and counts.delivered > counts.offered * counts.nodes > 0:
+        said += f", more often than once at each of {number_of(counts.nodes, 'node')}"
+    return said
 
 
 def _none(count: int, what: str, did: str, did_not: str) -> str:

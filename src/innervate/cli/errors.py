@@ -86,6 +86,8 @@ def explain(error: BaseException) -> tuple[str, int]:
     if isinstance(error, MemoryError):
         return "not enough memory; make the scenario smaller or shorter", OURS
     if isinstance(error, OSError) and error.strerror:
+        if error.filename is None and _is_lost():
+            return "the current folder is not there any more; change to one that is", USERS
         where = f"{error.filename}: " if error.filename else ""
         return f"{where}{error.strerror}", OURS
     what = f"{type(error).__name__}: {_one_line(str(error))}"
@@ -112,8 +114,17 @@ def _missing(error: Any) -> str:
     """An argument that was left out."""
     command = " ".join(error.command_chain or ())
     name = error.argument.name if error.argument is not None else "an argument"
-    what = f"{name} needs a value" if name.startswith("-") else f"{command} needs {name}"
+    what = f"{error.keyword} needs a value" if error.keyword else f"{command} needs {name}"
     return f"{what}; see: innervate {command} --help"
+
+
+def _is_lost() -> bool:
+    """True if somebody took the folder away in which we run."""
+    try:
+        os.getcwd()
+    except OSError:
+        return True
+    return False
 
 
 def _extra_of(error: ModuleNotFoundError) -> str | None:

@@ -47,13 +47,13 @@ def of_kinds(paths, layouts):
         paths: the files of the protocol.
         layouts: by kind, the fields that its layout has.
     """
-    constants, functions = {}, []
-    for path in paths:
-        tree = parsed(path)
-        constants |= constants_of(tree, path.stem)
-        functions += [(path, function) for function in functions_of(tree)]
-    sent, found = _sent_names([function for _, function in functions]), []
-    for path, function in functions:
+    trees = [(path, parsed(path)) for path in paths]
+    every = {name: value for path, tree in trees
+             for name, value in constants_of(tree, path.stem).items()}  # fmt: skip
+    functions = [(path, function, every | _renamed(tree, every))
+                 for path, tree in trees for function in functions_of(tree)]  # fmt: skip
+    sent, found = _sent_names([function for _, function, _ in functions]), []
+    for path, function, constants in functions:
         handed = [one.arg for one in function.args.args]
         kinds = {}
         for part, frame, field in _set_in(function):
@@ -75,6 +75,15 @@ def of_kinds(paths, layouts):
                 what = f"{field} has no bits in the layout of kind {min(of)}, and is not sent"
                 found.append(Finding(path, part.lineno, what))
     return found
+
+
+def _renamed(tree, constants):
+    """Constants by other names that a file gives them, or their modules: `import sizes as s`."""
+    renamed = [(alias.name.rpartition(".")[2], alias.asname) for node in ast.walk(tree)
+               if isinstance(node, (ast.Import, ast.ImportFrom))
+               for alias in node.names if alias.asname]  # fmt: skip
+    return {f"{here}{name[len(there):]}": value for there, here in renamed
+            for name, value in constants.items() if name.partition(".")[0] == there}  # fmt: skip
 
 
 def _set_in(function):

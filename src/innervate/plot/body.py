@@ -54,7 +54,7 @@ def top(result: Any, summary: Mapping[str, Any]) -> str:
         _counted(messages["delivered"], "message", " delivered"),
         _counted(summary["events"], "event"),
     ]
-    said = page.paragraphs(f"{line}." for line in traffic_lines(summary, result.counts.is_shared))
+    said = page.paragraphs(f"{line}." for line in traffic_lines(summary, result.counts))
     return page.top(over, summary, tiles(numbers), said)
 
 

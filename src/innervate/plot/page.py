@@ -67,7 +67,7 @@ def ended_early(summary: Mapping[str, Any]) -> str:
 
 def took(summary: Mapping[str, Any], simulated_s: float) -> tuple[str, str]:
     """The figure on how long the simulation took."""
-    wall = f"{figure_words(summary['wall_s'], 2)} s" if summary["wall_s"] >= 0.01 else "10 ms"
+    wall = f"{figure_words(summary['wall_s'], 2)} s" if summary["wall_s"] >= 0.01 else "< 0.01 s"
     events = f"{count_words(summary['events'])} events"
     return wall, f"to simulate {figure_words(simulated_s, 4)} s, {events}"
 

@@ -60,12 +60,20 @@ def draw(columns: Columns, shown: Shown, over: Mapping[str, int] | None) -> Figu
             _bands(ax, columns, x, y, by)
         else:
             _dots(ax, columns, x, y, by)
+        if kind != "heat":
+            _up_from_0(ax, columns[y])
         ax.set_title("\n".join(wrap(title, TITLE_LETTERS)))
         notes = _notes(columns, shown, over or {})
         ax.set_xlabel("\n".join([ax.get_xlabel(), *(w for n in notes for w in wrap(n, LETTERS))]))
         if kind != "heat":
             _legend(made, ax, by)
         return made
+
+
+def _up_from_0(ax: Axes, values: Sequence[Any]) -> None:
+    """Where nothing but 0 is shown: no scale to both sides of it."""
+    if not any(values):
+        ax.set_ylim(-0.05, 1)
 
 
 def _notes(columns: Columns, shown: Shown, over: Mapping[str, int]) -> list[str]:

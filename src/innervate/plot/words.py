@@ -18,6 +18,11 @@ def ms_words(value_ms: float) -> str:
     return f"{value_ms:.1f} ms" if value_ms >= 10 else f"{value_ms:.3g} ms"
 
 
+def wall_words(wall_s: float) -> str:
+    """How long something took to compute: "0.13 s", "less than 0.01 s"."""
+    return f"{wall_s:.2f} s" if wall_s >= 0.01 else "less than 0.01 s"
+
+
 def stood_words(value_ms: float) -> str:
     """How long something stood that was there: "17.0 ms", "less than 0.001 ms"."""
     return ms_words(value_ms) if value_ms > 0 else "less than 0.001 ms"

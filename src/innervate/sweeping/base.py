@@ -101,6 +101,14 @@ def _setting(text: str) -> tuple[str, Any]:
     return key.strip(), parse_value(value.strip())
 
 
+def of_vary(error: ScenarioError, keys: Iterable[str]) -> ScenarioError:
+    """An error of what is varied, which a run of its own tells as of its --set, as of --vary."""
+    if not error.path.startswith(tuple(f"--set {key}=" for key in keys)):
+        return error
+    path = error.path.replace("--set", "--vary", 1)
+    return ScenarioError(error.message, path, error.line, error.key)
+
+
 def _as_word(value: Any) -> str:
     """A value as `--set` reads it back; plain words need no quotes of their own."""
     if isinstance(value, str) and value == value.strip() and parse_value(value) == value:

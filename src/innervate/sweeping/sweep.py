@@ -15,7 +15,7 @@ from innervate import scenario as scenarios
 from innervate.running.showing import Bar
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
-from innervate.sweeping.base import PLAN_FILE, Source, base_of
+from innervate.sweeping.base import PLAN_FILE, Source, base_of, of_vary
 from innervate.sweeping.derive import Formula
 from innervate.sweeping.engines import engine
 from innervate.sweeping.errors import DamagedError, SweepError
@@ -255,21 +255,12 @@ def _checked(plan: SweepPlan) -> tuple[SweepPlan, Scenario]:
             made = base.scenario(point.settings)
             scenarios.plan(made)  # what a file says that it names shows only here
         except ScenarioError as error:
-            wrong = wrong or _of_vary(error, plan.axes)
+            wrong = wrong or of_vary(error, (key for axis in plan.axes for key in axis.keys))
         else:
             root = made.seed if plan.root < 0 else plan.root
             return replace(plan, base=base, root=root), made
     assert wrong is not None
     raise wrong
-
-
-def _of_vary(error: ScenarioError, axes: Iterable[Axis]) -> ScenarioError:
-    """An error of what is varied, which a run of its own tells as of its --set, as of --vary."""
-    varied = tuple(f"--set {key}=" for axis in axes for key in axis.keys)
-    if not error.path.startswith(varied):
-        return error
-    path = error.path.replace("--set", "--vary", 1)
-    return ScenarioError(error.message, path, error.line, error.key)
 
 
 def _prepare(folder: Path) -> None:

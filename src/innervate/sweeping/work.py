@@ -22,7 +22,7 @@ import innervate
 from innervate import running as runs
 from innervate.running import RunError
 from innervate.scenario import Scenario, ScenarioError
-from innervate.sweeping.base import Base, Settings
+from innervate.sweeping.base import Base, Settings, of_vary
 from innervate.sweeping.flat import flat
 from innervate.sweeping.sources import sources_of, texts
 from innervate.trace.provenance import PACKAGES
@@ -77,7 +77,9 @@ def _run(base: Base, mark: str, job: Job) -> Outcome:
     row, reason = None, ""
     try:
         row = _row(_scenario(base, mark, job))
-    except (ScenarioError, RunError) as error:
+    except ScenarioError as error:
+        reason = str(of_vary(error, (key for key, _ in job.settings)))
+    except RunError as error:
         reason = str(error)
     except MemoryError:
         reason = "not enough memory"

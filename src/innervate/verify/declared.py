@@ -119,6 +119,12 @@ def _with_cables(holds: Any, graph: Graph) -> Any:
     return lambda *given: holds(*given, graph.peer)
 
 
+def hearing(graph: Graph) -> str:
+    """Who hears whom, of nodes on the air: "n0 - n1, n1 - n2"."""
+    pairs = {tuple(sorted(map(graph.node_of, link))) for link in graph.links()}
+    return ", ".join(f"{graph.label(a)} - {graph.label(b)}" for a, b in sorted(pairs))
+
+
 def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell: Tell) -> Case:
     params = {**getattr(network.fields, "DEFAULTS", {}),
               **getattr(network.fields, "EXPLORED", {}),
@@ -126,8 +132,9 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
     net = net_of(network, graph, params)
     net.readings = readings = Readings(net)
     cables = " ".join(f"{graph.label_end(a)}-{graph.label_end(b)}" for a, b in graph.links())
-    tally, story = explore(net, budget, options.states or STATES, tell, cables)
-    head = f"{cables:40} {cases.many(tally)}"
+    shown = hearing(graph) if net.on_air else cables
+    tally, story = explore(net, budget, options.states or STATES, tell, shown)
+    head = f"{shown:40} {cases.many(tally)}"
     told = story if story.title else None
     if told is not None:
         told.scenario = scenario_of(network, net, told)

@@ -29,6 +29,7 @@ import innervate
 from innervate.cli import main
 from innervate.network import networks
 from innervate.parts import DEFAULTS, PARTS
+from innervate.sim.counts import Counts
 
 HERE = Path(__file__).parent
 TOLD = {"model", "check", "plan", "protocol", "fields", "frames"}
@@ -123,16 +124,20 @@ def test_it_is_swept(file, tmp_path, capsys):
     assert sent[1000] > 1.5 * sent[2000] > 100
 
 
-def test_nothing_is_said_to_be_sent_that_nobody_gave():
+@pytest.mark.parametrize(("sent", "unheard", "nodes", "said"), [
+    (0, 0, 2, "3 delivered"), (5, 2, 2, "5 sent, 3 delivered"),
+    (2, 0, 2, "2 sent, delivered 3 times"),  # one of them was for several
+    (5, 3, 2, "5 sent, 2 of them delivered 3 times"), (5, 5, 2, "5 sent, 3 delivered"),
+    (1, 0, 2, "1 sent, delivered 3 times, more often than once at each of 2 nodes"),
+    (1, 0, 3, "1 sent, delivered 3 times"),
+])  # fmt: skip
+def test_messages_that_were_sent_and_how_often_they_came(sent, unheard, nodes, said):
     from innervate.plot.lines import traffic_lines
 
     latency = {"p50": None}
-    messages = {"sent": 0, "delivered": 3, "dropped_by": {}, "latency_ms": latency}
+    messages = {"sent": sent, "delivered": 3, "dropped_by": {}, "latency_ms": latency}
     frames = {"sent": 4, "arrived": 3, "lost": 1, "lost_by": {"cut": 1}}
-    assert traffic_lines({"frames": frames, "messages": messages}) == [
-        "Frames: 4 sent, 3 arrived, 1 lost: 1 cut", "Messages: 3 delivered",
+    counts = Counts(nodes=nodes, offered=sent, delivered=3, unheard=unheard)
+    assert traffic_lines({"frames": frames, "messages": messages}, counts) == [
+        "Frames: 4 sent, 3 arrived, 1 lost: 1 cut", f"Messages: {said}",
     ]  # fmt: skip
-    told = traffic_lines({"frames": frames, "messages": messages | {"sent": 5}})
-    assert told[1] == "Messages: 5 sent, 3 delivered"
-    told = traffic_lines({"frames": frames, "messages": messages | {"sent": 2}})
-    assert told[1] == "Messages: 2 sent, delivered 3 times"  # one of them was for several

@@ -9,7 +9,7 @@ from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.plot.words import sentences
-from innervate.plot.words import ms_words
+from innervate.plot.words import ms_words, wall_words
 
 if TYPE_CHECKING:
     from innervate.running import Run
@@ -36,7 +36,7 @@ def lines(run: Run) -> list[str]:
         "",
         *(told[1:] if summary["alarms"]["sent"] else told),  # the steps have the alarms
         "",
-        f"{summary['duration_s']:g} s were simulated in {summary['wall_s']:.2f} s.",
+        f"{summary['duration_s']:g} s were simulated in {wall_words(summary['wall_s'])}.",
     ]
 
 

@@ -22,5 +22,5 @@ def _first(run: Run) -> str:
     simulated = words.figure_words(run.result.ended_us / 1e6, 4)
     return (
         f"{mesh_words.opening(summary)}; {simulated} s simulated in "
-        f"{summary['wall_s']:.2f} s, seed {summary['seed']}"
+        f"{words.wall_words(summary['wall_s'])}, seed {summary['seed']}"
     )

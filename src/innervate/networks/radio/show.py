@@ -35,7 +35,7 @@ def _first(run: Run) -> str:
     return (
         f"{summary['name']}: {number_of(plan.stations, 'station')} on one channel, "
         f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
-        f"{simulated} s simulated in {summary['wall_s']:.2f} s, "
+        f"{simulated} s simulated in {words.wall_words(summary['wall_s'])}, "
         f"seed {summary['seed']}"
     )
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from innervate.networks.skin import show
 from innervate.networks.skin.plot.words import fault_words
-from innervate.plot.words import ms_words
+from innervate.plot.words import ms_words, wall_words
 
 if TYPE_CHECKING:
     from innervate.networks.skin.analysis.summary_keys import Recovery
@@ -32,7 +32,7 @@ def lines(run: Run) -> list[str]:
     for fault, recovery in zip(plan.faults, summary["recoveries"], strict=False):
         found += ["", f"{recovery['at_s']:.3f} s   {fault_words(graph, fault)}"]
         found += [f"{when:>10}   {then}" for when, then in _steps(recovery, graph.cells)]
-    took = f"{summary['duration_s']:g} s were simulated in {summary['wall_s']:.2f} s."
+    took = f"{summary['duration_s']:g} s were simulated in {wall_words(summary['wall_s'])}."
     return [*found, "", *show.state_lines(summary), "", took]
 
 

@@ -35,7 +35,7 @@ def _first(run: Run) -> str:
         f"{summary['name']}: {number_of(graph.cells, 'cell')}, "
         f"{number_of(graph.interfaces, 'interface port')}, "
         f"at most {number_of(summary['depth_max'], 'hop')} deep; "
-        f"{length} simulated in {summary['wall_s']:.2f} s, "
+        f"{length} simulated in {words.wall_words(summary['wall_s'])}, "
         f"seed {summary['seed']}"
     )
 

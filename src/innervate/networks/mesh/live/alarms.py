@@ -62,15 +62,15 @@ class Alarms:
 
     def __init__(self) -> None:
         self.arrivals: Arrivals[Alarm] = Arrivals()
-        # The newest, with the second of the epoch at which they came.
+        # The newest, with when they came, s of a clock that nobody sets.
         self.recent: deque[tuple[float, Alarm]] = deque(maxlen=SHOWN)
 
     def note(self, alarm: Alarm) -> None:
         """An alarm came: remember it, and tell those who asked."""
-        self.recent.append((machine().time_ns() / 1e9, alarm))
+        self.recent.append((machine().monotonic_ns() / 1e9, alarm))
         self.arrivals.put(alarm)
 
     def status(self) -> list[dict[str, Any]]:
         """The newest alarms, with how long ago they came, s."""
-        now = machine().time_ns() / 1e9
+        now = machine().monotonic_ns() / 1e9
         return [{**alarm._asdict(), "ago_s": round(now - at, 3)} for at, alarm in self.recent]

@@ -17,7 +17,8 @@ from innervate.plot import style
 TITLE = "What was asked for"
 CAPTION = (
     "30 nodes, mean degree 8, 250 kbit/s. Bars: how much of what is allowed was used, up to the "
-    "line; then what was asked for, what was measured, of how many. None of it is the document's."
+    "line; then what was asked for, what was measured, of how many. None of it is the document's. "
+    "Standbys wait for requests (guard_s = 0); if nothing is said they ask, and take a second."
 )
 DEAD = 8
 STATE_NODES = 50

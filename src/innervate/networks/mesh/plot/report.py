@@ -109,7 +109,7 @@ def field(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
     if led and result.plan.ranks[led[-1]] != 0:
         text += f" Roles are those at the start: at the end {result.plan.names[led[-1]]} leads."
     inside = keys(mesh_map.legend(result, crossings, hops, at_us))
-    return section("The field", f'<div class="wide">{figure(drawing, "", text)}</div>' + inside)
+    return section("The field", f'<div class="wide map">{figure(drawing, "", text)}</div>' + inside)
 
 
 def _film(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
@@ -129,7 +129,7 @@ def _film(result: Any, sheet: Sheet, crossings: list[Crossing]) -> str:
     controls = page.film_controls(mesh_film.CYCLE_S)
     steps = details("The same, step by step", _steps(result, shown))
     return section(
-        "A crossing, in slow motion", f'<div class="wide film">{inside}{controls}</div>{steps}'
+        "A crossing, in slow motion", f'<div class="wide map film">{inside}{controls}</div>{steps}'
     )
 
 
