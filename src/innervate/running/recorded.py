@@ -1,4 +1,4 @@
-"""A run folder, read."""
+"""Reads a run folder, for comparing, exporting and watching."""
 
 from functools import cached_property
 from pathlib import Path
@@ -27,7 +27,7 @@ class RecordedRun:
 
     @cached_property
     def provenance(self) -> dict[str, Any]:
-        """Where it came from."""
+        """Versions, seeds and settings that it came from, and the hashes of its tables."""
         return folders.read_json(self.folder, folders.PROVENANCE)
 
     def check_tables(self) -> None:
