@@ -1,13 +1,17 @@
 """Tests in forked processes: each once, whatever becomes of its process, and said as it was."""
 
+import os
 import signal
 import subprocess
 import sys
 import time
 import xml.etree.ElementTree as Tree
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+
+from tests.conftest import ROOM, is_roomy
 
 SUITE = {
     "test_one.py": """
@@ -184,3 +188,18 @@ def test_loops_come_first(tmp_path, status, said):
     process = begin(tmp_path, suite, "--forks", "1", "--loops", "7")
     assert said in process.communicate()[0]
     assert process.returncode == bool(status)
+
+
+@pytest.mark.parametrize(("free", "flags", "lies_there"), [
+    (ROOM, 0, True), (ROOM - 1, 0, False), (ROOM, os.ST_NOEXEC, False),
+])  # fmt: skip
+def test_files_lie_in_memory_where_there_is_room_and_programs_can_be_run(
+    tmp_path, monkeypatch, free, flags, lies_there
+):
+    told = SimpleNamespace(f_flag=flags, f_bavail=free, f_frsize=1)
+    monkeypatch.setattr(os, "statvfs", lambda _: told)
+    assert is_roomy(tmp_path) == lies_there
+
+
+def test_a_machine_without_such_a_folder_has_its_disk(tmp_path):
+    assert not is_roomy(tmp_path / "shm")

@@ -1,6 +1,6 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser.servers import PHONE, beside, click, expect, place, seek
+from tests.browser.servers import beside, click, expect, place, seek
 from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN, hold
 
 RADIO = """
@@ -129,36 +129,6 @@ def test_at_the_end_of_a_disaster_nobody_sends_and_all_is_counted(look):
         expect(last).to_contain_text(" ms")  # from offer to delivery
         # The end of the last frame is still on its way to some, so that the channel is not free.
         assert "nobody sends" in written(page)
-
-
-BABEL = """
-kind = "babel"
-name = "a ring"
-nodes = 5
-duration_s = 119.7
-"""
-
-
-def test_a_network_that_does_not_say_who_has_a_way(look, tmp_path):
-    """Who is cut off is known from its cables; when it has recovered nobody says."""
-    path = tmp_path / "babel.toml"
-    path.write_text(BABEL)
-    with beside(path, 0.1) as address:
-        page = look(address)
-        label = page.locator("#unconnected .label")
-        expect(label).to_have_text("cut off")
-        expect(page.locator("#clock")).to_contain_text("/ 1:59.7 min")
-        for cable in ("n0 - n1", "n0 - n4"):
-            click(page, cable)
-            expect(page.locator("#selected-facts")).to_have_text("link, cut")
-        expect(page.locator("#unconnected output")).to_have_text("4")
-        expect(page.locator("#unconnected .more")).to_have_text("of 5 nodes")
-        expect(page.locator("#recovery")).to_be_hidden()
-        page.set_viewport_size(PHONE)
-        page.evaluate(DRAWN)
-        row, last = (page.locator(one).bounding_box() for one in ("#numbers", "#unconnected"))
-        right, end = (one["x"] + one["width"] for one in (row, last))
-        assert abs(end - right) < 1  # two numbers fill the row, as three do
 
 
 TWO = """

@@ -137,4 +137,4 @@ def test_a_run_that_was_interrupted_is_not_held_to_its_fingerprint(tmp_path, mor
     for name, content in (("summary", more), ("provenance", {})):
         (tmp_path / f"{name}.json").write_text(json.dumps(content))
     found = exporting._Source(str(tmp_path), [], None)
-    assert (found.fingerprint, found.scenario.duration_s) == (fingerprint, 0.1)
+    assert (found.fingerprint, found.plan.duration_us) == (fingerprint, 100_000)

@@ -36,9 +36,17 @@ def test_a_packet_of_an_earlier_life_is_not_taken_for_a_new_one(seed):
 
 # Numbers came round over many restarts unheard, and were late for ever (the first); an old packet
 # of numbers that were drawn was taken for new (the second).
-@pytest.mark.parametrize("seed", [900_834, pytest.param(910_032, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [900_834, 910_032])
 def test_who_was_switched_on_again_is_heard_by_all_and_in_order(seed):
     assert runs.run(seed, "mesh").broken == []
+
+
+def test_so_it_is_in_the_first_minute():
+    found = runs.run(900_834, "mesh", storms=1, storm_s=60)
+    assert found.broken == []
+    assert found.told["lives"] > 30
+    assert found.told["delivered"] > 300
 
 
 # A node that was stopped for two minutes passed on what had waited at its sockets.

@@ -297,13 +297,14 @@ def test_in_a_cell_a_bar_is_shown_now_and_then_and_gone_in_the_end(monkeypatch):
 ])  # fmt: skip
 def test_a_run_came_to_a_whole_microsecond(summary, ended_us):
     """1e6 * 1.1 is not one."""
-    recorded = object.__new__(compares._Recorded)
-    recorded.summary, recorded.called = summary, "a run"
-    assert (recorded.ended_us, type(recorded.ended_us)) == (ended_us, int)
+
+    def side(summary):
+        return compares._Side("a run", summary, {}, {}, dict)
+
+    assert (side(summary).ended_us, type(side(summary).ended_us)) == (ended_us, int)
     for damaged in ({}, {"duration_s": "3"}):
-        recorded.summary = damaged
         with pytest.raises(RunError, match="a run: its summary is damaged"):
-            _ = recorded.ended_us
+            _ = side(damaged).ended_us
 
 
 @pytest.mark.parametrize("is_told", [True, False])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -13,10 +13,6 @@ from innervate.cli.options import ExportOptions
 from innervate.cli.progress import Progress, is_compiled
 from innervate.export import dissector
 from innervate.network import networks
-from innervate.scenario import ScenarioError
-
-if TYPE_CHECKING:
-    from innervate.scenario import Scenario
 
 
 def export(
@@ -60,28 +56,18 @@ class _Source:
     def __init__(self, source: str, sets: list[str], seed: int | None) -> None:
         self.folder = Path(source) if Path(source).is_dir() else None
         self.fingerprint = ""
-        if self.folder is not None:
-            if sets or seed is not None:
-                raise UserError(f"{source} was run as it is; export its scenario.toml to change it")
-            loaded = self._recorded(self.folder)
-        else:
-            loaded = scenarios.load(source, sets, seed)
-        self.scenario = loaded
-        self.plan: Any = scenarios.plan(loaded)
+        if self.folder is None:
+            self.plan: Any = scenarios.plan(scenarios.load(source, sets, seed))
+            return
+        if sets or seed is not None:
+            raise UserError(f"{source} was run as it is; export its scenario.toml to change it")
+        from innervate.running.recorded import RecordedRun
 
-    def _recorded(self, folder: Path) -> Scenario:
-        from innervate.running import RunError
-        from innervate.running import folder as folders
-
-        summary = folders.read_json(folder, folders.SUMMARY)
-        origin = folders.read_json(folder, folders.PROVENANCE)
-        folders.check_tables(folder, origin.get("tables_sha256"))
-        if "interrupted_at_s" not in summary:
-            self.fingerprint = str(summary.get("fingerprint", ""))
-        try:
-            return scenarios.load(folder / folders.SCENARIO)
-        except ScenarioError as error:
-            raise RunError(f"its scenario cannot be run any more: {error}") from None
+        run = RecordedRun(self.folder)
+        run.check_tables()
+        if run.interrupted_s is None:
+            self.fingerprint = str(run.summary.get("fingerprint", ""))
+        self.plan = run.plan()
 
     def write(self, wanted: ExportOptions) -> None:
         """Write all that is wanted."""
@@ -158,7 +144,7 @@ class _Source:
 
             if not hasattr(self, "_run"):
                 with Progress(is_compiled(self.plan)) as progress:
-                    self._run = room.run(self.scenario, progress=progress)
+                    self._run = room.run(self.plan.scenario, progress=progress)
             return dict(self._run.tables)
         from innervate.trace import tables
 

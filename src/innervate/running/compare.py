@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,9 +14,9 @@ from innervate.analysis.headline import HeadlineEntry
 from innervate.network import known, networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
+from innervate.running.recorded import RecordedRun
 from innervate.running.run import Run
 from innervate.running.trail import first_difference
-from innervate.scenario import ScenarioError
 
 # What says nothing about the trajectory.
 _ASIDE = ("wall_s", "events_per_s")
@@ -64,6 +65,35 @@ class Comparison:
         return self.divergence is None and not self.summary
 
 
+@dataclass(frozen=True, slots=True)
+class _Side:
+    """What is compared of a run."""
+
+    called: str
+    summary: dict[str, Any]
+    provenance: dict[str, Any]
+    tables: dict[str, Any]  # its scenario
+    plan: Callable[[], Any]
+
+    @property
+    def trajectory(self) -> dict[str, Any]:
+        """The summary without what depends on the machine."""
+        return {name: value for name, value in self.summary.items() if name not in _ASIDE}
+
+    @property
+    def fingerprint(self) -> Any:
+        """The hash of all events, 16 hexadecimal digits; None if it has none."""
+        return self.summary.get("fingerprint")
+
+    @property
+    def ended_us(self) -> int:
+        """Simulated time the run came to, us."""
+        ended = self.summary.get("interrupted_at_s", self.summary.get("duration_s"))
+        if not isinstance(ended, int | float):
+            raise RunError(f"{self.called}: its summary is damaged; run the scenario again")
+        return round(1e6 * ended)
+
+
 def compare(a: Side, b: Side) -> Comparison:
     """What differs between two runs; if they differ, both are simulated again to find where.
 
@@ -87,10 +117,6 @@ def compare(a: Side, b: Side) -> Comparison:
     )
 
 
-def _side(given: Side) -> _Recorded:
-    return _Done(given) if isinstance(given, Run) else _Recorded(Path(given))
-
-
 def differences(a: Any, b: Any, key: str = "") -> list[Difference]:
     """All leaves in which two nested structures differ, by dotted key, in the order of `a`."""
     if isinstance(a, dict) and isinstance(b, dict):
@@ -105,72 +131,33 @@ def differences(a: Any, b: Any, key: str = "") -> list[Difference]:
     return [found for pair in pairs for found in differences(pair[1], pair[2], pair[0])]
 
 
-class _Recorded:
-    """What a run folder says."""
-
-    def __init__(self, folder: Path) -> None:
-        self.called = str(folder)
-        if not folder.is_dir():
-            raise RunError(f"{folder} is not a run folder: there is no such folder")
-        self.summary = folders.read_json(folder, folders.SUMMARY)
-        self.provenance = folders.read_json(folder, folders.PROVENANCE)
-        folders.check_tables(folder, self.provenance.get("tables_sha256"))
-        path = folder / folders.SCENARIO
-        try:
-            self.tables = tomllib.loads(path.read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            raise RunError(f"{folder} is not a run folder: it has no {path.name}") from None
-        except (OSError, ValueError, RecursionError):
-            raise RunError(f"{path} is damaged; run the scenario again") from None
-        self._folder = folder
-        kind = self.summary.get("kind")
-        if not isinstance(kind, str):
-            raise RunError(f"{folder / folders.SUMMARY} is damaged; run the scenario again")
-        known(kind, folder)
-
-    @property
-    def fingerprint(self) -> Any:
-        """The hash of all events, 16 hexadecimal digits; None if it has none."""
-        return self.summary.get("fingerprint")
-
-    @property
-    def trajectory(self) -> dict[str, Any]:
-        """The summary without what depends on the machine."""
-        return {name: value for name, value in self.summary.items() if name not in _ASIDE}
-
-    @property
-    def ended_us(self) -> int:
-        """Simulated time the run came to, us."""
-        ended = self.summary.get("interrupted_at_s", self.summary.get("duration_s"))
-        if not isinstance(ended, int | float):
-            raise RunError(f"{self.called}: its summary is damaged; run the scenario again")
-        return round(1e6 * ended)
-
-    def plan(self) -> Any:
-        """The plan of its scenario."""
-        try:
-            made = scenarios.plan(scenarios.load(self._folder / folders.SCENARIO))
-        except ScenarioError as error:
-            raise RunError(f"its scenario cannot be run any more: {error}") from None
-        return made
+def _side(given: Side) -> _Side:
+    if not isinstance(given, Run):
+        return _recorded(Path(given))
+    tables = tomllib.loads(scenarios.dump(given.scenario))
+    return _Side(repr(given), dict(given.summary), given.provenance, tables, lambda: given.plan)
 
 
-class _Done(_Recorded):
-    """The same of a run that is at hand."""
+def _recorded(folder: Path) -> _Side:
+    if not folder.is_dir():
+        raise RunError(f"{folder} is not a run folder: there is no such folder")
+    run = RecordedRun(folder)
+    run.check_tables()
+    path = folder / folders.SCENARIO
+    try:
+        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise RunError(f"{folder} is not a run folder: it has no {path.name}") from None
+    except (OSError, ValueError, RecursionError):
+        raise RunError(f"{path} is damaged; run the scenario again") from None
+    kind = run.summary.get("kind")
+    if not isinstance(kind, str):
+        raise RunError(f"{folder / folders.SUMMARY} is damaged; run the scenario again")
+    known(kind, folder)
+    return _Side(str(folder), run.summary, run.provenance, tables, run.plan)
 
-    def __init__(self, run: Run) -> None:
-        self.called = repr(run)
-        self.summary = dict(run.summary)
-        self.provenance = run.provenance
-        self.tables = tomllib.loads(scenarios.dump(run.scenario))
-        self._run = run
 
-    def plan(self) -> Any:
-        """The plan it was run with."""
-        return self._run.plan
-
-
-def _diverge(a: _Recorded, b: _Recorded) -> Divergence | None:
+def _diverge(a: _Side, b: _Side) -> Divergence | None:
     plans = a.plan(), b.plan()
     rows = first_difference(
         *(
@@ -192,7 +179,7 @@ def _in_words(plan: Any, row: Any) -> str:
     return f"{int(row['time']) / 1e6:.6f} s, {networks()[plan.kind].run.call_words(plan, row)}"
 
 
-def _notes(a: _Recorded, b: _Recorded) -> list[str]:
+def _notes(a: _Side, b: _Side) -> list[str]:
     notes = []
     for key in ("innervate", "commit", "packages", "python"):
         one, other = a.provenance.get(key), b.provenance.get(key)

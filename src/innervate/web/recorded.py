@@ -8,9 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-from innervate import scenario as scenarios
 from innervate.running import folder as folders
-from innervate.scenario import ScenarioError
+from innervate.running.recorded import RecordedRun
 from innervate.web.errors import WatchError
 from innervate.web.simulated import Progress, Simulated
 
@@ -19,17 +18,13 @@ def plan_of(folder: Path) -> Any:
     """The plan of a run folder's scenario, as far as the run came.
 
     Raises:
-        WatchError: its scenario is not there, or cannot be run any more.
-        RunError: it is no run folder.
+        RunError: it is no run folder, or its scenario cannot be run any more.
     """
-    interrupted_s = folders.read_json(folder, folders.SUMMARY).get("interrupted_at_s")
-    try:
-        plan = scenarios.plan(scenarios.load(folder / folders.SCENARIO))
-    except ScenarioError as error:
-        raise WatchError(f"this run cannot be simulated again: {error}") from None
-    if interrupted_s is None:
+    run = RecordedRun(folder)
+    plan = run.plan()
+    if run.interrupted_s is None:
         return plan
-    reached_us = round(1e6 * interrupted_s) + 1  # what happened at that moment is shown, too
+    reached_us = round(1e6 * run.interrupted_s) + 1  # what happened at that moment is shown, too
     return replace(plan, duration_us=min(plan.duration_us, reached_us))
 
 
@@ -41,13 +36,12 @@ class Recorded(Simulated):
     def __init__(self, folder: Path, plan: Any, speed: float | None = None) -> None:
         super().__init__(plan, speed)
         self.can = ("pause", "step", "speed", "seek")
-        self._folder = folder
-        self._summary = folders.read_json(folder, folders.SUMMARY)
+        self._run = RecordedRun(folder)
 
     @property
     def report(self) -> Path | None:
         """The run's page, if it was written."""
-        path = self._folder / folders.REPORT
+        path = self._run.folder / folders.REPORT
         return path if path.is_file() else None
 
     def scene(self) -> dict[str, Any]:
@@ -66,12 +60,12 @@ class Recorded(Simulated):
         self.prepare()
         self.run_to_end(progress)
         if self.broken:
-            raise WatchError(f"{self._folder}: simulated again, {self.broken}")
-        was, now = self._summary.get("fingerprint"), self.engine.fingerprint
-        interrupted_s = self._summary.get("interrupted_at_s")
+            raise WatchError(f"{self._run.folder}: simulated again, {self.broken}")
+        was, now = self._run.summary.get("fingerprint"), self.engine.fingerprint
+        interrupted_s = self._run.interrupted_s
         if interrupted_s is None and was != now:
             raise WatchError(
-                f"{self._folder}: simulated again, its fingerprint is {now}, not {was}: it was "
+                f"{self._run.folder}: simulated again, its fingerprint is {now}, not {was}: it was "
                 "made by another version of innervate; run its scenario again"
             )
         self.back_to(0)

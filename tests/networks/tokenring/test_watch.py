@@ -9,7 +9,8 @@ from innervate.web.errors import Refused
 from innervate.web.messages import Cut, Heal, Kill, Save
 from innervate.web.simulated import Simulated
 from tests.browser.conftest import browser, look
-from tests.browser.servers import click, expect, serving
+from tests.browser.servers import PHONE, beside, click, expect, serving
+from tests.browser.test_design import DRAWN
 
 __all__ = ["browser", "look"]
 RING = 'kind = "tokenring"\nname = "round"\nnodes = 6\nduration_s = 60\nlost_us = 50_000\n'
@@ -70,6 +71,29 @@ def test_what_is_watched_is_what_is_run(source):
     running = engine_of(plan).running
     running.finish()
     assert source.engine.fingerprint == running.fingerprint
+
+
+@pytest.mark.flaky(reruns=1)  # as all that a browser looks at
+def test_a_network_that_does_not_say_who_has_a_way(look, tmp_path):
+    """Who is cut off is known from its cables; when it has recovered nobody says."""
+    path = tmp_path / "round.toml"
+    path.write_text('kind = "tokenring"\nnodes = 5\nduration_s = 119.7\n')
+    with beside(path, 0.1) as address:
+        page = look(address)
+        label = page.locator("#unconnected .label")
+        expect(label).to_have_text("cut off")
+        expect(page.locator("#clock")).to_contain_text("/ 1:59.7 min")
+        for cable in ("n0 - n1", "n0 - n4"):
+            click(page, cable)
+            expect(page.locator("#selected-facts")).to_have_text("link, cut")
+        expect(page.locator("#unconnected output")).to_have_text("4")
+        expect(page.locator("#unconnected .more")).to_have_text("of 5 nodes")
+        expect(page.locator("#recovery")).to_be_hidden()
+        page.set_viewport_size(PHONE)
+        page.evaluate(DRAWN)
+        row, last = (page.locator(one).bounding_box() for one in ("#numbers", "#unconnected"))
+        right, end = (one["x"] + one["width"] for one in (row, last))
+        assert abs(end - right) < 1  # two numbers fill the row, as three do
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from innervate.analysis.ways import NOWHERE, Numbers, follow
 from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.networks.skin.analysis.rows import loop_episodes, parent_changes, parents
 from innervate.networks.skin.papers.common import RULES, Case, Rule, seeds_of
@@ -103,8 +104,7 @@ def draw(got: Measured) -> Figure:
     before, then, bars = figure.subplots(1, 3, width_ratios=(1, 1, 0.95))
     hops = next_hops(graph, np.array(shown["before"]))
     root = graph.peer[4 * graph.cells + CUT_PORT] // 4
-    ends = [_end(hops, cell, graph.cells)[0] for cell in range(graph.cells)]
-    servers = [CUT_PORT if end == root else 0 for end in ends]
+    servers = np.where(_ends(hops, graph.cells) == root, CUT_PORT, 0)
     paint.paint(before, _map(graph, hops, servers), MAP_IN)
     before.set_title("a  the cable of port 1 fails")
     _draw_ring(then, graph, shown)
@@ -113,12 +113,9 @@ def draw(got: Measured) -> Figure:
     return figure
 
 
-def _end(hops: Any, node: int, cells: int) -> tuple[int, int]:
-    """The last cell of a cell's chain of parents, and after how many steps: no end, too many."""
-    steps = 0
-    while 0 <= hops[node] < cells and steps <= cells:
-        node, steps = int(hops[node]), steps + 1
-    return node, steps
+def _ends(hops: Any, cells: int) -> Numbers:
+    """The last cell of every cell's chain of parents, NOWHERE where it leads into a ring."""
+    return follow(hops, (hops < 0) | (hops >= cells))[0]
 
 
 def _draw_ring(ax: Axes, graph: Any, shown: Any) -> None:
@@ -126,18 +123,15 @@ def _draw_ring(ax: Axes, graph: Any, shown: Any) -> None:
     root = graph.peer[4 * graph.cells + CUT_PORT] // 4
     if hops[root] == graph.sink:
         hops[root] = -1  # its cable is dead
-    servers = []
-    for cell in range(graph.cells):
-        end, steps = _end(hops, cell, graph.cells)
-        way = 0 if hops[end] == graph.sink else NONE
-        servers.append(INTO_RING if steps > graph.cells else way)
+    ends = _ends(hops, graph.cells)
+    ways = np.where(hops[ends] == graph.sink, 0, NONE)
+    servers = np.where(ends == NOWHERE, INTO_RING, ways)
     paint.paint(ax, _map(graph, hops, servers, shown["ring"]), MAP_IN)
 
 
-def _map(graph: Any, hops: Any, servers: Sequence[int], ring: Sequence[int] = ()) -> Drawing:
+def _map(graph: Any, hops: Any, served: Numbers, ring: Sequence[int] = ()) -> Drawing:
     """A map whose cells have the colours of these ports, with arrows along a ring."""
     sheet, down = Sheet(graph), graph.peer[4 * graph.cells + CUT_PORT]
-    served = np.array(servers)
     moment = Moment(0, served, hops, served, frozenset({down}), frozenset())
     drawing = route_map(sheet, moment, "", tips=False)
     arrows = "".join(svg.arrow(sheet.cell(c), sheet.cell(int(hops[c])), 4.0) for c in ring)
