@@ -1,4 +1,4 @@
-"""The next round waits, for less than a period, while tables that it would replace are going out."""
+"""The next round waits, for less than a period, while tables that it would replace go out."""
 
 from innervate.networks.mesh.protocol.constants import REPORT_ROUND, REPORT_TABLES, TABLE
 from tests.networks.mesh.bench import Bench
