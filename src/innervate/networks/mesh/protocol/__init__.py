@@ -45,12 +45,13 @@ the link. One that was heard in this tick is sent a frame the more often, the le
 *Backoff.* Acks that are missing beyond what the links explain make for growing pauses of searches,
 then of all messages, never of alarms: a full channel heals (decision 0016).
 
-*Standby.* A standby that has no sign of the gateway's life for a `guard_us` asks it. Each answer
-brings a part of the graph, until it has all. Questions in vain, more where answers used to be late:
-it leads. Its first request makes all tables its own: nobody responds but who has none, and is sent
-one of the graph that came with the answers; all have new ones after the next round (decision 0053).
-Nobody looks for the gateway that is `gone`, or goes by it, until it is heard, or a table leads to
-it, or the round after the next begins. Questions and answers go before all else.
+*Standby.* A standby that has no sign of the gateway's life until its second `guard_us` is over asks
+it. Each answer brings a part of the graph, until it has all. Questions in vain, more where answers
+used to be late: it leads. Its first request makes all tables its own: nobody responds but who has
+none, and is sent one of the graph that came with the answers; all have new ones after the next
+round (decision 0053). Nobody looks for the gateway that is `gone`, or goes by it, until it is
+heard, or a table leads to it, or the round after the next begins. Questions and answers go before
+all else.
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor acknowledged them. Who hears a robot outside is its witness (A13).
@@ -153,7 +154,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 | ...        | ... no table of the epoch       | `keep_table`: we have none       | RESPOND        |
 |            | before                          |                                  |                |
 | new round  | `REQUEST` that names others     | `is_spared`, `join`: no response | NOTHING        |
-| IDLE       | `TICK`, the period is over      | `start_round`                    | COLLECTING     |
+| IDLE       | `TICK`, the period is over, no  | `start_round`; it waits less     | COLLECTING     |
+|            | tables are going out            | than another period for them     |                |
 | IDLE       | `RESPONSE`, without a table     | `admit`: its table, or a round   |                |
 | COLLECTING | `RESPONSE`                      | `on_response`: `note_list`,      |                |
 |            |                                 | unless `WEAK` `note_path`        |                |
@@ -334,7 +336,7 @@ Constants and settings
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
 | `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
 |                                                | double                                          |
-| `ALL_ACKED = 255`, `RATIO_MIN = 64`,           | shares of transmissions acknowledged: all, the  |
+| `ALL_ACKED = 255`, `RATIO_MIN = 32`,           | shares of transmissions acknowledged: all, the  |
 | `SMOOTHING = 3`, `MISSES_MAX = 31`             | least believed; an eighth of what is new        |
 | `UNIT = 4`, `SPARE = 1428`, `TRIES_MAX = 12`   | an ack in quarters; what it takes back; most    |
 |                                                | transmissions because a link is poor            |

@@ -328,7 +328,7 @@ def gate(n, most=0):
         ("period", 0, 0, 65535, "ticks", "between rounds now"),
         ("links", 0, 0, 65535, "links", "known after the newest round"),
         ("version", 0, 0, 65535, "version", "of the tables on their way or in force"),
-        ("open", 0, 0, 1, "flag", "tables of this version are on their way"),
+        ("open", 0, 0, 65535, "ticks", "tables are on their way; less 1: how long a round waits"),
         ("sum_a", 0, 0, TIME, "hash", "of the graph of the newest tables"),
         ("part", 0, 0, 15, "fragment", "graph: next to be flooded; standby: next to be asked for"),
         ("taken", 0, 0, 1, "flag", "taken over: all keep their tables until the next round"),

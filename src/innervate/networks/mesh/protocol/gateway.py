@@ -254,7 +254,9 @@ def tick(node, gate, params, now, out):
     if node.leading:
         if gate.wait > 0:
             gate.wait = gate.wait - 1
-        if gate.wait == 0:
+        elif gate.open > 1:
+            gate.open = gate.open - 1
+        if gate.wait == 0 and gate.open <= 1:
             start_round(node, gate, params, now, out)
         return
     silence = params.dead + max(0, node.rank - 1) * params.dead_step

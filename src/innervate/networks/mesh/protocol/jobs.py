@@ -65,7 +65,7 @@ def give_jobs(node, gate, params, changed, out):
         elif changed or gate.job[s] == GIVEN_UP:
             give_job(gate, params, s)
             if gate.job[s] == TO_SEND:
-                gate.open = 1
+                gate.open = params.period if changed else max(gate.open, 1)
 
 
 def note_lost_table(gate, s):
