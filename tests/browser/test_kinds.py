@@ -1,6 +1,8 @@
 """The page of a radio team and of a mesh."""
 
-from tests.browser.servers import beside, click, expect, place, seek
+from math import dist
+
+from tests.browser.servers import PHONE, beside, click, expect, place, seek
 from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN, hold
 
 RADIO = """
@@ -111,6 +113,28 @@ def test_who_leads_a_mesh_now_is_its_gateway_on_the_map(look, tmp_path):
         assert {"home", "middle gateway", "far"} <= written(page)
         click(page, "middle")
         expect(page.locator("#selected-facts")).to_have_text("gateway")
+
+
+ROUNDS = """window.rounds = [];
+const arc = Path2D.prototype.arc;
+Path2D.prototype.arc = function (x, y, radius) {
+  window.rounds.push([x, y, radius]);
+  return arc.apply(this, arguments);
+};"""
+
+
+def test_a_dense_mesh_on_a_phone_shows_its_gateway_and_node_by_node(look):
+    with beside("mesh-leipzig", 0) as address:
+        page = look(address, PHONE, script=WRITTEN + ROUNDS)
+        hold(page, 5.0)
+        page.evaluate("window.rounds.length = 0")
+        page.set_viewport_size({"width": 380, "height": 740})  # all is drawn anew
+        assert {"2 gateway", "2"} & written(page)
+        places = {tuple(one) for one in page.evaluate("window.rounds")}
+        assert len(places) >= 85
+        near = [min(dist(one[:2], two[:2]) - one[2] - two[2] for two in places - {one})
+                for one in places]  # fmt: skip
+        assert sum(gap < 0 for gap in near) < 0.1 * len(near), "dots lie on each other"
 
 
 def written(page):

@@ -77,7 +77,7 @@ def test_a_scenario_too_fast_for_processes_is_slowed_down_as_a_whole(talk):
     ("changes", "sealed", "says"),
     [
         ({"hidden": [[0, 1]]}, False, "all hear each other; leave hidden out"),
-        ({}, True, "leave --pty, --netns and --sealed out"),
+        ({}, True, "leave --pty, --netns, --sealed and --identities out"),
         ({"protocol.wait_us": 20_000}, False, "protocol.wait_us: live slots are 100 times"),
     ],
 )

@@ -92,6 +92,26 @@ def test_keys_are_those_that_were_asked_for(plan, tmp_path):
     assert files >= {f"n{number}.identity" for number in range(3)}
 
 
+@pytest.mark.parametrize("keys", ["key", "identities"])
+def test_a_channel_has_no_keys_and_no_folder_is_left(monkeypatch, tmp_path, keys):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    team = scenarios.plan(scenarios.from_dict({"kind": "radio", "stations": 3}))
+    with pytest.raises(LiveError, match="--sealed and --identities out"):
+        run_up.prepared(team, Way(None, "udp", keys))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_nothing_can_be_played_no_folder_is_left(plan, monkeypatch, tmp_path):
+    def no(*_):
+        raise LiveError("no cable joins n0 and n2")
+
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr(run_up, "_player", no)
+    with pytest.raises(LiveError, match="no cable joins"):
+        asyncio.run(run_up.run(plan, Way(None, "udp", ""), "", 0, as_json=True))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_nobodys_own_keys_or_scenario_are_replaced(plan, tmp_path):
     way = Way(tmp_path, "udp", "identities")
     (tmp_path / "keys").mkdir()

@@ -200,7 +200,7 @@ class UpOptions:
     netns: Flag = False
     """Every node in its own network namespace; needs root."""
     pty: Flag = False
-    """Skin: serial cables (ptys) instead of UDP."""
+    """Cables: serial lines (ptys) instead of UDP."""
     firmware: Flag = False
     """Nodes as C on emulated boards (QEMU), where there is such a library of them."""
     in_python: Annotated[list[str] | None, Parameter(negative="")] = None

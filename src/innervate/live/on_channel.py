@@ -27,7 +27,8 @@ class ChannelDeployment(Deployment):
     def check(self, cables: str, sealed: bool) -> None:
         """Refuse cables and sealing: all share a channel."""
         if cables != "udp" or sealed:
-            raise LiveError("nodes share a channel: leave --pty, --netns and --sealed out")
+            without = "--pty, --netns, --sealed and --identities"
+            raise LiveError(f"nodes share a channel: leave {without} out")
 
     def slower(self) -> int:
         """How many times as long everything takes, between processes."""

@@ -52,14 +52,14 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
         KeyboardInterrupt: Ctrl-C or SIGTERM came before all were up; they are ended.
     """
     network = prepared(plan, way)
-    player = _player(network, as_json)
-    _foretell(network)
     ending = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGTERM, signal.SIGINT):
         loop.add_signal_handler(number, ending.set)
     began = time.monotonic()
     try:
+        player = _player(network, as_json)
+        _foretell(network)
         if not await _came_up(asyncio.create_task(up(network, scenario)), ending):
             raise KeyboardInterrupt
         with status.findable(network.folder):
@@ -95,8 +95,14 @@ def prepared(plan: Any, way: Way) -> Processes:
         if given not in known:
             raise LiveError(f"{what} must be one of {', '.join(map(repr, known))}, not {given!r}")
     folder = Path(tempfile.mkdtemp(prefix="innervate-")) if way.folder is None else way.folder
-    keys = {"use": 1, "secret.1": secrets.token_hex(32)} if way.sealed == "key" else None
-    network = Processes(plan, folder.absolute(), way.cables, keys, way.images)
+    common = {"use": 1, "secret.1": secrets.token_hex(32)}
+    keys = {"": None, "key": common, "identities": {}}[way.sealed]
+    try:
+        network = Processes(plan, folder.absolute(), way.cables, keys, way.images)
+    except LiveError:
+        if way.folder is None:
+            folder.rmdir()
+        raise
     network.engine = way.engine
     network.take_folder()
     _check_scenario(network.folder / SCENARIO)

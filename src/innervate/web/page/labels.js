@@ -10,6 +10,7 @@ export class Labels {
   constructor(context, width, height) {
     Object.assign(this, { context, width, height });
     this.taken = new Map();
+    this.names = new Map(); // those of it that are names
     this.lines = new Map(); // where names would rather not be
   }
 
@@ -29,8 +30,9 @@ export class Labels {
     }
   }
 
-  /** Where a name can be written `gap` px from a place, as [x, y, align]; null without room. */
-  put(text, x, y, gap) {
+  /** Where a name can be written `gap` px from a place, as [x, y]; null without room. One that
+   * has to be there lies above all but names. */
+  put(text, x, y, gap, above = false) {
     const wide = this.context.measureText(text).width + 4;
     const high = 14;
     const boxes = SIDES.map(([dx, dy]) => {
@@ -39,24 +41,24 @@ export class Labels {
       const top = y + dy * far + (dy < 0 ? -high : dy ? 0 : -high / 2);
       return [left, top, left + wide, top + high];
     });
-    const free = boxes.filter((box) => this.#isFree(box));
+    const taken = above ? this.names : this.taken;
+    const free = boxes.filter((box) => this.#isInside(box) && isFree(taken, box));
     const box = free.find((one) => isFree(this.lines, one)) ?? free[0];
     if (!box) return null;
     this.block(...box);
+    keep(this.names, box);
     return [box[0] + 2, box[1] + high / 2];
   }
 
   /** Take a box, if it is free and in sight. */
   claim(...box) {
-    if (!this.#isFree(box)) return false;
+    if (!this.#isInside(box) || !isFree(this.taken, box)) return false;
     this.block(...box);
     return true;
   }
 
-  #isFree(box) {
-    const [x0, y0, x1, y1] = box;
-    if (x0 < 2 || y0 < 2 || x1 > this.width - 2 || y1 > this.height - 2) return false;
-    return isFree(this.taken, box);
+  #isInside([x0, y0, x1, y1]) {
+    return x0 >= 2 && y0 >= 2 && x1 <= this.width - 2 && y1 <= this.height - 2;
   }
 }
 

@@ -14,6 +14,7 @@ const FAIR = 0.6;
 const WAYS = ["", "no way to the gateway", "cut off from the gateway"];
 const CROSS_PX = 7; // round the cross of a cut, where no name goes
 export const NAME_PX = 9; // between a node and its name: the line round who is selected lies there
+const DOT_PX = [3, 6]; // radius of a node: a quarter of what half of them are apart, within these
 const HEAD_PX = 24; // so much of both ends of an arrow names keep off
 const LINK_PX = 5; // how near a click must be to a link
 const FONT = "12px system-ui, sans-serif";
@@ -25,6 +26,7 @@ export class MeshView {
     this.margin = [30, 26];
     this.colour = "";
     this.moves = network.nodes.some((node) => node.role === "robot");
+    this.apart = apart(network.place);
   }
 
   choices() {
@@ -53,12 +55,12 @@ export class MeshView {
     else flights(context, this.network, stage, 4);
   }
 
-  size() {
-    return 2 * this.dot();
+  size(scale) {
+    return 2 * this.dot(scale);
   }
 
-  reach() {
-    return this.dot() + 6;
+  reach(scale) {
+    return this.dot(scale) + 6;
   }
 
   linkFirst() {
@@ -72,8 +74,9 @@ export class MeshView {
     return away <= LINK_PX ? away : Infinity;
   }
 
-  dot() {
-    return this.network.nodes.length > 120 ? 4 : 6;
+  dot(scale) {
+    const [least, most] = DOT_PX;
+    return Math.max(least, Math.min(most, 0.25 * this.apart * scale));
   }
 
   facts(i) {
@@ -184,7 +187,7 @@ export class MeshView {
     const { network } = this;
     const { now, nodes } = network;
     const routes = new Path2D();
-    const dot = this.dot();
+    const dot = this.dot(stage.scale);
     nodes.forEach((_, i) => {
       const next = now.node_up[i] ? network.parentOf(i) : -1;
       if (next < 0) return;
@@ -194,13 +197,13 @@ export class MeshView {
     context.font = FONT;
     const names = new Labels(context, stage.width, stage.height);
     this.#keepOff(names, stage);
-    nodes.forEach((_, i) => {
+    for (const i of this.#firstTold().reverse()) { // who has a part to play lies above the others
       const [x, y] = [stage.x[i], stage.y[i]];
       symbol(context, x, y, dot, network.role(i), now.node_up[i]);
       names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
       if (now.alarm[i]) this.#ring(context, x, y, dot + 6, [], 3);
       else if (now.outside[i]) this.#ring(context, x, y, dot + 6, [4, 3], 2);
-    });
+    }
     affected(context, network, stage, dot + 5);
     network.ends.forEach(([a, b], link) => {
       if (!network.isCut(link)) return;
@@ -234,14 +237,24 @@ export class MeshView {
     stroke(context, colours.alarm, width, ring, dash);
   }
 
-  /** Those with a part to play are named first: the others find what room is left. */
+  /** Whether a node has a part to play. */
+  #told(i) {
+    const { now } = this.network;
+    return this.network.role(i) !== "node" || now.alarm[i] || now.outside[i];
+  }
+
+  #firstTold() {
+    const told = this.network.nodes.map((_, i) => Boolean(this.#told(i)));
+    return [...told.keys()].sort((a, b) => told[b] - told[a] || a - b);
+  }
+
+  /** Those with a part to play are named first, above the others' dots if need be: the others find
+   * what room is left. */
   #names(context, stage, names, dot) {
     const { network } = this;
     const { now, nodes } = network;
-    const told = (i) => network.role(i) !== "node" || now.alarm[i] || now.outside[i];
-    const order = [...nodes.keys()].sort((a, b) => told(b) - told(a) || a - b);
     context.textAlign = "left";
-    for (const i of order) {
+    for (const i of this.#firstTold()) {
       const { label, also } = nodes[i];
       const role = network.role(i);
       const state = now.alarm[i] ? " ALARM" : now.outside[i] ? " outside" : "";
@@ -249,14 +262,21 @@ export class MeshView {
       const called = also ? [`${also} (${label})`, also] : [label]; // the scenario's and its own
       const texts = called.map((name) => `${name}${plain ? "" : ` ${role}`}${state}`);
       texts.push(`${called.at(-1)}${state}`);
-      const strong = told(i);
+      const strong = this.#told(i);
       context.font = strong ? `600 ${FONT}` : FONT;
       const colour = state ? colours.alarm : strong ? colours.ink : colours.soft;
-      for (const text of texts) {
-        const at = names.put(text, stage.x[i], stage.y[i], dot + NAME_PX);
-        if (at) word(context, text, ...at, colour, colours.ground, context.font);
-        if (at) break;
-      }
+      const beside = [stage.x[i], stage.y[i], dot + NAME_PX];
+      let at = null;
+      let text = texts.find((one) => (at = names.put(one, ...beside)));
+      if (!at && strong) at = names.put(text = texts.at(-1), ...beside, true);
+      if (at) word(context, text, ...at, colour, colours.ground, context.font);
     }
   }
+}
+
+/** How far from each other half of the places are, each from the one next to it. */
+function apart(places) {
+  const next = places.map(([x, y], i) => Math.min(...places
+    .filter((_, k) => k !== i).map(([px, py]) => Math.hypot(px - x, py - y))));
+  return next.sort((a, b) => a - b)[next.length >> 1] ?? Infinity;
 }

@@ -51,7 +51,7 @@ export class PlainView extends MeshView {
   #nodes(context, stage) {
     const { network } = this;
     const { now, nodes } = network;
-    const dot = this.dot();
+    const dot = this.dot(stage.scale);
     const values = now.fields?.[this.colour] ?? [];
     const known = values.filter((value) => value !== null);
     const [least, most] = [Math.min(...known), Math.max(...known)];
