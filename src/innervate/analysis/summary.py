@@ -265,7 +265,7 @@ def _well(counts: Counts) -> str:
 def times_words(counts: Counts) -> str:
     """How often messages were delivered; told is also what cannot be without repetitions."""
     said = f"delivered {counts.delivered:,} times"
-    if counts.nodes and counts.delivered > counts.offered * counts.nodes > 0:
+    if counts.delivered > (counts.offered - counts.unheard) * counts.nodes > 0:
         said += f", more often than once at each of {number_of(counts.nodes, 'node')}"
     return said
 

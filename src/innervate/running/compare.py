@@ -14,7 +14,7 @@ from innervate.analysis.headline import HeadlineEntry
 from innervate.network import known, networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
-from innervate.running.recorded import RecordedRun
+from innervate.running.recorded import RecordedRun, time_of
 from innervate.running.run import Run
 from innervate.running.trail import first_difference
 
@@ -89,9 +89,7 @@ class _Side:
     def ended_us(self) -> int:
         """Simulated time the run came to, us."""
         ended = self.summary.get("interrupted_at_s", self.summary.get("duration_s"))
-        if not isinstance(ended, int | float):
-            raise RunError(f"{self.called}: its summary is damaged; run the scenario again")
-        return round(1e6 * ended)
+        return round(1e6 * time_of(ended, self.called))
 
 
 def compare(a: Side, b: Side) -> Comparison:
@@ -143,11 +141,9 @@ def _recorded(folder: Path) -> _Side:
         raise RunError(f"{folder} is not a run folder: there is no such folder")
     run = RecordedRun(folder)
     run.check_tables()
-    path = folder / folders.SCENARIO
+    path = run.scenario
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise RunError(f"{folder} is not a run folder: it has no {path.name}") from None
     except (OSError, ValueError, RecursionError):
         raise RunError(f"{path} is damaged; run the scenario again") from None
     kind = run.summary.get("kind")

@@ -129,6 +129,7 @@ def test_it_is_swept(file, tmp_path, capsys):
     (2, 0, 2, "2 sent, delivered 3 times"),  # one of them was for several
     (5, 3, 2, "5 sent, 2 of them delivered 3 times"), (5, 5, 2, "5 sent, 3 delivered"),
     (1, 0, 2, "1 sent, delivered 3 times, more often than once at each of 2 nodes"),
+    (5, 4, 2, "5 sent, 1 of them delivered 3 times, more often than once at each of 2 nodes"),
     (1, 0, 3, "1 sent, delivered 3 times"),
 ])  # fmt: skip
 def test_messages_that_were_sent_and_how_often_they_came(sent, unheard, nodes, said):

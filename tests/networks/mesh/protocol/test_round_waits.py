@@ -31,6 +31,12 @@ def test_it_waits_for_less_than_another_period():
     assert rounds(bench) == [0, 10]
 
 
+def test_it_waits_for_less_than_a_standby_does():
+    bench = slow(60 * S, standbys=(1,), standby=1, dead=9, dead_step=0)
+    bench.run(40 * S)
+    assert {node for _, node, code, *_ in bench.reports if code == REPORT_ROUND} == {0}
+
+
 def test_where_all_have_their_tables_it_does_not_wait():
     bench = slow(0)
     bench.run(12 * S)

@@ -32,6 +32,7 @@ from innervate.networks.mesh.protocol.paths import (
     mark_table,
 )
 from innervate.networks.mesh.protocol.queue import compose, drop, kick, spare_places
+from innervate.networks.mesh.protocol.round import SLACK
 from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
@@ -65,7 +66,14 @@ def give_jobs(node, gate, params, changed, out):
         elif changed or gate.job[s] == GIVEN_UP:
             give_job(gate, params, s)
             if gate.job[s] == TO_SEND:
-                gate.open = params.period if changed else max(gate.open, 1)
+                gate.open = hold_off(params) if changed else max(gate.open, 1)
+
+
+def hold_off(params):
+    """For how many ticks, less 1, the next round waits: no standby may take us for dead."""
+    if params.standby:
+        return max(1, min(params.period, params.dead - params.period - SLACK))
+    return params.period
 
 
 def note_lost_table(gate, s):
