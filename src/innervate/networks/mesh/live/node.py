@@ -55,6 +55,7 @@ class MeshNode(LiveNode):
         self.inbox.refuse, self.inbox.refused = self._refuse, self.outgoing.refused
         self.arrivals = self.inbox.arrivals
         self._ending = stack.item()
+        self._owed: list[tuple[int, int]] = []  # whose packets are to be acknowledged end to end
         self.alarms = Alarms()
         self._place = stack.item()
         self.requests["locate"] = self._located
@@ -263,6 +264,8 @@ class MeshNode(LiveNode):
         self.outgoing.told(code, a, b)
 
     def _settled(self) -> None:
+        while self._owed:  # told in the middle of an outbox, which must not be filled anew
+            self._acknowledge(*self._owed.pop())
         self.alarms.arrivals.hand_up()
         self.inbox.hand_up()
         if self.outgoing.turns:
@@ -290,7 +293,7 @@ class MeshNode(LiveNode):
 
     def _refuse(self, sender: int, seq: int, piece: Piece) -> None:
         """The last piece of a message that is not whole came: its sender is to know."""
-        self.outgoing.refuse(sender, piece, lambda: self._acknowledge(sender, seq))
+        self.outgoing.refuse(sender, piece, lambda: self._owed.append((sender, seq)))
 
     def _hand_down(self, item: Any) -> None:
         assert self.engine is not None
