@@ -52,13 +52,6 @@ def test_a_packet_of_an_earlier_life_is_not_taken_for_a_new_one(seed):
     assert runs.run(seed, "mesh").broken == []
 
 
-# An old packet of numbers that were drawn was taken for new. That numbers which have come round are
-# not late for ever is held by tests/networks/mesh/live/test_lives.py: no seed is known to show it.
-@pytest.mark.slow
-def test_who_was_switched_on_again_is_heard_by_all_and_in_order():
-    assert runs.run(910_032, "mesh").broken == []
-
-
 def test_who_is_switched_on_again_and_again_for_a_minute_is_heard_by_all():
     found = runs.run(900_834, "mesh", storms=1, storm_s=60)
     assert found.broken == []
