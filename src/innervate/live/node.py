@@ -274,7 +274,8 @@ class LiveNode:
 
     def troubles(self) -> dict[str, str]:
         """What its user should mend, a line each, by a name for each."""
-        return {path.name: path.trouble for path in self.paths if path.trouble}
+        named = {path.trouble: path.name for path in reversed(self.paths) if path.trouble}
+        return {name: text for text, name in named.items()}  # what many paths have, by the first
 
     def counters(self) -> Counter[str]:
         """What happened how often: handler calls, frames dropped by reason, outcomes."""
