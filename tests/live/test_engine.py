@@ -9,6 +9,7 @@ import pytest
 from innervate.dialect.arith import HALF30, MASK30
 from innervate.dialect.outbox import DELIVER, REPORT, SEND, SET_TIMER
 from innervate.live.engine import Engine, clock_us
+from innervate.live.machine import machine
 from tests.live import time_by_hand
 
 
@@ -214,6 +215,27 @@ def test_the_clock_goes_on_while_the_machine_is_suspended(monkeypatch):
     before_us = clock_us()
     monkeypatch.setattr(time, "clock_gettime_ns", lambda which: read(which) + slept.get(which, 0))
     assert 20_000_000 <= clock_us() - before_us < 21_000_000
+
+
+def test_a_timer_that_is_set_after_a_suspension_is_not_late_by_one_that_was_set_before():
+    """The loop's clock stands still meanwhile: what it waits for then comes as much later."""
+
+    async def suspended(stack, engine):
+        clock = machine()
+        stack.arm(0, 20_000_000)
+        engine.call(lambda _: None, clock_us())
+        await asyncio.sleep(1.0)
+        read = clock.monotonic_ns
+        clock.monotonic_ns = lambda: read() + 3_600_000_000_000
+        stack.began += 3_600_000_000
+        stack.arm(1, 250_000)
+        engine.call(lambda _: None, clock_us())
+
+    stack, _ = run(suspended)
+    assert stack.fired == [
+        (pytest.approx(1_000_000, abs=5), 0),
+        (pytest.approx(1_250_000, abs=5), 1),
+    ]
 
 
 def test_frames_that_nobody_waits_for_leave_behind_the_others_in_order():

@@ -8,7 +8,7 @@ import pytest
 
 from innervate.live.engine import clock_us
 from innervate.live.links import Link, Path
-from innervate.live.machine import Machine, on
+from innervate.live.machine import Machine, machine, on
 from innervate.live.node import CUT, LiveNode
 from innervate.live.state import State
 from tests.live import time_by_hand
@@ -100,6 +100,24 @@ def run(what, *links, sealer=None, state=None):
         return node
 
     return time_by_hand.run(main())
+
+
+@pytest.mark.parametrize(("seconds", "begun"), [(500, [0]), (540, [0, 1]), (3600, [0, 1])])
+def test_who_did_not_run_for_half_the_protocols_clock_begins_anew(seconds, begun):
+    """Behind that its times, modulo 2^30 us, lie ahead: a cell of a skin was not heard for long."""
+
+    async def suspended(node, _told):
+        node.stack.arm(0, 1_000_000)
+        node.engine.call(lambda _: None, clock_us())
+        clock = machine()
+        read = clock.monotonic_ns
+        clock.monotonic_ns = lambda: read() + seconds * 1_000_000_000
+        await asyncio.sleep(2.0)
+        anew = node.counters()["begun anew: did not run for long"]
+        assert [cause for what, _, cause in node.stack.heard if what == "start"] == begun
+        assert anew == len(begun) - 1
+
+    run(suspended)
 
 
 def test_a_path_is_known_by_its_port_and_no_other():

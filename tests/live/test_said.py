@@ -11,7 +11,7 @@ from innervate.live.build import open_keys
 from innervate.live.machine import Machine, on
 from innervate.live.nodefile import load
 from innervate.live.serial import SerialLink
-from innervate.live.udp import MulticastLink
+from innervate.live.udp import MulticastLink, UdpLink
 
 KEY = bytes(range(32))
 FILE = """\
@@ -160,6 +160,26 @@ def test_a_neighbour_that_cannot_be_sent_to_is_said_and_when_it_can_again(node):
         "n3: udp 127.0.0.1:9: there again",
     ]
     assert path.counters["unsent: full"] == path.counters["unsent: Network is unreachable"] == 1
+
+
+def test_an_address_that_is_gone_is_said_once_for_all_neighbours_on_it(node):
+    process, machine = node
+    link = UdpLink(("10.0.0.1", 4700), [("10.0.0.2", 4700), ("10.0.0.3", 4700)])
+    process.node.paths[:] = link.paths
+
+    async def look():
+        link._lost(OSError(errno.ENETDOWN, "Network is down"))
+        process._look()
+        for path in link.paths:
+            path.trouble = ""
+        process._look()
+        link.close()
+
+    asyncio.run(look())
+    assert machine.said == [
+        "n3: udp 10.0.0.1:4700: cannot be used: Network is down; trying again",
+        "n3: udp 10.0.0.2:4700: there again",
+    ]
 
 
 def test_a_group_whose_interface_is_gone_is_said_and_when_it_is_back(node):

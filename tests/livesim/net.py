@@ -40,6 +40,7 @@ class Net:
         ways: by the machines' addresses, (from, to); who has none there reaches nobody.
         sniffers: are told of every datagram as it leaves: (from, to, bytes).
         recorded: what somebody has recorded, at random.
+        taken: of each datagram in `recorded`, the processes that took what is sealed in it.
     """
 
     def __init__(self, world):
@@ -48,6 +49,7 @@ class Net:
         self.sockets = {}
         self.groups = {}
         self.recorded = []
+        self.taken = {}
         self.sniffers = []
         self.sent = 0
         self._chance = world.chance("net")
@@ -80,7 +82,10 @@ class Net:
         if len(self.recorded) < RECORDED:
             self.recorded.append(what)
         else:
-            self.recorded[self._chance.randrange(RECORDED)] = what
+            place = self._chance.randrange(RECORDED)
+            self.taken.pop(self.recorded[place][2], None)
+            self.recorded[place] = what
+        self.taken.setdefault(what[2], set())
 
     def _carry(self, way, source, target, data):
         if way is None or way.cut:

@@ -1,6 +1,6 @@
 """Machines with live nodes on them, joined by cables; what all kinds of networks share."""
 
-from tests.livesim.checks import ITEMS_MOST, items_of
+from tests.livesim.checks import ITEMS_MOST, items_of, takes_once
 from tests.livesim.host import HUP, TERM, Host
 from tests.livesim.net import Net, Way, changed
 
@@ -93,8 +93,12 @@ class Stage:
         addresses = [here for here, _ in self.ends[number]]
         host = Host(self.world, self.net, self.name(number), addresses, self.file(number))
         host.number = number
-        host.on_begin = lambda life: self.listen(number, life)
+        host.on_begin = lambda life: self._begun(number, life)
         return host
+
+    def _begun(self, number, life):
+        takes_once(self.world, self.net.taken, life)
+        self.listen(number, life)
 
     def rotate(self):
         """Another key in every file, under another number, and a signal to everybody."""

@@ -213,13 +213,14 @@ class Engine:
     def _arm(self, now: int) -> None:
         """One timer of the loop serves all: it is moved only if something is due before it.
 
-        What is due at once has its turn when all sockets that are ready now were read.
+        What is due at once has its turn when all sockets that are ready now were read. The loop's
+        clock stands still while the machine is suspended: what should have come by now is moved.
         """
         soonest = min(self._due, default=NEVER)
         if soonest <= now:
             if self._at_once is None:
                 self._at_once = self._loop.call_soon(self._fire_at_once)
-        elif soonest < self._wake_at:
+        elif soonest < self._wake_at or self._wake_at <= now:
             if self._wake is not None:
                 self._wake.cancel()
             self._wake_at = soonest

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import IO, TYPE_CHECKING, Any
 
+from innervate.dialect.arith import HALF30
 from innervate.live.engine import NEVER, Engine, Stack, clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import Link, Path
@@ -107,6 +108,7 @@ class LiveNode:
             self.stack, self._transmit, self._deliver, self._note_report, self._settled
         )
         self.engine.ended = lambda why: self.ended(why)
+        self.engine.late_us, self.engine.late = HALF30, self._was_held_up
         if self.is_awake:
             self._keep_awake()
         for link in self.links:
@@ -133,6 +135,23 @@ class LiveNode:
         if self._is_open:  # else another may run that keeps its state there
             self._is_open = False
             self.save()
+
+    def _was_held_up(self, late_us: int) -> None:
+        """The process did not run for so long: the protocol begins anew.
+
+        Its clock, which wraps, would take old times for new ones, and what waits was sent to who
+        it was then.
+        """
+        why = f"did not run for {late_us / 1e6:.0f} s"
+        machine().say(f"{self.name}: {why}; begins anew, and what was under way has expired")
+        self.outcomes["begun anew: did not run for long"] += 1
+        for link in self.links:
+            link.forget()
+        self._give_up(f"the node {why}")
+        self.running().start(1)
+
+    def _give_up(self, why: str) -> None:
+        """The protocol forgets what was under way: its user may wait for that."""
 
     def _keep_awake(self) -> None:
         try:
@@ -255,7 +274,8 @@ class LiveNode:
 
     def troubles(self) -> dict[str, str]:
         """What its user should mend, a line each, by a name for each."""
-        return {path.name: path.trouble for path in self.paths if path.trouble}
+        named = {path.trouble: path.name for path in reversed(self.paths) if path.trouble}
+        return {name: text for text, name in named.items()}  # what many paths have, by the first
 
     def counters(self) -> Counter[str]:
         """What happened how often: handler calls, frames dropped by reason, outcomes."""

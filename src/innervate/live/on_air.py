@@ -3,6 +3,7 @@
 from typing import Any
 
 from innervate.live.declared import DeclaredFile, DeclaredNode, DeclaredStack
+from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
@@ -30,6 +31,7 @@ class AirNode(LiveNode):
 
     async def _switch_on(self) -> None:
         await super()._switch_on()
+        self.running().late_us = NEVER  # a radio does not forget what it was told to send
         await self.radio.start(self)
 
     async def stop(self) -> None:

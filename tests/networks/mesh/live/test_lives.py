@@ -3,8 +3,9 @@
 import pytest
 
 from innervate.dialect.arith import HALF16, MASK16
-from innervate.live.machine import machine
+from innervate.live.machine import Machine, machine, on
 from innervate.live.receipts import DELIVERED
+from innervate.networks.mesh.live.chains import drawn_number
 from innervate.networks.mesh.live.order import QUIET_US, Order
 from innervate.networks.mesh.protocol.duplicates import ANEW
 from tests.live import time_by_hand
@@ -57,6 +58,25 @@ def test_one_that_waited_too_long_is_the_last_from_then_on():
     assert order.release(QUIET_US) == [b"waits"]
     assert order.take(60_005, 60_005, b"old", now=2 * QUIET_US - 1) == []
     assert order.take(60_006, 60_006, b"new", now=2 * QUIET_US) == [b"new"]
+
+
+@pytest.mark.parametrize("at_ms", [0, 70_000_123])
+def test_numbers_that_are_drawn_go_up_by_one_a_millisecond_in_a_boot_of_the_machine(at_ms):
+    class Drawing(Machine):
+        started, passed_ms = "boot 1", at_ms
+
+        def boot(self):
+            return self.started
+
+        def monotonic_ns(self):
+            return 1_000_000 * self.passed_ms
+
+    with on(Drawing()):
+        boot, first = drawn_number()
+        machine().passed_ms += 300
+        assert drawn_number() == (boot, (first + 300) & MASK16)
+        machine().started = "boot 2"
+        assert drawn_number()[0] != boot
 
 
 def test_a_sender_that_lost_its_numbers_is_heard_all_the_same():

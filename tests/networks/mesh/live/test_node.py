@@ -9,12 +9,14 @@ from innervate.live.receipts import DELIVERED, REFUSED, Receipt
 from innervate.live.state import State
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
+from innervate.networks.mesh.live.pieces import Piece
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     AGAIN,
     ALL,
     DATA,
+    E2E_ACK,
     END_TO_END,
     MONITOR,
     ORDERED,
@@ -24,7 +26,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_FULL,
     REPORT_GATEWAY,
 )
-from tests.live.net import Mesh
+from tests.live.net import Mesh, until
 
 
 class Kept(State):
@@ -144,3 +146,23 @@ def test_what_is_passed_on_leaves_before_it_is_acknowledged():
 
     left = asyncio.run(main())
     assert left.index(DATA) < left.index(ACK)
+
+
+def test_a_hop_is_told_that_we_have_the_word_by_which_another_ack_of_ours_may_go():
+    """Nothing is handed down while what a handler put out is still to leave."""
+
+    async def main():
+        async with Mesh(2, [(0, 1)], gather=0) as mesh:
+            node, left, reader = mesh.nodes[1], [], made().stack
+
+            def tap(at_ns, port, out, data, why):
+                if out and reader.decode(data) == 0 and reader.inbox.kind in (ACK, E2E_ACK):
+                    left.append(reader.inbox.kind)
+
+            node.taps.append(tap)
+            node._refuse(0, 7, Piece(10, 0, 2, 4, b"cd"))
+            await until(lambda: E2E_ACK in left)
+            await asyncio.sleep(0.01)
+        return left
+
+    assert asyncio.run(main())[:2] == [ACK, E2E_ACK]

@@ -55,6 +55,7 @@ class MeshNode(LiveNode):
         self.inbox.refuse, self.inbox.refused = self._refuse, self.outgoing.refused
         self.arrivals = self.inbox.arrivals
         self._ending = stack.item()
+        self._owed: list[tuple[int, int]] = []  # whose packets are to be acknowledged end to end
         self.alarms = Alarms()
         self._place = stack.item()
         self.requests["locate"] = self._located
@@ -155,24 +156,15 @@ class MeshNode(LiveNode):
             self._boot, self.stack.first = drawn_number()
         self.outgoing.chains = Chains(self._boot)
         await super()._switch_on()
-        engine = self.running()
-        engine.late_us, engine.late = self.stack.late_us, self._was_held_up
+        # Others have told the ends of messages that waited so long, or forget that they had them;
+        # the router would deliver them once more.
+        self.running().late_us = self.stack.late_us
 
-    def _was_held_up(self, late_us: int) -> None:
-        """The process did not run for so long: what waits was sent to who it was then.
-
-        Others have told the ends of such messages, or forget that they had them; the router would
-        deliver them once more, and its clock, which wraps, may take old times for new ones.
-        """
-        why = f"did not run for {late_us / 1e6:.0f} s"
-        machine().say(f"{self.name}: {why}; begins anew, and what was under way has expired")
-        self.outcomes["begun anew: did not run for long"] += 1
-        for link in self.links:
-            link.forget()
-        self.outgoing.stop(f"the node {why}")
+    def _give_up(self, why: str) -> None:
+        """What was under way has expired; packets' numbers and the epoch go on."""
+        self.outgoing.stop(why)
         self.outgoing.chains = Chains(self._boot)
         self.stack.first, self.stack.epoch = self.stack.node.seq, self.state.epoch
-        self.running().start(1)
 
     async def stop(self) -> None:
         """Stop at once; what waits for its turn is handed up, what is under way has expired."""
@@ -263,6 +255,8 @@ class MeshNode(LiveNode):
         self.outgoing.told(code, a, b)
 
     def _settled(self) -> None:
+        while self._owed:  # told in the middle of an outbox, which must not be filled anew
+            self._acknowledge(*self._owed.pop())
         self.alarms.arrivals.hand_up()
         self.inbox.hand_up()
         if self.outgoing.turns:
@@ -290,7 +284,7 @@ class MeshNode(LiveNode):
 
     def _refuse(self, sender: int, seq: int, piece: Piece) -> None:
         """The last piece of a message that is not whole came: its sender is to know."""
-        self.outgoing.refuse(sender, piece, lambda: self._acknowledge(sender, seq))
+        self.outgoing.refuse(sender, piece, lambda: self._owed.append((sender, seq)))
 
     def _hand_down(self, item: Any) -> None:
         assert self.engine is not None
