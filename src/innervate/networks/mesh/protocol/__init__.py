@@ -336,7 +336,7 @@ Constants and settings
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
 | `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
 |                                                | double                                          |
-| `ALL_ACKED = 255`, `RATIO_MIN = 32`,           | shares of transmissions acknowledged: all, the  |
+| `ALL_ACKED = 255`, `RATIO_MIN = 43`,           | shares of transmissions acknowledged: all, the  |
 | `SMOOTHING = 3`, `MISSES_MAX = 31`             | least believed; an eighth of what is new        |
 | `UNIT = 4`, `SPARE = 1428`, `TRIES_MAX = 12`   | an ack in quarters; what it takes back; most    |
 |                                                | transmissions because a link is poor            |

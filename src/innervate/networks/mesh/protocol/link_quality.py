@@ -6,7 +6,7 @@ acks that are missing because the link is as it is are not held against the chan
 """
 
 ALL_ACKED = 255
-RATIO_MIN = 32  # an eighth: worse is the channel, or the neighbour
+RATIO_MIN = 43  # a sixth: worse is the channel, or the neighbour
 SMOOTHING = 3  # an eighth of what is new
 MISSES_MAX = 31  # so many in a row leave nothing of a ratio
 TRIES_MAX = 12
