@@ -5,6 +5,7 @@ from innervate.networks.skin.view.live import SkinMap, SkinState
 from innervate.web.live import Live
 from innervate.web.live_map import Map
 from innervate.web.live_poll import Poller
+from innervate.web.live_state import State
 
 
 def cell(number, parent, paths):
@@ -116,3 +117,42 @@ def test_who_answers_for_the_first_time_does_so_again_only_later(monkeypatch, tm
         "b: nobody answers at its socket", "b answers", "b does not answer any more",
         "b answers again",
     ]  # fmt: skip
+
+
+def test_nodes_that_others_elsewhere_may_join_are_not_told_to_be_apart():
+    """A chain a - b - elsewhere - c."""
+    told = {at: {"kind": "own", "counters": {}, **one} for at, one in enumerate((
+        {"paths": paths((1, 2))}, {"paths": paths((2, 1), (3, 4))}, {"paths": paths((5, 6))},
+    ))}  # fmt: skip
+    where = Map(told)
+    assert len(where.links) == 1
+    assert State(where, told).headline().text == "No links join 1 of 3 nodes with the others."
+    for at, path in ((1, 1), (2, 0)):
+        told[at]["paths"][path]["heard_s"] = 0.1
+    assert State(where, told).headline() == ("ok", "All 3 nodes answer.", ())
+    told[2]["paths"][0]["broken"] = True
+    assert State(where, told).unconnected == 1
+
+
+def paths(*ends):
+    return [{"own": own, "name": far, "port": at, "up": True, "counters": {}}
+            for at, (own, far) in enumerate(udp(*ends))]  # fmt: skip
+
+
+def test_a_station_alone_on_its_machine_that_hears_others_is_not_alone():
+    path = {"port": 0, "name": "medium", "up": True, "counters": {}, "heard_s": None}
+    timing = {"slot_us": 1, "packet_slots": 1, "ta_us": 1, "dmax_us": 1}
+    told = {
+        0: {
+            "kind": "radio",
+            "number": 3,
+            "queued": 0,
+            "place": 0,
+            "paths": [path],
+            "timing": timing,
+            "counters": {"packets accepted": 2, "packets delivered": 2},
+        }
+    }
+    assert "is alone" in RadioState(Map(told), told).headline().text
+    path["heard_s"] = 4.0
+    assert RadioState(Map(told), told).headline().level == "ok"

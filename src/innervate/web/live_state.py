@@ -60,9 +60,30 @@ class State:
             return 0, 0, len(on)
         first = np.zeros(len(self.node_up), np.bool_)
         first[on[0]] = True
-        joined = reach(self.live(), first)
+        live, beyond = self.live(), self.hears_beyond()
+        joined = reach(live, first)
+        if (joined & beyond).any():  # others, of whom nothing is known here, can join them
+            joined = reach(live, first | beyond)
         with_it = np.count_nonzero(joined) - 1
         return int(np.count_nonzero(~joined & self.answers)), 0, int(with_it)
+
+    def hears_beyond(self) -> Any:
+        """Per place whether it hears somebody who does not run here."""
+        paths = self.paths_beyond()
+        return np.array([any(place == at for at, _ in paths) for place in self.map.places])
+
+    def paths_beyond(self) -> set[tuple[Place, int]]:
+        """Paths on which somebody is heard, by cables to nobody who runs here."""
+        ends = ((link.a, link.paths_a, link.b, link.paths_b) for link in self.map.links)
+        inside = {(at, port) for a, paths_a, b, paths_b in ends
+                  for at, paths in ((a, paths_a), (b, paths_b)) for port in paths}  # fmt: skip
+        heard = {
+            (self.map.place(i, int(path["port"])), int(path["port"]))
+            for i, one in self.told.items()
+            for path in one.get("paths", ())
+            if path["up"] and path.get("heard_s") is not None and not path.get("broken")
+        }
+        return heard - inside
 
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
         """Links that were cut or put back since, while their ends went on answering."""
@@ -123,15 +144,16 @@ class State:
 
         A node that drops all that comes forgets by which paths it heard whom.
         """
-        for place, paths in ((link.a, link.paths_a), (link.b, link.paths_b)):
-            if place.node not in self.told or is_put_out(self.told[place.node]):
-                return False
-            if self._carries_nothing(place):
-                return False
-            up = {path["port"]: path["up"] for path in self.word(place, "paths", ())}
-            if paths and not any(up.get(path, True) for path in paths):
-                return False
-        return True
+        return self.carries(link.a, link.paths_a) and self.carries(link.b, link.paths_b)
+
+    def carries(self, place: Place, paths: Collection[int]) -> bool:
+        """This end of a link that goes by these paths, or by any if they are not known, is up."""
+        if place.node not in self.told or is_put_out(self.told[place.node]):
+            return False
+        if self._carries_nothing(place):
+            return False
+        up = {path["port"]: path["up"] for path in self.word(place, "paths", ())}
+        return not paths or any(up.get(path, True) for path in paths)
 
     def live(self) -> Any:
         """A matrix of flags: who is joined to whom by a link that is up."""

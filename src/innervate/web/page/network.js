@@ -27,7 +27,8 @@ export class Network {
       t_s: scene.t_s ?? 0, paused: false, speed: 1, at_end: false,
       node_up: none(1), link_up: scene.links.map(() => 1),
       parent: none(-1), port: none(-1), depth: none(-1), load: none(0), touch: none(0),
-      told: none(-1), alarm: none(0), outside: none(0), way: none(0), leads: none(0), flights: [],
+      told: none(-1), alarm: none(0), outside: none(0), way: none(0), leads: none(0),
+      beyond: none(0), flights: [],
       since_cut_s: null, recovery: null, unconnected: 0, apart: 0, away: 0, headline: null,
     };
     this.radio = { now: none(0), turn: none(-1) };

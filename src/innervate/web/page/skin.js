@@ -80,13 +80,15 @@ export class SkinView {
     if (this.colour === "touch") return `h${shade(now.touch[i], 256)}`;
     if (!this.#isRouted(i)) return "none";
     if (this.colour === "load") return `h${shade(now.load[i], 1)}`;
+    if (now.beyond[i]) return "d7";
     if (this.colour === "depth") return `d${shade(now.depth[i] - 1, this.deepest)}`;
     return `p${now.port[i] % PORT_COLOURS}`;
   }
 
   /** A cell that has a parent may still have no way: the chain can end at a cut. */
   #isRouted(i) {
-    return this.network.now.parent[i] !== -1 && this.network.now.port[i] >= 0;
+    const { now } = this.network;
+    return Boolean(now.beyond[i]) || (now.parent[i] !== -1 && now.port[i] >= 0);
   }
 
   facts(i) {
@@ -99,7 +101,8 @@ export class SkinView {
     if (!this.#isRouted(i)) return `no way to the PC${touched}${told}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
     const load = now.load[i] ? `, load ${Math.round(100 * now.load[i])} %` : "";
-    return `${hops}through port ${now.port[i]}${load}${touched}${told}`;
+    const way = now.beyond[i] ? "by nodes that do not run here" : `through port ${now.port[i]}`;
+    return `${hops}${way}${load}${touched}${told}`;
   }
 
   legend() {
@@ -190,7 +193,8 @@ export class SkinView {
     if (!now.node_up[i]) return;
     const routed = this.#isRouted(i);
     const text = {
-      port: routed ? now.port[i] : "", depth: routed ? now.depth[i] : "",
+      port: routed && !now.beyond[i] ? now.port[i] : "",
+      depth: routed && !now.beyond[i] ? now.depth[i] : "",
       load: routed ? `${Math.round(100 * now.load[i])}` : "", touch: now.touch[i] || "",
     }[this.colour];
     context.font = `${Math.max(9, Math.min(13, 0.36 * stage.scale))}px system-ui, sans-serif`;

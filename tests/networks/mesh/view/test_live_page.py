@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from innervate import scenario
@@ -160,19 +161,20 @@ def test_who_reaches_its_gateway_who_is_astray_and_who_is_cut_off():
 
 def test_what_nodes_say_of_their_ways(monkeypatch):
     monkeypatch.setattr(live, "ways", lambda *given: given)
-    told = {**CHAIN, 1: node(1, role="standby", neighbours=hears(0, 2, 9), gives_back=False),
-            2: node(2, neighbours=hears(1), onward=[1, 0, 9])}  # fmt: skip
+    told = {**CHAIN, 1: node(1, role="standby", neighbours=hears(0, 2), gives_back=False),
+            2: node(2, neighbours=hears(1), onward=[1, 0])}  # fmt: skip
     state = MeshState.__new__(MeshState)
     state.map, state.told = MeshMap(told), {at: told[at] for at in (0, 1, 2)}
-    state.live = lambda: "links that carry frames"
+    carries = np.eye(4, dtype=np.bool_)  # links that carry frames
+    state.live = lambda: carries
     known, links, on, off, leads = state._find_ways()
-    assert links == "links that carry frames"
+    assert (links == carries).all()
     assert (on.tolist(), off.tolist()) == ([True] * 3 + [False], [False] * 3 + [True])
     assert leads.tolist() == [True, False, False, False]
     assert known.gateway.tolist() == [0, 0, 0, -1]
     assert known.named.tolist() == [[-1, -1], [0, -1], [1, 0], [-1, -1]]
     assert known.neighbours.astype(int).tolist() == [
-        [0, 1, 0, 0], [1, 1, 1, 0], [0, 1, 0, 0], [0, 0, 0, 0]]  # fmt: skip
+        [0, 1, 0, 0], [1, 0, 1, 0], [0, 1, 0, 0], [0, 0, 0, 0]]  # fmt: skip
     assert not known.goes_back  # of one alone it is known that it does not
     del told[1]["gives_back"]
     assert state._find_ways()[0].goes_back
@@ -199,3 +201,76 @@ def test_nodes_are_drawn_where_their_scenario_has_them_and_bear_its_names():
     assert drawn.labels == {"n0": "mast"}
     assert drawn.origin_m == (10.0, -5.0)
     assert drawn.places == {"n0": (0, 0), "n1": (20, -20)}
+
+
+def judged(told, lost=()):
+    found = ways(told, lost).headline()
+    return found.level, found.text
+
+
+def test_a_node_alone_on_its_machine_has_its_way_by_those_on_others():
+    """On a robot one node runs: its gateway, and who relays to it, are elsewhere."""
+    told = {0: node(3, neighbours=hears(2), onward=[2])}
+    assert judged(told) == (
+        "ok",
+        "The only node has a way to the gateway; nodes 0, 2 do not run here, and what is said of "
+        "them is believed.",
+    )
+    shown = ways(told).more()
+    assert (shown["parent"].tolist(), shown["depth"].tolist(), shown["way"].tolist()) == (
+        [-1], [-1], [0],
+    )  # fmt: skip
+    told[0]["neighbours"][0]["suspect"] = True
+    assert judged(told)[0] == "down"
+    assert judged({0: node(3, neighbours=[], onward=[], gateway=None)}) == (
+        "no data", "No node leads as gateway yet.",
+    )  # fmt: skip
+
+
+def chain_by(middle, **more):
+    """Gateway 0, then 1, then `middle` elsewhere, and 3 behind it."""
+    return {0: node(0, role="gateway", neighbours=hears(1)),
+            1: node(1, neighbours=hears(0, middle)),
+            2: node(3, neighbours=hears(middle), onward=[middle], **more)}  # fmt: skip
+
+
+@pytest.mark.parametrize("gives_back", [True, False])
+def test_a_node_elsewhere_hands_on_to_who_is_nearest_to_the_gateway(gives_back):
+    told = chain_by(2, gives_back=gives_back)
+    assert judged(told) == (
+        "ok",
+        "All 3 nodes have a way to the gateway; node 2 does not run here, and what is said of it "
+        "is believed.",
+    )
+    shown = ways(told).more()
+    assert (shown["parent"].tolist(), shown["depth"].tolist()) == ([-1, 0, -1], [0, 1, -1])
+    told[1]["neighbours"][1]["suspect"] = True  # nobody here hears it but 3
+    level, text = judged(told)
+    assert (level, text.split(":")[0]) == (
+        "degraded", "1 of 3 nodes is cut off from the gateway"
+    )  # fmt: skip
+
+
+def test_a_path_that_was_cut_here_leads_nowhere_else_either():
+    told = chain_by(2)
+    told[2]["paths"] = [{"port": port, "up": False} for port in (6, 7)]
+    assert judged(told)[0] == "degraded"
+
+
+def test_who_runs_here_and_is_silent_is_not_elsewhere():
+    told = chain_by(2) | {3: node(2, neighbours=hears(1, 3), onward=[1])}
+    assert judged(told)[1] == "All 4 nodes have a way to the gateway."
+    level, text = judged(told, lost=[3])
+    assert level == "degraded"
+    assert text.startswith("1 of 4 nodes is cut off from the gateway")
+    assert "run here" not in text
+    del told[3]["number"]  # of a dead node whose number nobody knows the socket is left
+    assert "run here" not in judged(told, lost=[3])[1]
+
+
+def test_a_gateway_elsewhere_beside_one_here_makes_two_parts():
+    told = {0: node(0, role="gateway", neighbours=hears(1)), 1: node(1, neighbours=hears(0)),
+            2: node(3, gateway=9, neighbours=hears(9), onward=[9])}  # fmt: skip
+    level, text = judged(told)
+    assert level == "degraded"
+    assert text.startswith("2 nodes lead as gateways, each followed by a part of the network")

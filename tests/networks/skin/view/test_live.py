@@ -140,3 +140,52 @@ def test_a_command_that_cannot_be_is_refused_and_not_waited_for(answer, node, wo
     assert view._under_way == {}
     assert view.can(three()) == ("command",)
     assert view.can(without(three(), 2)) == ()
+
+
+def heard(told, *at):
+    """Somebody is heard by these paths, (node, path)."""
+    for node, path in at:
+        told[node]["paths"][path]["heard_s"] = 0.01
+    return told
+
+
+def test_cells_whose_pc_runs_elsewhere_have_their_way():
+    """Of the line PC - c0 - c1 - c2 the first two run on another machine."""
+    told = {0: cell(1, 0, udp((4, 3), (5, 6))), 1: cell(2, 0, udp((6, 5)))}
+    state = state_of(heard(told, (0, 0), (0, 1), (1, 0)))
+    assert state.look() == (0, 0, 2)
+    found = state.headline()
+    assert (found.level, found.text) == (
+        "ok",
+        "Every cell has a way to the PC; both cells have it by nodes that do not run here, and "
+        "what is said of that is believed.",
+    )
+    shown = state.more()
+    assert (shown["beyond"].tolist(), shown["port"].tolist()) == ([1, 1], [-1, -1])
+    told[0]["parent"] = None
+    state = state_of(told)
+    assert facts(state) == ([], [], [0, 1], False)
+    told[0]["paths"][0]["broken"] = True
+    assert facts(state_of(told)) == ([], [0, 1], [], False)
+
+
+def test_a_cell_that_hears_its_parent_elsewhere_alone_has_a_way():
+    state = state_of(heard({0: cell(1, 0, udp((4, 3)))}, (0, 0)))
+    assert state.headline().level == "ok"
+    assert state.more()["beyond"].tolist() == [1]
+
+
+def test_a_dead_cell_that_is_known_is_not_elsewhere():
+    told = heard(three(), (1, 0))
+    assert facts(state_of(told, without(told, 0))) == ([0], [1], [], False)
+
+
+@pytest.mark.parametrize(("ports", "level", "text"), [
+    ([3, 1], "ok", "4 cells have a way to the PC, as it says; none of them runs here."),
+    ([0, 1], "ok", "1 cell has a way to the PC, as it says; none of them runs here."),
+    ([0], "no data", "No cell runs here, and none has a way to the PC."),
+])  # fmt: skip
+def test_a_pc_whose_cells_run_elsewhere(ports, level, text):
+    told = {0: skin_of_three()[2] | {"cells": ports}}
+    found = state_of(told).headline()
+    assert (found.level, found.text) == (level, text)

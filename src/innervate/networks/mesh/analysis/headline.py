@@ -10,6 +10,7 @@ from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
 from innervate.networks.mesh.analysis.reach import Ways
+from innervate.networks.mesh.scenario.nodes import listed
 from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 
 
@@ -32,8 +33,25 @@ class Traffic(NamedTuple):
 NOTHING_KNOWN = Traffic()
 
 
-def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") -> Headline:
+class Elsewhere(NamedTuple):
+    """Whom the nodes that are asked name as neighbours or follow, and who is none of them."""
+
+    nodes: tuple[int, ...] = ()  # their numbers
+    leads: bool = False  # one of them is a gateway that is followed here
+
+
+ALL_HERE = Elsewhere()
+
+
+def headline(
+    ways: Ways,
+    traffic: Traffic = NOTHING_KNOWN,
+    absent: str = "off",
+    elsewhere: Elsewhere = ALL_HERE,
+) -> Headline:
     """The state of a mesh; of nodes that are missing it says `absent`: "off", "silent".
+
+    `elsewhere` are nodes of which only others' words are known, which are believed.
 
     degraded: a message or an alarm was lost or came twice, a broadcast missed somebody, a packet
     met a node twice, a node is off, cut off or without a way, the network is in parts. down:
@@ -43,16 +61,17 @@ def headline(ways: Ways, traffic: Traffic = NOTHING_KNOWN, absent: str = "off") 
     lost = traffic.crossings + traffic.decided - traffic.learned - traffic.delivered
     if not (ways.on & ways.joined).any() and not ways.off.any() and not lost:
         return Headline(NO_DATA, "No node leads as gateway yet.")
-    said = [*_undelivered(traffic), *_apart(ways, absent), *_twice(traffic)]
+    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere.leads), *_twice(traffic)]
+    came, afar = _came(traffic, len(ways.on)), _afar(elsewhere.nodes)
     if not said:
-        return Headline(OK, sentence([*_came(traffic, len(ways.on)), _reached(ways)]))
+        return Headline(OK, sentence([*came, _reached(ways, elsewhere.leads), *afar]))
     about = np.flatnonzero(ways.without | ways.off).tolist()
     nodes = tuple(sorted({*about, *traffic.about}))
-    level = DOWN if _is_down(ways, traffic) else DEGRADED
-    return Headline(level, sentence([*said, *_came(traffic, len(ways.on))]), nodes)
+    level = DOWN if _is_down(ways, traffic, bool(afar)) else DEGRADED
+    return Headline(level, sentence([*said, *came, *afar]), nodes)
 
 
-def _is_down(ways: Ways, traffic: Traffic) -> bool:
+def _is_down(ways: Ways, traffic: Traffic, others: bool) -> bool:
     """True if nothing gets through: nothing of all that was sent, or nothing from now on."""
     if not ways.on.any():
         return True
@@ -61,7 +80,7 @@ def _is_down(ways: Ways, traffic: Traffic) -> bool:
     if traffic.decided + traffic.crossings and not traffic.delivered + traffic.learned:
         return True
     served = ways.on & ~ways.without & ~ways.leads
-    return not served.any() and len(ways.on) > 1
+    return not served.any() and (len(ways.on) > 1 or others)
 
 
 def _undelivered(traffic: Traffic) -> list[str]:
@@ -86,13 +105,13 @@ def _undelivered(traffic: Traffic) -> list[str]:
     return found
 
 
-def _apart(ways: Ways, absent: str) -> list[str]:
+def _apart(ways: Ways, absent: str, leads_elsewhere: bool) -> list[str]:
     """Who has no way, is cut off, or off."""
     count, found = len(ways.on), []
-    if not ways.leads.any():
+    leading = int(ways.leads.sum()) + leads_elsewhere
+    if not leading:
         found.append("no node leads as gateway, and what is sent to it does not get through")
     else:
-        leading = int(ways.leads.sum())
         if leading > 1:
             found.append(
                 f"{leading} nodes lead as gateways, each followed by a part of the network"
@@ -135,14 +154,23 @@ def _came(traffic: Traffic, nodes: int) -> list[str]:
     return said
 
 
-def _reached(ways: Ways) -> str:
+def _reached(ways: Ways, leads_elsewhere: bool) -> str:
     """That everybody has a way."""
     count = len(ways.on)
     if int(ways.on.sum()) < count:  # some have not been switched on yet
         return "every node that is on has a way to the gateway"
-    if count == 1:
+    if count == 1 and not leads_elsewhere:
         return "the only node leads"
-    return f"{_part(count, count, 'node')} have a way to the gateway"
+    return f"{_part(count, count, 'node')} {verb(count, 'has')} a way to the gateway"
+
+
+def _afar(nodes: tuple[int, ...]) -> list[str]:
+    """That what is said of nodes that do not run here is believed."""
+    if not nodes:
+        return []
+    few = f"node {nodes[0]} does" if len(nodes) == 1 else f"nodes {listed([*map(str, nodes)])} do"
+    them = "it" if len(nodes) == 1 else "them"
+    return [f"{few} not run here, and what is said of {them} is believed"]
 
 
 def traffic(

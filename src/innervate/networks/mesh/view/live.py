@@ -9,6 +9,8 @@ from innervate.analysis.headline import Headline
 from innervate.analysis.ways import NOWHERE
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Choices, Ways, ways
+from innervate.networks.mesh.protocol import constants as const
+from innervate.networks.mesh.view.elsewhere import elsewhere, hand_on, without_it
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_scene import Drawn
 from innervate.web.live_scene import Place as Spot
@@ -57,23 +59,30 @@ class MeshState(State):
 
     def judge(self) -> Headline:
         """The headline by the ways that `look` found; who is off is called silent."""
-        return headline(self.ways, absent="silent")
+        return headline(self.ways, absent="silent", elsewhere=self.elsewhere)
 
     def _find_ways(self) -> Ways:
         """Who reaches its gateway, by what the nodes say of each other."""
         places, count = self.map.places, len(self.map.places)
         numbered = self.map.numbered(self.told).items()
-        place_of: dict[Any, int] = {name: self.map.number[at] for name, at in numbered}
-        on = np.array([place.node in self.told for place in places], np.bool_)
         said = [self.told.get(place.node, {}) for place in places]
+        self.elsewhere = elsewhere(self.told.values(), self._here())
+        more = bool(self.elsewhere.nodes)
+        place_of: dict[Any, int] = dict.fromkeys(self.elsewhere.nodes, count)
+        place_of |= {name: self.map.number[at] for name, at in numbered}
+        on = np.array([place.node in self.told for place in places] + [True] * more, np.bool_)
+        said += [{}] * more
         onward = [
             [place_of[who] for who in one.get("onward", ()) if who in place_of] for one in said
         ]
         wide = max(1, *map(len, onward))
-        near = np.zeros((count, count), np.bool_)
+        links = self._links(more)
+        near = np.zeros((count + more, count + more), np.bool_)
         for at, one in enumerate(said):
             to = [place_of.get(other["node"], at) for other in one.get("neighbours", ())]
             near[at, to] = True
+        if more:
+            near[count] = links[count]
         known = Choices(
             gateway=np.array([place_of.get(one.get("gateway"), NOWHERE) for one in said]),
             named=np.array([row + [NOWHERE] * (wide - len(row)) for row in onward]),
@@ -81,7 +90,31 @@ class MeshState(State):
             goes_back=all(one.get("gives_back", True) for one in said),
         )
         leads = np.array([one.get("role") == "gateway" for one in said], np.bool_)
-        return ways(known, self.live(), on, ~on, leads)
+        if not more:
+            return ways(known, links, on, ~on, leads)
+        leads[count] = self.elsewhere.leads
+        hand_on(known, links, leads)
+        return without_it(ways(known, links, on, ~on, leads))
+
+    def _here(self) -> set[int]:
+        """Numbers of those that run here or did; if one does not say its own, any can be its."""
+        assert isinstance(self.map, MeshMap)
+        known = {*self.map.by_number, *self.map.numbered(self.told)}
+        if len(self.map.by_number) < len(self.map.places):
+            return {*range(const.IDS)}
+        return known
+
+    def _links(self, more: bool) -> Any:
+        """Who is joined with whom by links that are up; `more`: those elsewhere are the last."""
+        links = np.pad(self.live(), (0, int(more)))
+        for at, place in enumerate(self.map.places if more else ()):
+            links[at, -1] = links[-1, at] = any(
+                near["node"] in self.elsewhere.nodes
+                and not near.get("suspect")
+                and self.carries(place, near.get("ports", ()))
+                for near in self.word(place, "neighbours", ())
+            )
+        return links
 
     def more(self) -> dict[str, Any]:
         """Ways, and who has none though links could give one."""

@@ -44,6 +44,7 @@ class RadioFacts(NamedTuple):
     bounds: Mapping[str, Any] | None = None
     stations_wrong: Stations = ()  # who noticed it
     ended: bool = False  # nothing more will happen
+    others: bool = False  # running stations only: more than these are heard on the channel
 
 
 def timeout_us(params: Mapping[str, int], stations: int) -> int:
@@ -80,7 +81,7 @@ def _down(facts: RadioFacts, label: Callable[[int], str]) -> tuple[list[str], tu
     on = [station for station in range(facts.stations) if station not in gone]
     if not on:
         return ["no robot is on"], tuple(range(facts.stations))
-    if len(on) == 1:
+    if len(on) == 1 and not facts.others:
         return [f"robot {label(on[0])} is alone: nobody can receive its packets"], (on[0],)
     if facts.pending and facts.still_ms > facts.timeout_ms:
         waits = f"{number_of(facts.pending, 'packet')} {verb(facts.pending, 'waits')}"

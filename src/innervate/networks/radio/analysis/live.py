@@ -36,7 +36,8 @@ def of_stations(
     """The facts of running stations, from what they say of themselves.
 
     `told`: by index what those say that answer, as `innervate live status --json` shows it; `off`:
-    who does not, or is off the channel; `still_ms`: see Still.
+    who does not, or is off the channel; `still_ms`: see Still. Where one of them alone has heard
+    somebody, there are stations that run elsewhere.
     """
     count = {name: 0 for name in ("packets accepted", "packets delivered")}
     for one in told.values():
@@ -46,6 +47,9 @@ def of_stations(
     abandoned = sum(int(told[i].get("queued", 0)) for i in off if i in told)
     queued = {i: int(one.get("queued", 0)) for i, one in told.items() if i not in off}
     timeout_ms = timeout_us(params, stations) / 1e3
+    heard = any(
+        path.get("heard_s") is not None for i in queued for path in told[i].get("paths", ())
+    )
     return RadioFacts(
         stations=stations,
         off=off,
@@ -57,4 +61,5 @@ def of_stations(
         waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > timeout_ms else (),
         still_ms=still_ms,
         timeout_ms=timeout_ms,
+        others=heard and stations == 1,
     )

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
 from innervate.analysis.words import share_words
+from innervate.kernel.words import number_of
 
 NAMED_MAX = 3
 
@@ -28,6 +29,9 @@ class SkinFacts(NamedTuple):
     since_s: float | None = None  # when the first of `cut_off` was cut off; None = unknown
     at_once: bool = True  # all of them were cut off then
     pc_off: bool = False  # the PC is switched off, or does not answer
+    # running nodes only: cells whose way goes on by nodes that do not run here, and is believed
+    beyond: Collection[int] = ()
+    served: int = 0  # running nodes only: cells whose ways end at the PC, as it says itself
     # most cells that were cut off at the same time, if that is more than are now; a live
     # page, which shows the moment, leaves it at 0
     cut_off_before: int = 0
@@ -51,15 +55,25 @@ def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) ->
     """
     if facts is None:
         return Headline(NO_DATA, "Nobody watched who had a way to the PC.")
-    if facts.cells and len(facts.silent) == facts.cells:
+    if not facts.cells:
+        return _pc_alone(facts.served)
+    if len(facts.silent) == facts.cells:
         return Headline(NO_DATA, "No cell answers: nothing is known of the skin.")
     troubled = (*facts.cut_off, *facts.seeking, *facts.silent, *facts.off)
     with_way = 0 if facts.pc_off else facts.cells - len(troubled)
     said = [*_reasons(facts, label), *_before(facts), *_samples(facts), *_commands(facts)]
-    ending = _others(facts, with_way, bool(troubled))
-    text = sentence([*said, ending] if said and ending else said or [ending])
+    ending = [_others(facts, with_way, bool(troubled))] * bool(with_way or not said)
+    text = sentence([*said, *ending, *_beyond(facts, label)])
     level = DOWN if not with_way else DEGRADED if said else OK
     return Headline(level, text, tuple(sorted(map(int, troubled))))
+
+
+def _pc_alone(served: int) -> Headline:
+    """Of a PC whose cells run elsewhere."""
+    if not served:
+        return Headline(NO_DATA, "No cell runs here, and none has a way to the PC.")
+    who = f"{number_of(served, 'cell')} {verb(served, 'has')}"
+    return Headline(OK, f"{who} a way to the PC, as it says; none of them runs here.")
 
 
 def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
@@ -129,6 +143,13 @@ def _commands(facts: SkinFacts) -> list[str]:
         return []
     times = "once" if facts.missed == 1 else f"{facts.missed:,} times"
     return [f"commands did not reach cells that had a way, {times}"]
+
+
+def _beyond(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
+    if not facts.beyond:
+        return []
+    who = _who(facts, facts.beyond, label, "has")
+    return [f"{who} it by nodes that do not run here, and what is said of that is believed"]
 
 
 def _others(facts: SkinFacts, with_way: int, some: bool) -> str:

@@ -34,15 +34,19 @@ class SkinState(State):
         where = self.map
         count = len(where.places)
         none = np.zeros(count, np.bool_)
-        self.hop = self._parents()
+        self.hop, leaves = self._parents()
         live, roots = self.live(), self._ports()
-        self.root, self.depth = follow(
-            np.where(live[np.arange(count), np.maximum(self.hop, 0)], self.hop, NOWHERE), roots
+        root, depth = follow(
+            np.where(live[np.arange(count), np.maximum(self.hop, 0)], self.hop, NOWHERE),
+            roots | leaves,
         )
-        lost = (self.root == NOWHERE) & self.answers & ~self._is_port()
+        # Of a way that goes on by nodes that do not run here neither port nor length is known.
+        self._beyond = (root != NOWHERE) & leaves[root]
+        lost = (root == NOWHERE) & self.answers & ~self._is_port()
+        self.root, self.depth = (np.where(self._beyond, NOWHERE, one) for one in (root, depth))
         if not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
-        joined = reach(live, roots) if where.links else ~none
+        joined = reach(live, roots | self.hears_beyond()) if where.links else ~none
         self._facts = self._skin_facts(lost, joined)
         left = (self.node_up == 1) & joined & ~self._is_port()
         found = lost, lost & joined, left
@@ -71,6 +75,8 @@ class SkinState(State):
             cut_off=of(apart),
             seeking=of(told & lost & ~apart),
             pc_off=bool(len(ports)) and not ports.any(),
+            beyond=of(self._beyond),
+            served=sum(sum(one.get("cells", ())) for one in self.told.values()),
         )
 
     def _ports(self) -> Any:
@@ -80,10 +86,11 @@ class SkinState(State):
     def _is_port(self) -> Any:
         return np.array([place.port >= 0 for place in self.map.places], np.bool_)
 
-    def _parents(self) -> Numbers:
-        """Per place of a skin the one that its cell sends to."""
-        number = self.map.number
+    def _parents(self) -> tuple[Numbers, Any]:
+        """Per place of a skin the one that its cell sends to, and if that does not run here."""
+        number, beyond = self.map.number, self.paths_beyond()
         found = np.full(len(self.map.places), NOWHERE, np.int64)
+        leaves = np.zeros(len(self.map.places), np.bool_)
         across = {}
         for link in self.map.links:
             across.update({(link.a, path): link.b for path in link.paths_a})
@@ -94,7 +101,8 @@ class SkinState(State):
                 path = ports.get(self.word(place, "parent", None))
                 to = None if path is None else across.get((place, path))
                 found[at] = NOWHERE if to is None else number[to]
-        return found
+                leaves[at] = (place, path) in beyond
+        return found, leaves
 
     def more(self) -> dict[str, Any]:
         """Ways, the port that each cell's way leads to, load."""
@@ -105,6 +113,7 @@ class SkinState(State):
             "parent": self.hop,
             "depth": self.depth,
             "port": np.where(self.root == NOWHERE, NOWHERE, np.take(port, self.root)),
+            "beyond": self._beyond.astype(np.int64),
             "load": np.minimum(load, 1.0).round(3),
             "told": [NOWHERE if (n := self.word(place, "command", None)) is None else n
                      for place in places],
