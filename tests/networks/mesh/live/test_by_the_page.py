@@ -1,0 +1,49 @@
+"""docs/wire.md says enough: a node that was written from it alone is one of the mesh."""
+
+import asyncio
+
+from innervate.live import local
+from innervate.live.receipts import DELIVERED
+from innervate.networks.mesh.live.node import MeshNode
+from innervate.networks.mesh.live.parameters import mesh_parameters
+from innervate.networks.mesh.live.stack import MeshStack
+from tests.live.net import until
+from tests.networks.mesh.live.by_the_page import ASKS_END_TO_END, DATA, END_TO_END_ACK, Stranger
+
+
+def test_a_node_written_from_the_page_alone_relays_sends_and_receives():
+    """0 - 1 - stranger - 3: all that 3 knows of the others came by the stranger."""
+
+    async def main():
+        params = mesh_parameters(4, {})
+        cables = [local.pair(name) for name in ("01", "12", "23")]
+        ends = {0: [cables[0][0]], 1: [cables[0][1], cables[1][0]], 3: [cables[2][1]]}
+        ends[1][1].path.port = 1
+        nodes = {
+            i: MeshNode(f"n{i}", MeshStack(i, -(i > 0), params, 99 + i), ends[i]) for i in ends
+        }
+        stranger = Stranger(2, [cables[1][1].path, cables[2][0].path])
+        for link in (cables[1][1], cables[2][0]):
+            await link.open(stranger.take)
+        heard = {i: [] for i in nodes}
+        for i, node in nodes.items():
+            node.receive_messages(lambda *said, to=heard[i]: to.append(said[:2]))
+            await node.start()
+        try:
+            await until(lambda: stranger.next and all(n.stack.node.version for n in nodes.values()))
+            assert stranger.next == {0: 1, 1: 1, 3: 3}
+            asked = [(0, 3, b"by it"), (3, 0, b"back"), (1, 2, b"to it"), (3, 2, b"to it, too")]
+            for origin, to, text in asked:
+                assert await nodes[origin].send_message(to, text).wait() == DELIVERED, text
+            await stranger.send(DATA, 1, 0, b"from it", ASKS_END_TO_END)
+            await until(lambda: any(kind == END_TO_END_ACK for kind, _, _ in stranger.got))
+            await stranger.send(DATA, 3, 3, b"from it")
+            await until(lambda: len(heard[3]) == 2)
+        finally:
+            for node in nodes.values():
+                await node.stop()
+        return heard, [(origin, said) for kind, origin, said in stranger.got if kind == DATA]
+
+    heard, got = asyncio.run(main())
+    assert heard == {0: [(3, b"back"), (2, b"from it")], 1: [], 3: [(0, b"by it"), (2, b"from it")]}
+    assert got == [(1, b"to it"), (3, b"to it, too")]
