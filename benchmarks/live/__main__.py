@@ -14,6 +14,7 @@ import statistics
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 from benchmarks.live.lab import Lab
@@ -183,11 +184,20 @@ def duration_s(kind, faults, runs):
     return START_S + IDLE_S + kind.settle_s + faults * runs * trial_s
 
 
+def listed(given, known):
+    """Names with commas between them, all of them known."""
+    names = given.split(",")
+    if strange := [name for name in names if name not in known]:
+        raise argparse.ArgumentTypeError(f'no "{strange[0]}"; there are {", ".join(known)}')
+    return names
+
+
 def main():
+    kinds = {"innervate": Innervate, "babeld": Babeld}
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--shapes", default="ring,grid,hexagon")
-    parser.add_argument("--sides", default="innervate,babeld")
-    parser.add_argument("--faults", default="cut,kill")
+    for option, known in (("shapes", SHAPES), ("sides", kinds), ("faults", ("cut", "kill"))):
+        usual = ",".join(known)
+        parser.add_argument(f"--{option}", type=partial(listed, known=known), default=usual)
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--realtime", action="store_true", help="all nodes before other work")
     parser.add_argument("--set", action="append", default=[], help="a parameter: ack_us=5000")
@@ -197,9 +207,7 @@ def main():
         sys.exit("benchmarks.live: network namespaces need root; run it as root")
     urgency = ["chrt", "--fifo", "20"] if args.realtime else []
     settings = dict(text.split("=") for text in args.set)
-    kinds = {"innervate": Innervate, "babeld": Babeld}
-    results = {}
-    sides, shapes, faults = (text.split(",") for text in (args.sides, args.shapes, args.faults))
+    results, sides, shapes, faults = {}, args.sides, args.shapes, args.faults
     if "babeld" in sides and shutil.which("babeld") is None:
         print("babeld is not installed (apt install babeld): left out", file=sys.stderr)
         sides.remove("babeld")

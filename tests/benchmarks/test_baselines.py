@@ -5,7 +5,7 @@ import pkgutil
 
 import pytest
 
-import benchmarks
+import benchmarks.live.__main__
 from benchmarks import c_heap, simpy_timeouts
 
 ROOMS = [room.name for room in pkgutil.walk_packages(benchmarks.__path__, "benchmarks.")]
@@ -33,3 +33,12 @@ def test_simpy_runs():
 @pytest.mark.parametrize("room", ROOMS)
 def test_every_benchmark_finds_what_it_asks_for(room):
     importlib.import_module(room)
+
+
+@pytest.mark.parametrize("option", ["--shapes", "--sides", "--faults"])
+def test_a_name_that_is_none_is_refused_with_those_that_are(option, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["benchmarks.live", option, "nonsense"])
+    with pytest.raises(SystemExit) as ended:
+        benchmarks.live.__main__.main()
+    assert ended.value.code == 2
+    assert f'argument {option}: no "nonsense"; there are ' in capsys.readouterr().err

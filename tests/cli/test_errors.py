@@ -15,6 +15,8 @@ WRONG = {
     "no option": (("size", "ur5.urdf"), "innervate: size needs --links; see: innervate size"),
     "no value": (("run", "four.toml", "--seed"), "--seed needs a value"),
     "not a number": (("run", "four.toml", "--seed", "x"), '"x"'),
+    "no number": (("live", "up", "four.toml", "--for", "2s"), '--for must be a number, not "2s"'),
+    "no whole number": (("live", "send", "n0", "x", "hi"), 'TO must be a whole number, not "x"'),
     "negative seed": (("run", "four.toml", "--seed", "-3"), "seed must be a whole number from 0"),
     "no such file": (("run", "fuor.toml"), "fuor.toml: no such file"),
     "a folder": (("run", "."), "this is a folder"),
@@ -26,6 +28,10 @@ WRONG = {
     "an empty kind": (("new", ""), 'there is no kind ""; there is skin'),
     "a kind of one's own": (("new", "ring"), "your own: innervate new network NAME"),
     "not a run": (("compare", ".", "."), "is not a run folder"),
+    "a file": (("compare", "four.toml", "."), "four.toml is not a run folder: it is a file"),
+    "csv of what": (("export", "line", "--csv"), "--csv needs --tables"),
+    "a scenario as a node": (("live", "node", "four.toml"), "innervate live up four.toml"),
+    "nodes of a cell": (("firmware", "skin", "--nodes", "9", "--out", "x"), "leave out --nodes"),
     "out is a file": (("run", "four.toml", "--out", "four.toml"), "choose another folder"),
     "out is somebody's": (("run", "four.toml", "--out", "."), "not a run folder and not empty"),
     "too many words": (("check", "four.toml", "more"), "more"),
@@ -142,7 +148,7 @@ def test_interrupted_runs_end_with_130(sh, monkeypatch):
 ])  # fmt: skip
 def test_half_a_number_is_not_rounded(sh, words):
     assert sh(*words) == 2
-    assert f'unable to convert "{words[-1]}" into int' in sh.err
+    assert f'must be a whole number, not "{words[-1]}"' in sh.err
 
 
 def test_numbers_may_begin_with_0_and_be_written_in_hex(sh, monkeypatch):

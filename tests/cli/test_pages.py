@@ -75,6 +75,19 @@ def test_help_breaks_no_line_where_the_sources_do(sh, monkeypatch, words):
     assert not [paragraph for paragraph in above if "\n" in paragraph.strip()]
 
 
+@pytest.mark.parametrize("words", ["verify", "docs", "size", "new", "firmware", "sweep"])
+def test_help_names_no_default_that_is_none(sh, words):
+    assert sh(words, "--help") == 0
+    said = " ".join(sh.out.replace("│", " ").split())
+    assert '[default: ""]' not in said
+    assert "[default: 0]" not in said
+
+
+def test_help_breaks_no_setting_in_two(sh):
+    assert sh("verify", "--help") == 0
+    assert not re.findall(r",[a-z]+ *│", sh.out)
+
+
 def test_every_command_has_something_below_its_help():
     bare = {"scenarios", "doctor"}  # they have no more to say
     assert {name for name in manpage.commands() if " " not in name} - bare <= set(BELOW)

@@ -31,12 +31,21 @@ def test_commands_that_do_not_simulate_stay_light(process, tmp_path):
     assert out.splitlines()[-1] == "[]"
 
 
-def test_a_closed_pipe_is_no_error(process, tmp_path):
-    started = process("scenarios", cwd=tmp_path)
+@pytest.mark.parametrize("words", [("scenarios",), ("--help",), ("live", "--help")])
+def test_a_closed_pipe_is_no_error(process, tmp_path, words):
+    started = process(*words, cwd=tmp_path)
     started.stdout.close()
     assert "Traceback" not in started.stderr.read()
     assert started.wait(timeout=TIMEOUT_S) in (0, 141)
     started.stderr.close()
+
+
+def test_with_standard_output_closed_nothing_is_wrong(tmp_path):
+    command = ["bash", "-c", "exec >&-; exec $0 -m innervate.cli docs scenarios", sys.executable]
+    done = subprocess.run(
+        command, cwd=tmp_path, text=True, stderr=subprocess.PIPE, timeout=TIMEOUT_S
+    )
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_with_standard_error_closed_the_answer_is_the_same(tmp_path):

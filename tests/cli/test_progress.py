@@ -67,6 +67,23 @@ def test_a_terminal_gets_bars(monkeypatch):
         assert (task.completed, task.total) == (500_000, 2_000_000)
 
 
+@pytest.mark.parametrize(("done", "ends"), [(None, "0:00:04"), (5, "0:00:04 0:00:08 left")])
+def test_a_bar_says_how_long_it_took_and_how_long_is_left(monkeypatch, done, ends):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    now = [0.0]
+    with progress.Display() as display:
+        display.begin("looking", line=False)
+        bars = display._bars
+        bars.get_time = display._bars.tasks[0]._get_time = lambda: now[0]
+        bars.reset(display._task)
+        for step in range(1, 6) if done else ():
+            now[0] = 0.8 * step
+            display.show("looking", step, 15, None)
+        now[0] = 4.0
+        row = [column(bars.tasks[0]) for column in bars.columns[3:]]
+    assert " ".join(str(cell) for cell in row).strip() == ends
+
+
 @pytest.mark.parametrize(("total", "lines"), [(0, 1), (3, 0), (4, 1)])
 def test_lines_come_where_there_is_more_to_do_or_nobody_knows(clock, capsys, total, lines):
     with progress.Display() as display:

@@ -43,7 +43,14 @@ def folder(tmp_path, monkeypatch):
 def test_who_is_put_out_is_told_to_all_and_told_again_later(folder, tmp_path, capsys):
     keys, node = tmp_path / "keys", Node(folder, "n1", [{"version": 1}], [{"version": 1}])
     assert live_enrol.enrol(keys, 7, nodes=2) == 0
-    assert capsys.readouterr().out.split() == [str(keys / f"n{i}.identity") for i in (0, 1, 7)]
+    said = capsys.readouterr()
+    assert said.out.split() == [str(keys / f"n{i}.identity") for i in (0, 1, 7)]
+    assert said.err == (
+        f"innervate: {keys} has a new authority; nodes that another one enrolled do not know its "
+        "nodes\n"
+    )
+    assert live_enrol.enrol(keys, 8) == 0
+    assert capsys.readouterr() == (f"{keys / 'n8.identity'}\n", "")
     with pytest.raises(UserError, match="nobody is put out"):
         live_enrol.revoke(keys)
     assert live_enrol.revoke(keys, 7) == 0

@@ -157,6 +157,18 @@ def test_the_readmes_numbers_are_the_demos(capsys, tmp_path, monkeypatch):
         assert line in out
 
 
+def test_the_papers_results_stand_in_the_readme_or_where_faults_are_counted():
+    paper = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8")
+    results = paper.partition("# Results")[2].partition("\n# ")[0]
+    said = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    figures = re.findall(r"[\d.]+ (?:ms|%)", results)
+    assert len(figures) >= 4
+    assert [figure for figure in figures if figure not in said] == []
+    drawn, found = re.search(r"Of (\d+) faults .* find (\d+)\.", results).groups()
+    counted = " ".join((ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").split())
+    assert f"{found} of {drawn}, 92.2 %, by tests of which none was written for it" in counted
+
+
 def test_the_readmes_picture_shows_the_demo():
     text = (DOCS / "images" / "recovery.svg").read_text(encoding="utf-8")
     (block,) = blocks(ROOT / "README.md", "text")

@@ -15,7 +15,8 @@ WRONG = [
     ("4.0", "0", "2: duration_s must be a number of seconds > 0, not 0"),
     ("4.0", "nan", "2: duration_s must be a finite number, not nan"),
     ("4.0", "true", "2: duration_s must be a number of seconds > 0, not true"),
-    ('kind = "skin"', "", ' the scenario has no kind; add kind = "skin"'),
+    ('kind = "skin"', "", ' the scenario has no kind; add kind = "skin" (or radio, mesh, babel, '
+     "flooding, rpl)"),
     ('kind = "skin"', 'scenario = "demo"',
      " this is a plan of many runs, no scenario: innervate sweep runs it"),
     ('"skin"', '"skim"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or "rpl", '

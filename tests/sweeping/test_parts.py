@@ -3,11 +3,14 @@
 import os
 import pty
 import re
+import signal
 import statistics
 import subprocess
 import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
@@ -15,6 +18,7 @@ from hypothesis import strategies as st
 
 from innervate.cli import live_table
 from innervate.cli.live_table import LiveTable
+from innervate.sweeping import engines
 from innervate.sweeping.engines import Pool, engine
 from innervate.sweeping.errors import SweepError
 from innervate.sweeping.flat import flat
@@ -165,6 +169,31 @@ def test_new_workers_take_the_place_of_all_that_were_there():
         old.submit(len, "")
     assert pool.submit(len, "abc").result() == new.submit(len, "abc").result() == 3
     pool.close()
+
+
+def test_ctrl_c_while_the_first_worker_starts_ends_it():
+    ended, now, pressed = [], threading.Event(), threading.Event()
+
+    def hear():  # a thread of some library, which Ctrl-C reaches first
+        now.wait()
+        signal.raise_signal(signal.SIGINT)
+        pressed.set()
+
+    threading.Thread(target=hear).start()
+
+    class Starting(ThreadPoolExecutor):
+        def submit(self, work):
+            now.set()
+            pressed.wait()
+            self._processes = {1: SimpleNamespace(terminate=lambda: ended.append("worker"))}
+            return super().submit(work)
+
+        def shutdown(self, **how):
+            ended.append(how)
+
+    with pytest.raises(KeyboardInterrupt):
+        Pool(lambda: Starting(1), 1, engines._starting)
+    assert ended == [{"wait": False, "cancel_futures": True}, "worker"]
 
 
 @pytest.mark.parametrize(

@@ -189,6 +189,8 @@ def test_named_values_go_by_their_name():
     ({"vary": ["protocol.k=1..2000", "data.queue=1..2000"]}, "at most"),
     ({"vary": ["protocol.k=2"], "paired": "data.queue"}, "not varied"),
     ({"repeat": 0}, "from 1"),
+    ({"repeat": "3"}, "repeat must be a whole number from 1"),
+    ({"repeat": 2.5}, "repeat must be a whole number from 1"),
     ({"batch": 0}, "from 1"),
     ({"until": "routed"}, "write it as"),
     ({"until": "x.ci=0%"}, "write it as"),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from cyclopts import App
+from cyclopts import App, Parameter
 
 import innervate
 from innervate.cli import errors, examples
@@ -84,6 +84,11 @@ COMMANDS = {
 }  # fmt: skip
 
 
+def _shown(default: Any) -> str | None:
+    """A default as help names it; none that means that nothing was given."""
+    return None if default in (None, "") else str(default)
+
+
 def _made() -> App:
     """The command with all of its commands, none of them loaded."""
     made = App(
@@ -95,6 +100,7 @@ def _made() -> App:
         version_flags=["--version"],
         suppress_keyboard_interrupt=False,
         result_action="return_value",
+        default_parameter=Parameter(show_default=_shown),
     )
     live = App(name="live", help="Nodes between real processes: UDP, serial ports.",
                help_format="plaintext", help_epilogue=examples.text_of("live"))  # fmt: skip

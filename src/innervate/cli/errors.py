@@ -48,6 +48,8 @@ def conclude(error: BaseException) -> int:
     """Tell the user about an error; the exit code."""
     if isinstance(error, SystemExit):
         code = error.code or 0
+        if isinstance(error.__context__, BrokenPipeError):  # what lays help out ends so
+            return PIPE_CLOSED
         return code if isinstance(code, int) else OURS
     if isinstance(error, BrokenPipeError):
         _drop_stdout()
@@ -73,6 +75,10 @@ def explain(error: BaseException) -> tuple[str, int]:
         return f"this needs {name}; install it with: pip install '{_extra_of(error)}'", USERS
     if type(error).__name__ == "MissingArgumentError":
         return _missing(error), USERS
+    if type(error).__name__ == "CoercionError" and (number := _number(error)):
+        given = error.token  # type: ignore[attr-defined]
+        name = given.keyword or error.argument.name  # type: ignore[attr-defined]
+        return f'{name} must be a {number}, not "{_one_line(given.value[:40])}"', USERS
     if type(error).__name__ == "UnusedCliTokensError":
         words = " ".join(getattr(error, "unused_tokens", None) or ())
         command = " ".join(getattr(error, "command_chain", None) or ())
@@ -116,6 +122,11 @@ def _missing(error: Any) -> str:
     name = error.argument.name if error.argument is not None else "an argument"
     what = f"{error.keyword} needs a value" if error.keyword else f"{command} needs {name}"
     return f"{what}; see: innervate {command} --help"
+
+
+def _number(error: Any) -> str:
+    """What kind of number was asked for, where one was."""
+    return {int: "whole number", float: "number"}.get(error.target_type, "") if error.token else ""
 
 
 def _is_lost() -> bool:

@@ -32,6 +32,8 @@ def export(
     if wanted.has_files:
         _write_files(source, wanted)
     elif not wanted.dissector:
+        if wanted.csv:
+            raise UserError("--csv needs --tables FOLDER, where the tables go")
         names = "--pcapng, --mcap, --rerun, --graph, --tables or --dissector"
         raise UserError(f"nothing to export; name one of {names}")
     if wanted.dissector:  # last, as networks beside a scenario are known once it was loaded

@@ -26,6 +26,9 @@ def enrol(folder: Path, /, *numbers: int, nodes: int = 0) -> int:
     authority = Authority(folder)
     for number in wanted:
         authority.check(number)  # all of them, before the first is made
+    if not authority.issued:
+        errors.say(f"{folder} has a new authority; nodes that another one enrolled do not know "
+                   "its nodes")  # fmt: skip
     for number in wanted:
         print(authority.enrol(number))
     return 0

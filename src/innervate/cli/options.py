@@ -29,6 +29,7 @@ def _whole(_type: Any, tokens: Sequence[Any]) -> int:
 
 
 Whole = Annotated[int, Parameter(converter=_whole)]
+Most = Annotated[int, Parameter(converter=_whole, show_default=False)]  # 0 is no limit
 Seed = Annotated[int | None, Parameter(converter=_whole_seed)]
 
 _SET = Parameter(name=["--set"], negative="", allow_leading_hyphen=True)
@@ -265,26 +266,26 @@ class VerifyOptions:
         'graphs of up to --cells cells. Mesh: links like "0-1 1-2" (0 is the gateway), or a name\n'
         "(line, triangle, square, kite, house, spare, prism)."
     )
-    cells: Whole = 0
+    cells: Most = 0
     """How many cells the graphs may have, 1 to 4 (2 if left out); stations of a radio, 2 to 4."""
     budget: str = ""
     (
-        'How often what may happen, like "ticks=3,counts=2,loss=1,cut=1,heal=1,false=1,restart=1,\n'
-        'faults=2"; these are the defaults, and faults counts all five kinds together; '
+        'How often what may happen, like "ticks=3, counts=2, loss=1, cut=1, heal=1, false=1,\n'
+        'restart=1, faults=2"; these are the defaults, and faults counts all five kinds together; '
         '"ticks=any"\n'
         "lets cells tick as often as it takes. Mesh:\n"
-        '"deaths=1,revivals=0,frames=0,acks=1,ticks=0". One of your own: '
-        '"loss=1,restart=1,input=1".'
+        '"deaths=1, revivals=0, frames=0, acks=1, ticks=0". One of your own: '
+        '"loss=1, restart=1, input=1".'
     )
     prompt: Flag = False
     """Every frame arrives or is lost before anything else happens."""
     liveness: bool = True
     """Also see from every state whether routes become shortest once faults have ended."""
-    starts: Whole = 0
+    starts: Most = 0
     """Play that from so many states instead of all."""
-    states: Whole = 0
+    states: Most = 0
     """End each exploration after so many states."""
-    walks: Whole = 0
+    walks: Most = 0
     """Instead of all states so many random walks, for larger budgets."""
     memory: str = "2G"
     """What the states of an exploration may take, like 800M or 4G."""
@@ -297,7 +298,7 @@ class VerifyOptions:
     )
     seed: Seed = None
     """With --random the first network's number, with --walks the walks'."""
-    count: Whole = 0
+    count: Most = 0
     """With --random end after so many networks, with --mutants after so many mutants."""
     reduce: bool = True
     """Forget what of a state can no longer matter, and leave out states that others cover."""

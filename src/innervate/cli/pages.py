@@ -65,7 +65,7 @@ def title(path: Path) -> str:
 
 def _print(text: str) -> None:
     """As it is into a file or pipe; laid out, page by page, on a terminal."""
-    if not sys.stdout.isatty():
+    if sys.stdout is None or not sys.stdout.isatty():
         print(text, end="")
         return
     from rich.console import Console

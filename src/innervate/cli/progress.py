@@ -55,19 +55,25 @@ class Display:
         from rich.progress import (
             BarColumn,
             SpinnerColumn,
+            Task,
             TextColumn,
             TimeElapsedColumn,
             TimeRemainingColumn,
         )
         from rich.progress import Progress as Bars
+        from rich.text import Text
+
+        class Left(TimeRemainingColumn):
+            def render(self, task: Task) -> Text:
+                told = super().render(task)
+                return told.append(" left") if told.plain.strip("-:") else Text()
 
         self._bars = Bars(
             SpinnerColumn(),
             TextColumn("{task.description}", markup=False),
             BarColumn(bar_width=24),
             TimeElapsedColumn(),
-            TextColumn("left"),
-            TimeRemainingColumn(),
+            Left(),
             console=Console(stderr=True),
             transient=True,
         )

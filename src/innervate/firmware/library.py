@@ -62,7 +62,9 @@ def role_of(name: str, nodes: int | None = None) -> tuple[Network, Role]:
     if nodes is None:
         return network, role
     if not role.sized:
-        raise FirmwareError(f"{role.name}: its arrays do not depend on how many nodes there are")
+        raise FirmwareError(
+            f"{role.name}: its arrays do not depend on how many nodes there are; leave out --nodes"
+        )
     return network, resolve_name(role.sized)(nodes)
 
 

@@ -20,6 +20,7 @@ HOST = re.compile(r"\w[\w-]*(\.\w[\w-]*)*\.?")
 HOST_MAX = 253  # characters
 UNKNOWN = re.compile(r"Object contains unknown field `(.*)`")
 MISSING = re.compile(r"Object missing required field `(.*)`")
+OF_SCENARIOS = {"schema", "duration_s", "seed", "event"}
 CHOICES = {"engine": (PYTHON, C, "auto"), "kind": ("udp", "serial", "multicast", "medium")}
 
 
@@ -164,6 +165,8 @@ def parse(raw: dict[str, Any], where: str = "node", folder: Path = Path()) -> No
     """
     if wrong := plain.fault(raw):
         raise LiveError(f"{where}: {wrong}")
+    if "number" not in raw and raw.keys() & OF_SCENARIOS:
+        raise LiveError(f"{where}: a scenario, no node's file; try: innervate live up {where}")
     kind = raw.get("kind")
     network = find(kind, folder, Path()) if isinstance(kind, str) else None
     if network is None:

@@ -138,7 +138,8 @@ def _side(given: Side) -> _Side:
 
 def _recorded(folder: Path) -> _Side:
     if not folder.is_dir():
-        raise RunError(f"{folder} is not a run folder: there is no such folder")
+        what = "it is a file" if folder.exists() else "there is no such folder"
+        raise RunError(f"{folder} is not a run folder: {what}")
     run = RecordedRun(folder)
     run.check_tables()
     path = run.scenario

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from innervate.network import NetworkError, find, first, networks
+from innervate.network import NetworkError, find, networks
 from innervate.scenario.bundled import bundled
 from innervate.scenario.errors import ScenarioError, one_line
 from innervate.scenario.explain import alternatives, convert, nearest
@@ -170,7 +170,9 @@ def _check_kind(source: Source, kind: object) -> str:
         ScenarioError: missing, unknown, or such a folder cannot be loaded.
     """
     if kind is None:
-        raise source.error((), f'the scenario has no kind; add kind = "{first()}"')
+        usual, *others = networks()
+        what = f'add kind = "{usual}" (or {", ".join(others)})'
+        raise source.error((), f"the scenario has no kind; {what}")
     try:
         if isinstance(kind, str) and find(kind, Path(source.folder), Path()) is not None:
             return kind

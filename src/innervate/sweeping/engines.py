@@ -93,6 +93,9 @@ class Pool(Engine):
             except _NOT_BEGUN as error:
                 why = error
                 pool.shutdown(wait=False, cancel_futures=True)
+            except BaseException:  # Ctrl-C: one that went on starting would miss what it needs
+                _end(pool)
+                raise
             else:
                 return pool
         raise SweepError("no worker can be started here; use --workers 1") from why
@@ -114,11 +117,15 @@ class Pool(Engine):
 
     def close(self) -> None:
         """End the workers, whatever they are at."""
-        processes = list((getattr(self._pool, "_processes", None) or {}).values())
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            with suppress(OSError, ValueError):
-                process.terminate()
+        _end(self._pool)
+
+
+def _end(pool: Executor) -> None:
+    processes = list((getattr(pool, "_processes", None) or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in processes:
+        with suppress(OSError, ValueError):
+            process.terminate()
 
 
 class Cluster(Engine):
@@ -271,9 +278,14 @@ def _starting() -> Iterator[None]:
     """While a worker may be started: it would import the caller's script, and needs it for nothing.
 
     So a script that sweeps needs no `if __name__ == "__main__":`, and may come from a pipe. What is
-    begun meanwhile does not hear Ctrl-C, which is the sweep's affair, not even while it loads.
+    begun meanwhile does not hear Ctrl-C, which is the sweep's affair, not even while it loads. The
+    sweep hears it afterwards: half begun, a worker would be nobody's, and end in a traceback.
     """
     main, heard = sys.modules["__main__"], None
+    hears, pressed = signal.getsignal(signal.SIGINT), list[tuple[Any, ...]]()
+    waits = callable(hears) and threading.current_thread() is threading.main_thread()
+    if waits:
+        signal.signal(signal.SIGINT, lambda *how: pressed.append(how))
     if hasattr(signal, "pthread_sigmask"):
         resource_tracker.ensure_running()  # begun below, it would unblock what is blocked
         heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -284,6 +296,10 @@ def _starting() -> Iterator[None]:
         sys.modules["__main__"] = main
         if heard is not None:
             signal.pthread_sigmask(signal.SIG_SETMASK, heard)
+        if waits:
+            signal.signal(signal.SIGINT, hears)
+        if pressed and callable(hears):
+            hears(*pressed[0])
 
 
 def _settle() -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from hashlib import sha256
+from numbers import Integral
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
@@ -190,10 +191,10 @@ def _count(
     name: Literal["repeat", "batch"], planned: Planned, file: planfile.PlanFile | None, usual: int
 ) -> int:
     """How often, as was asked for, or as the plan file says; not never, and not too often."""
-    count = _first(planned.get(name), getattr(file, name, None), usual)
-    if not 1 <= count <= REPEAT_MAX:
+    count: Any = _first(planned.get(name), getattr(file, name, None), usual)
+    if not isinstance(count, Integral) or not 1 <= int(count) <= REPEAT_MAX:
         raise SweepError(f"{name} must be a whole number from 1 to {REPEAT_MAX}, not {count}")
-    return count
+    return int(count)
 
 
 def _first(*numbers: int | None) -> int:

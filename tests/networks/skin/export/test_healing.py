@@ -117,3 +117,13 @@ def test_who_goes_at_the_end_was_ended(tmp_path, end_ms, kept):
     gone = event(3_000, C1_PC, "node gone")
     found = healed(tmp_path, *BEGIN, *CUT, gone, beacon(3_000 + end_ms, C0_C1, 0))
     assert [one.what for one in found] == ["cut c0.1 - pc.0"] + ["c1 gone"] * kept
+
+
+def test_a_skin_that_sends_no_samples_is_not_said_to_be_unheard(tmp_path):
+    quiet = healed(tmp_path, *BEGIN, *CUT, beacon(1_050, C0_PC, 0, LOST), beacon(1_060, C1_PC, 1))
+    assert not quiet[0].sampled
+    assert "heard" not in line(quiet[0])
+    assert line(quiet[0]).endswith("; no samples in the capture")
+    told = healed(tmp_path, *BEGIN, *BEFORE, *CUT, beacon(1_050, C0_PC, 0, LOST))
+    assert told[0].sampled
+    assert "all heard not within 50 ms" in line(told[0])

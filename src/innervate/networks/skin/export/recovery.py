@@ -56,6 +56,7 @@ class Healing:
     heard_ms: float | None = None
     heard_median_ms: float | None = None  # of half of them
     lost: int = 0  # samples of theirs that never came to the PC
+    sampled: bool = True  # samples were sent or came in, at any time in the capture
 
 
 @dataclass
@@ -86,6 +87,7 @@ class Watcher:
         self._samples: dict[tuple[str, int], set[End]] = {}
         self._order: deque[tuple[int, tuple[str, int]]] = deque()
         self._newest: dict[str, int | None] = {}  # number of the newest sample that came in
+        self.sampled = False
 
     def take(self, packet: Packet) -> None:
         """The next packet of a capture, in order of time: an event or a beacon."""
@@ -117,6 +119,8 @@ class Watcher:
             and (self._last_ns - self._first_ns - 1e9 * self.found[-1].at_s < END_NS)
         ):
             self.found.pop()
+        for one in self.found:
+            one.sampled = self.sampled
         return self.found
 
     def _end(self, interface: int) -> End:
@@ -206,6 +210,7 @@ class Watcher:
             now.found.routed_ms = after_ms
 
     def _sample(self, packet: Packet, end: End, out: bool) -> None:
+        self.sampled = True
         cell, seq = (
             f"c{get(packet.data, routes.CELL_AT, routes.CELL_BITS)}",
             get(packet.data, routes.SEQ_AT, routes.SEQ_BITS),
@@ -283,11 +288,13 @@ def _text(one: Healing) -> str:
     times = (one.first_ms, one.wrong_ms, one.routed_ms, one.heard_ms, one.heard_median_ms)
     not_yet = f"not within {one.watched_ms:.0f} ms"
     nothing = {"last wrong parent": "never"}  # nobody named a parent that led nowhere
+    seen = len(words) if one.sampled else 3  # without samples nobody can be heard
     parts = [f"{word} {nothing.get(word, not_yet) if at is None else f'{at:.0f} ms'}"
-             for word, at in zip(words, times, strict=True)]  # fmt: skip
+             for word, at in zip(words[:seen], times[:seen], strict=True)]  # fmt: skip
     cells = "1 cell" if one.cells == 1 else f"{one.cells} cells"
     lost = "1 sample" if one.lost == 1 else f"{one.lost} samples"
-    return f"{apart}; {cells}: {', '.join(parts)}; {lost} lost"
+    data = f"{lost} lost" if one.sampled else "no samples in the capture"
+    return f"{apart}; {cells}: {', '.join(parts)}; {data}"
 
 
 def _apart(cells: list[str]) -> str:
