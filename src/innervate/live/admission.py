@@ -32,6 +32,14 @@ class Bounds(NamedTuple):
     limit: int
 
 
+class Heard(asyncio.StreamReader):
+    """What a caller sent can be read to its end, also when answers do not reach them any more."""
+
+    def set_exception(self, exc: Exception) -> None:
+        """The connection broke: nothing more comes."""
+        self.feed_eof()
+
+
 class BoundedListener:
     """A listening socket with a bound on who is in at once, and on how fast they come in.
 
@@ -110,7 +118,7 @@ class BoundedListener:
         self._rest = self._loop.call_later(seconds, again, self._sock.fileno(), self._knock)
 
     async def _let_in(self, caller: socket.socket) -> None:
-        reader = asyncio.StreamReader(self._bounds.limit, self._loop)
+        reader = Heard(self._bounds.limit, self._loop)
         protocol = asyncio.StreamReaderProtocol(reader, loop=self._loop)
         try:
             transport, _ = await self._loop.connect_accepted_socket(lambda: protocol, caller)
