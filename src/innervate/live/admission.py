@@ -49,7 +49,7 @@ class BoundedListener:
         serve: is given each caller that is let in.
         bounds: how much it stands.
         counts: callers that were one too many; how often a burst made others wait, and how often
-            files had run out.
+            files or memory had run out.
     """
 
     def __init__(
@@ -133,5 +133,7 @@ class BoundedListener:
                 await writer.wait_closed()
         except (OSError, TimeoutError, asyncio.CancelledError):  # gone, or the node ends
             pass
+        except MemoryError:
+            self._counts[f"{self._name}: no memory left"] += 1
         finally:
             transport.abort()
