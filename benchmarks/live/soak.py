@@ -175,6 +175,14 @@ class Soak:
                 return True
         return False
 
+    def about(self, number):
+        """When a message was delivered, by what had happened to its recipient, and was to."""
+        name, when = self.delivered[number]
+        moments = [(at, "killed") for at in self.hurts.killed[name]]
+        moments += [(at, "listened to") for at in self.back[name]]
+        near = [f"{what} {at - when:+.1f} s" for at, what in sorted(moments) if abs(at - when) < 30]
+        return f"{number} to {name} ({', '.join(near)})"
+
     def grown(self):
         """(name, MiB when it had settled, MiB at its end) of each life that was long enough."""
         for (name, _), sizes in self.sizes.items():
@@ -208,7 +216,8 @@ def faults(soak, found):
         yield f"{soak.number} messages were sent, {sum(soak.states.values())} have an end"
     lost = [number for number, was_away in soak.unheard() if not was_away]
     if lost:
-        yield f"{len(lost)} messages are delivered, and nobody heard them: {lost[:5]}"
+        about = "; ".join(map(soak.about, lost[:5]))
+        yield f"{len(lost)} messages are delivered, and nobody heard them: {about}"
     twice = sum(soak.heard.values()) - len(soak.heard)
     if twice:
         yield f"{twice} messages came twice"

@@ -1,6 +1,7 @@
 """How many callers are let in at once and how fast, and what Prometheus reads."""
 
 import asyncio
+import gc
 import socket
 from collections import Counter
 from types import SimpleNamespace
@@ -105,6 +106,23 @@ async def test_who_was_served_is_hung_up_on_at_once(place):
     caller.send(b"bye\n")
     await asyncio.sleep(CLOSE_S / 50)
     assert (read(caller), read(caller)) == (b"bye\n", b"")
+    await place.close([caller])
+
+
+@with_place(SMALL)
+async def test_a_caller_for_whom_there_is_no_memory_is_hung_up_on_and_counted(place):
+    async def serve(reader, writer):
+        raise MemoryError
+
+    told = []
+    loop = asyncio.get_running_loop()
+    loop.set_exception_handler(lambda _, context: told.append(context))
+    place.listener._serve = serve
+    caller = place.call()
+    await asyncio.sleep(REST_S)
+    assert read(caller) == b""
+    gc.collect()  # nobody is left who could ask what the task ended with
+    assert (place.counts, told) == ({"here: no memory left": 1}, [])
     await place.close([caller])
 
 

@@ -27,14 +27,10 @@ class Writer:
 
     def __init__(self):
         self.lines = []
-
-        self.gone = asyncio.Event()
+        self.is_last = False
 
     async def line(self, answer):
         self.lines.append(answer)
-
-    async def hung_up(self):
-        await self.gone.wait()
 
 
 @pytest.fixture
@@ -163,9 +159,10 @@ def test_who_hangs_up_leaves_nothing_behind_though_nothing_comes(process, breaks
             writer.line = fails
         task = asyncio.ensure_future(process._listen({"do": "listen"}, writer))
         await soon()
-        writer.gone.set()
+        task.cancel()
         await asyncio.gather(task, return_exceptions=True)
         await soon()
+        assert writer.is_last
         return node.arrivals.callbacks
 
     async def fails(_):

@@ -1,5 +1,8 @@
 """An authority: which numbers it gives, which serials, and whom it has put out; by its files."""
 
+import os
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from innervate.live import identity as identities
@@ -31,6 +34,41 @@ def test_serials_go_on_whoever_was_put_out_and_whoever_reads_the_folder(folder):
     assert own.exchange != other.exchange
     assert again.revoke([5, 0]).serials == {1, 2, 4}, "all that a node ever had"
     assert Authority(folder).version == 2
+
+
+def test_who_enrols_while_somebody_else_does_takes_nothing_back(folder):
+    """Who is not in the authority's file cannot be put out, nor who shares a serial alone."""
+    first, second = Authority(folder), Authority(folder)
+    first.enrol(0)
+    second.enrol(1)
+    assert first.revoke([1]).serials == {2}
+    second.enrol(2)
+    with pytest.raises(LiveError, match="node 2 is enrolled already"):
+        first.enrol(2)
+    again = Authority(folder)
+    assert (again.issued, again.revoked) == ([(0, 1), (1, 2), (2, 3)], {2})
+    one, two = (identities.load(folder / f"n{number}.identity", number) for number in (0, 1))
+    assert one.authority == two.authority
+
+
+def test_those_who_enrol_at_the_same_time_wait_for_each_other(folder):
+    with ThreadPoolExecutor() as pool:
+        made = list(pool.map(lambda number: Authority(folder).enrol(number), range(12)))
+    serials = {identities.load(path, number).serial for number, path in enumerate(made)}
+    assert serials == set(range(1, 13))
+    assert sorted(Authority(folder).issued) == [
+        (number, identities.load(path, number).serial) for number, path in enumerate(made)
+    ]
+
+
+def test_an_authority_s_file_is_on_the_disk_before_it_replaces_the_old_one(folder, monkeypatch):
+    """A power cut that leaves it empty would cost the whole network its authority."""
+    done = []
+    sync, replace = os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda fd: done.append("sync") or sync(fd))
+    monkeypatch.setattr(os, "replace", lambda a, b: done.append(b.name) or replace(a, b))
+    Authority(folder).enrol(3)
+    assert done[:2] == ["sync", "authority.key"]
 
 
 @pytest.mark.parametrize("number", [-1, NUMBER_MAX + 1])

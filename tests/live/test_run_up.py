@@ -15,7 +15,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate import scenario as scenarios
-from innervate.live import machine, run_up, tap
+from innervate.live import machine, run_up, tap, up
 from innervate.live.errors import LiveError
 from innervate.live.notices import Notices
 from innervate.live.play import Event
@@ -300,6 +300,27 @@ def test_ctrl_c_before_all_are_up_interrupts_and_no_node_is_said_to_have_ended(
     monkeypatch.setattr(run_up, "up", starts)
     with pytest.raises(KeyboardInterrupt):
         asyncio.run(run_up.run(plan, Way(tmp_path / "run", "udp", ""), "", 0.0, False))
+
+
+@pytest.mark.parametrize(("answers_s", "waited_s"), [(60.0, 60.0), (1e9, 150.0)])
+def test_of_many_nodes_that_start_at_once_the_first_has_as_much_longer(
+    tmp_path, monkeypatch, answers_s, waited_s
+):
+    """Sixty on two cores beside other work took 44 s."""
+    many = {"kind": "mesh", "nodes": 60, "link": [{"a": k, "b": k + 1} for k in range(59)]}
+    network = up.Processes(scenarios.plan(scenarios.from_dict(many)), tmp_path, "udp")
+    network.processes["n0"] = SimpleNamespace(poll=lambda: None)
+
+    async def main():
+        loop = asyncio.get_running_loop()
+        began = loop.time()
+        monkeypatch.setattr(up, "time", SimpleNamespace(monotonic=loop.time))
+        monkeypatch.setattr(up.status, "answers", lambda _: loop.time() - began >= answers_s)
+        with suppress(LiveError):
+            await network._ready("n0")
+        return loop.time() - began
+
+    assert time_by_hand.run(main()) == pytest.approx(waited_s, abs=0.1)
 
 
 def test_a_node_that_ends_by_itself_is_said(plan, tmp_path, monkeypatch):

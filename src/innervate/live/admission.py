@@ -32,6 +32,14 @@ class Bounds(NamedTuple):
     limit: int
 
 
+class Heard(asyncio.StreamReader):
+    """What a caller sent can be read to its end, also when answers do not reach them any more."""
+
+    def set_exception(self, exc: Exception) -> None:
+        """The connection broke: nothing more comes."""
+        self.feed_eof()
+
+
 class BoundedListener:
     """A listening socket with a bound on who is in at once, and on how fast they come in.
 
@@ -41,7 +49,7 @@ class BoundedListener:
         serve: is given each caller that is let in.
         bounds: how much it stands.
         counts: callers that were one too many; how often a burst made others wait, and how often
-            files had run out.
+            files or memory had run out.
     """
 
     def __init__(
@@ -110,7 +118,7 @@ class BoundedListener:
         self._rest = self._loop.call_later(seconds, again, self._sock.fileno(), self._knock)
 
     async def _let_in(self, caller: socket.socket) -> None:
-        reader = asyncio.StreamReader(self._bounds.limit, self._loop)
+        reader = Heard(self._bounds.limit, self._loop)
         protocol = asyncio.StreamReaderProtocol(reader, loop=self._loop)
         try:
             transport, _ = await self._loop.connect_accepted_socket(lambda: protocol, caller)
@@ -125,5 +133,7 @@ class BoundedListener:
                 await writer.wait_closed()
         except (OSError, TimeoutError, asyncio.CancelledError):  # gone, or the node ends
             pass
+        except MemoryError:
+            self._counts[f"{self._name}: no memory left"] += 1
         finally:
             transport.abort()

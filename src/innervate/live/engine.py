@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import Counter
-from collections.abc import Callable, Set
+from collections.abc import Callable, Collection
 from typing import Any, Protocol
 
 from innervate.dialect.arith import HALF30, MASK30
@@ -21,7 +21,6 @@ class Stack(Protocol):
         inbox: the frame record that received bytes are read into.
         timers: how many timers it has.
         reasons: words for what `decode` returns; 0 is "read".
-        unhurried: kinds of frames that nobody waits for; of an outbox they leave last.
         silent_us: a path on which nothing was heard for so long is broken; NEVER: none is.
     """
 
@@ -29,7 +28,6 @@ class Stack(Protocol):
     inbox: Any
     timers: int
     reasons: tuple[str, ...]
-    unhurried: Set[int]
     silent_us: int
 
     def on_start(self, now: int, cause: int) -> None:
@@ -58,6 +56,9 @@ class Stack(Protocol):
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """The paths on which a frame leaves; None = all of them."""
+
+    def behind(self, count: int) -> Collection[int]:
+        """Which of the `count` actions in the outbox send what may leave behind the others."""
 
     def status(self, now: int) -> dict[str, Any]:
         """What the protocol knows, for people; `now` is the whole clock, us."""
@@ -186,15 +187,12 @@ class Engine:
         self.now = now
         count = out.count[0]
         out.count[0] = 0
-        armed, unhurried = False, self.stack.unhurried if count > 1 else ()
-        behind = []
+        armed, behind = False, self.stack.behind(count) if count > 1 else ()
         for i in range(count):
             act = out.action[i]
             kind = act.kind
             if kind == SEND:
-                if unhurried and out.frame[i].kind in unhurried:
-                    behind.append((act.a, out.frame[i], act.b, act.c))
-                else:
+                if i not in behind:
                     self._transmit(act.a, out.frame[i], act.b, act.c)
             elif kind == SET_TIMER:
                 wait = (act.b - now) & MASK30
@@ -204,8 +202,9 @@ class Engine:
                 self._report(act.a, act.b, act.c)
             elif kind == DELIVER:
                 self._deliver(act.a, out.frame[i])
-        for frame in behind:
-            self._transmit(*frame)
+        for i in behind:
+            act = out.action[i]
+            self._transmit(act.a, out.frame[i], act.b, act.c)
         if armed and not self._stopped:
             self._arm(now)
         self._settled()

@@ -2,6 +2,8 @@
 
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,11 @@ from innervate.live import plain, private
 from innervate.live.errors import LiveError
 from innervate.live.identity import REVOKED_MAX, Revoked
 from innervate.live.machine import machine
+
+try:
+    import fcntl
+except ImportError:  # Windows: nobody enrols two nodes at once there
+    fcntl = None  # type: ignore[assignment]
 
 AUTHORITY = "authority.key"
 LIST = "revoked.list"
@@ -40,6 +47,7 @@ class Authority:
         self.issued: list[tuple[int, int]] = []
         self.revoked: set[int] = set()
         self.version = 0
+        self._kept = ""  # the text of the authority's file, as it was read or written last
         if self._path.exists():
             self._read()
         else:
@@ -72,6 +80,7 @@ class Authority:
                 plain.whole(revoked, i, SERIAL_MAX, "revoked") for i in range(len(revoked))
             }
             self.version = plain.whole(raw, "version", SERIAL_MAX)
+            self._kept = text
         except ValueError as error:
             raise LiveError(f"{self._path}: {error}; {NONE}") from None
 
@@ -96,12 +105,14 @@ class Authority:
             LiveError: the number is none, or a node that was not put out has it.
         """
         self.check(number)
-        serial = 1 + max((one for _number, one in self.issued), default=0)
-        self.issued.append((number, serial))
         path = self.folder / f"n{number}.identity"
-        made = identities.enrol(self._key, number, serial, self._shared)
-        self._write(self._path, self._text())
-        self._write(path, made.text())
+        with self._alone():
+            self.check(number)
+            serial = 1 + max((one for _number, one in self.issued), default=0)
+            self.issued.append((number, serial))
+            made = identities.enrol(self._key, number, serial, self._shared)
+            self._keep()
+            self._write(path, made.text())
         return path
 
     def revoke(self, numbers: list[int]) -> Revoked:
@@ -110,37 +121,58 @@ class Authority:
         Raises:
             LiveError: one was never enrolled, or they are too many.
         """
-        for number in numbers:
-            found = [serial for one, serial in self.issued if one == number]
-            if not found:
-                raise LiveError(f"node {number} was never enrolled in {self.folder}")
-            self.revoked.update(found)
-        if len(self.revoked) > REVOKED_MAX:
-            raise LiveError(
-                f"{len(self.revoked)} are put out, and a list holds {REVOKED_MAX}; enrol all "
-                "others in another folder"
-            )
-        self.version += 1
-        made = identities.revoke(self._key, self.version, frozenset(self.revoked))
-        self._write(self._path, self._text())
-        self._write(self.folder / LIST, made.data.hex() + "\n")
+        with self._alone():
+            for number in numbers:
+                found = [serial for one, serial in self.issued if one == number]
+                if not found:
+                    raise LiveError(f"node {number} was never enrolled in {self.folder}")
+                self.revoked.update(found)
+            if len(self.revoked) > REVOKED_MAX:
+                raise LiveError(
+                    f"{len(self.revoked)} are put out, and a list holds {REVOKED_MAX}; enrol all "
+                    "others in another folder"
+                )
+            self.version += 1
+            made = identities.revoke(self._key, self.version, frozenset(self.revoked))
+            self._keep()
+            self._write(self.folder / LIST, made.data.hex() + "\n")
         return made
 
-    def _text(self) -> str:
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Nobody else changes the files meanwhile; what somebody has changed is read first."""
+        held = None
+        try:
+            self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
+            if fcntl is not None:
+                held = os.open(self.folder, os.O_RDONLY)
+                fcntl.flock(held, fcntl.LOCK_EX)
+            if self._path.exists() and self._path.read_bytes() != self._kept.encode():
+                self._read()
+            yield
+        except OSError as error:
+            raise LiveError(f"{self._path}: cannot be written: {error.strerror}") from None
+        finally:
+            if held is not None:
+                os.close(held)
+
+    def _keep(self) -> None:
         kept: dict[str, Any] = {
             "key": self._key.hex(), "shared": self._shared.hex(),
             "issued": [list(one) for one in self.issued],
             "revoked": sorted(self.revoked), "version": self.version,
         }  # fmt: skip
         head = "# Whoever has this file can enrol nodes: keep it off all of them.\n"
-        return head + "".join(f"{key} = {json.dumps(value)}\n" for key, value in kept.items())
+        self._kept = head + "".join(f"{key} = {json.dumps(value)}\n" for key, value in kept.items())
+        self._write(self._path, self._kept)
 
     def _write(self, path: Path, text: str) -> None:
         new = path.with_name(path.name + ".new")
         try:
-            self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
-            private.write(new, text)
-            os.replace(new, path)
+            with machine().create(new) as file:
+                file.write(text)
+                machine().sync(file)
+            machine().replace(new, path)
         except OSError as error:
             raise LiveError(f"{path}: cannot be written: {error.strerror}") from None
 

@@ -238,6 +238,7 @@ class Process:
                 await writer.line({"state": told, "reason": receipt.reason})
 
     async def _listen(self, request: dict[str, Any], writer: status.Writer) -> None:
+        writer.is_last = True
         heard: Pending[dict[str, Any]] = Pending(HEARD_MAX, _weight)
         streams = self.node.streams(request)
         pumps = [asyncio.ensure_future(_pump(stream, form, heard)) for stream, form in streams]
@@ -245,7 +246,6 @@ class Process:
             await asyncio.sleep(0)  # they have begun: only then is what they took given back
             await writer.line({"listening": self.loaded.name})
             pumps.append(asyncio.ensure_future(_tell(heard, writer)))
-            pumps.append(asyncio.ensure_future(writer.hung_up()))
             done, _ = await asyncio.wait(pumps, return_when=asyncio.FIRST_COMPLETED)
             for pump in done:
                 pump.result()

@@ -1,6 +1,6 @@
 """What engines run of protocols whose handlers take a node, its parameters and an outbox."""
 
-from collections.abc import Set
+from collections.abc import Collection
 from typing import Any
 
 from innervate.dialect import plain
@@ -28,7 +28,6 @@ class CabledStack:
     """
 
     coder: Any
-    unhurried: Set[int] = frozenset()
 
     def __init__(
         self, do: Any, node: Any, params: Any, frame: Any, room: int, ports: list[int]
@@ -69,6 +68,10 @@ class CabledStack:
     def objection(self, sender: int | None) -> str:
         """Frames name nobody: they speak for the far end of their cable, whoever that is."""
         return ""
+
+    def behind(self, count: int) -> Collection[int]:
+        """Frames leave in the order in which they were sent."""
+        return ()
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """The path of a port; a free one has none."""

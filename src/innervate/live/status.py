@@ -7,7 +7,7 @@ import select
 import socket
 import tempfile
 from collections import Counter
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,8 @@ from innervate.live.machine import ANSWER_S, machine
 from innervate.live.machine import answers as answers
 from innervate.live.machine import is_left as is_left
 
-LOOK_S = 1.0  # between two looks whether who has ended asking has gone
+LOOK_S = 1.0  # between two looks whether a caller has gone
+WHOLE_S = 30.0  # a request is whole so long after it began, a caller's first after they came
 LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits
 AT_ONCE = ("status", "revoke")  # a node that is well answers so
 UP = "up."  # in a user's own folder, and a number: links to where each `live up` has its nodes
@@ -112,19 +113,15 @@ class Request(dict[str, Any]):
 
 
 class Writer:
-    """Writes answers of one connection; `reader` is its other direction."""
+    """Writes answers of one connection.
 
-    def __init__(
-        self, stream: asyncio.StreamWriter, reader: asyncio.StreamReader | None = None
-    ) -> None:
-        self._stream, self._reader = stream, reader
+    Attributes:
+        is_last: True = what is answered now has no end of its own, nothing behind it is read.
+    """
 
-    async def hung_up(self) -> None:
-        """Until the caller has gone, who may have said long ago that nothing more will be asked."""
-        while self._reader is None or await self._reader.read(LINE_MAX):
-            await asyncio.sleep(LOOK_S)
-        while not self.is_gone():
-            await asyncio.sleep(LOOK_S)
+    def __init__(self, stream: asyncio.StreamWriter) -> None:
+        self._stream = stream
+        self.is_last = False
 
     def is_gone(self) -> bool:
         """True once both directions of the connection are closed."""
@@ -136,7 +133,13 @@ class Writer:
         return bool(look.poll(0))
 
     async def line(self, answer: dict[str, Any]) -> None:
-        """Write one answer as a line of JSON, and wait until there is room for more."""
+        """Write one answer as a line of JSON, and wait until there is room for more.
+
+        Raises:
+            ConnectionError: the caller has gone; what they asked for before can still be read.
+        """
+        if self.is_gone():
+            raise ConnectionResetError
         self._stream.write(json.dumps(answer).encode() + b"\n")
         await self._stream.drain()
 
@@ -205,20 +208,48 @@ class Server:
                     machine().remove(self.path)
 
     async def _serve(self, reader: asyncio.StreamReader, stream: asyncio.StreamWriter) -> None:
-        writer = Writer(stream, reader)
-        watching = asyncio.ensure_future(_end_with(writer, asyncio.current_task()))
+        writer, serving = Writer(stream), asyncio.current_task()
+        assert serving is not None
+        watching = asyncio.ensure_future(_wait_no_more(writer, serving))
         try:
-            while line := await reader.readline():
-                await answer(line, self._handle, writer)
-        except (ConnectionError, ValueError):  # gone, or a line longer than any request
-            pass
+            async for line in _requests(reader, writer):
+                await self._do(line, writer, serving)
+                if writer.is_last:
+                    break
         finally:
             watching.cancel()
 
+    async def _do(self, line: bytes, writer: Writer, serving: asyncio.Task[Any]) -> None:
+        """Answer a request; of a caller who has gone it is done all the same."""
+        try:
+            with suppress(ConnectionError):
+                await answer(line, self._handle, writer)
+            await asyncio.sleep(0)  # frames have their turn
+        except asyncio.CancelledError:
+            if not writer.is_gone():
+                raise
+            serving.uncancel()
 
-async def _end_with(writer: Writer, serving: asyncio.Task[Any] | None) -> None:
-    """End what serves a caller who has gone: what it waits for may never come."""
-    assert serving is not None
+
+async def _requests(reader: asyncio.StreamReader, writer: Writer) -> AsyncIterator[bytes]:
+    """The lines of a caller, until one is not whole in time, or longer than any request."""
+    begun = b""
+    with suppress(ConnectionError, ValueError):
+        try:
+            while True:
+                async with asyncio.timeout(WHOLE_S):
+                    line = begun if begun == b"\n" else begun + await reader.readline()
+                if line:
+                    yield line
+                begun = await reader.read(1)
+                if not begun:
+                    return
+        except TimeoutError:
+            await writer.line({"error": f"no whole request came within {WHOLE_S:g} s"})
+
+
+async def _wait_no_more(writer: Writer, serving: asyncio.Task[Any]) -> None:
+    """Once a caller has gone, end what waits there: it may never come."""
     while True:
         await asyncio.sleep(LOOK_S)
         if writer.is_gone():

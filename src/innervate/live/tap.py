@@ -25,6 +25,7 @@ async def serve(node: LiveNode, writer: Writer) -> None:
     def take(at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
         pending.put((at_ns, port, out, data.hex(), why))
 
+    writer.is_last = True
     node.taps.append(take)
     try:
         await writer.line(about(node))

@@ -20,6 +20,7 @@ from innervate.network import networks
 
 NodeTables = tuple[Table, dict[str, Table], list[Table]]
 START_S = 30.0
+START_EACH_S = 2.0  # besides, of each node: all start at once, beside whatever else there is to do
 STOP_S = 5.0
 
 
@@ -194,13 +195,14 @@ class Processes:
             self.lab.down()
 
     async def _ready(self, name: str) -> None:
-        until = time.monotonic() + START_S
+        limit_s = START_S + START_EACH_S * len(self.names)
+        until = time.monotonic() + limit_s
         while not status.answers(self.socket(name)):
             if self.processes[name].poll() is not None:
                 log = (self.folder / f"{name}.log").read_text().strip().splitlines()
                 raise LiveError(f"{name} ended: {log[-1] if log else 'no message'}")
             if time.monotonic() > until:
-                raise LiveError(f"{name} does not answer after {START_S:g} s")
+                raise LiveError(f"{name} does not answer after {limit_s:g} s")
             await asyncio.sleep(0.02)
 
     def _paths(self) -> list[dict[int, Table]]:

@@ -7,13 +7,14 @@ from collections import Counter
 import pytest
 
 from innervate.live.receipts import DELIVERED
-from innervate.networks.mesh.protocol.constants import REPORT_SUSPECT
+from innervate.networks.mesh.protocol.constants import DATA, REPORT_SUSPECT
 from tests.live.net import Mesh
 from tests.live.time_by_hand import run
 
 PAIR = [(0, 1)]
 DISCOVERY_PER_S = 4  # frames: two requests, a response and tables every 2 s
 LINE = [(0, 1), (1, 2)]
+BAUD, BITS = 115_200, 10  # on a serial line, of a byte and its start and stop
 
 
 class SlowMesh(Mesh):
@@ -39,13 +40,37 @@ class SlowMesh(Mesh):
         return carry
 
 
-async def said(mesh, to, count, every_s):
-    """Of messages from node 0: states by name, and what came how often."""
-    heard = Counter()
-    mesh.nodes[to].receive_messages(lambda _, payload: heard.update([payload]))
-    receipts = []
+class SerialMesh(Mesh):
+    """A mesh on serial lines: what is sent waits for what was sent before."""
+
+    def __init__(self, count, links):
+        super().__init__(count, links, ack_us=5000, e2e_us=30_000)
+        self.carried = Counter()
+        for ends in self.cables.values():
+            for path in ends:
+                path.take = self.one_by_one(path.take)
+
+    def one_by_one(self, take):
+        free_at = 0.0
+
+        def carry(data):
+            nonlocal free_at
+            self.carried[data[0] & 15] += 1
+            loop = asyncio.get_running_loop()
+            free_at = max(free_at, loop.time()) + len(data) * BITS / BAUD
+            loop.call_at(free_at, take, data)
+
+        return carry
+
+
+async def said(mesh, to, count, every_s, back=False, size=2):
+    """Of messages from node 0, and back at the same time: states by name, what came how often."""
+    ways, heard, receipts = [(0, to), (to, 0)][: 1 + back], Counter(), []
+    for _, end in ways:
+        mesh.nodes[end].receive_messages(lambda *message: heard.update([message]))
     for k in range(count):
-        receipts.append(mesh.nodes[0].send_message(to, k.to_bytes(2, "big")))
+        for begin, end in ways:
+            receipts.append(mesh.nodes[begin].send_message(end, k.to_bytes(size, "big")))
         await asyncio.sleep(every_s)
     states = Counter([await receipt.wait() for receipt in receipts])
     return states, heard
@@ -115,3 +140,17 @@ def test_a_quick_link_that_breaks_is_found_out_within_20_ms(one_way_ms):
             return loop.time() - began
 
     assert run(main()) <= 0.020
+
+
+def test_on_a_serial_line_acks_do_not_wait_until_they_were_in_vain():
+    async def main():
+        async with SerialMesh(2, PAIR) as mesh:
+            await asyncio.sleep(4)
+            states, heard = await said(mesh, 1, 200, 0.05, back=True, size=64)
+            return states, heard, mesh.carried[DATA]
+
+    states, heard, carried = run(main())
+    assert states == {DELIVERED: 400}
+    assert set(heard.values()) == {1}
+    assert len(heard) == 400
+    assert carried <= 410

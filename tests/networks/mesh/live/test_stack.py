@@ -4,8 +4,10 @@ import asyncio
 
 import pytest
 
+from innervate.dialect.outbox import SEND, put
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import ASKED, MeshStack
+from innervate.networks.mesh.protocol.constants import ACK, ALL, DATA, E2E_ACK
 from tests.live.net import Mesh
 
 
@@ -48,3 +50,19 @@ def test_a_hub_of_live_nodes_has_all_others_as_neighbours(leaves):
 def test_who_says_nothing_in_three_rounds_and_a_tick_is_silent():
     params = mesh_parameters(3, {"period_max": 40, "tick_us": 1_000_000})
     assert MeshStack(1, -1, params, 5).silent_us == (3 * 40 + 1) * 1_000_000
+
+
+@pytest.mark.parametrize(
+    ("sent", "behind"),
+    [
+        ([(ACK, 1), (DATA, 2)], [0]), ([(ACK, 1), (E2E_ACK, 1)], []), ([(ACK, 1), (DATA, ALL)], []),
+        ([(ACK, 1), (DATA, 2), (ACK, 2), (ACK, 3)], [0, 3]), ([(ACK, 1), (ACK, 2)], [0, 1]),
+        ([(ACK, 1)], []),
+    ],
+)  # fmt: skip
+def test_an_ack_leaves_behind_what_goes_to_others_and_before_what_goes_its_own_way(sent, behind):
+    stack = stack_of()
+    for kind, whom in sent:
+        frame = stack.out.frame[put(stack.out, SEND, 0, 0, 0)]
+        frame.kind, frame.link_dst = kind, whom
+    assert list(stack.behind(len(sent))) == behind

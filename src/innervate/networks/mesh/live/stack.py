@@ -2,11 +2,12 @@
 
 import functools
 from collections import Counter
-from collections.abc import Set
+from collections.abc import Collection
 from types import SimpleNamespace
 from typing import Any
 
 from innervate.dialect import plain
+from innervate.dialect.outbox import SEND
 from innervate.dialect.rng import seeded
 from innervate.live.stack import filled
 from innervate.networks.mesh import frames as wire
@@ -46,7 +47,6 @@ class MeshStack:
     """
 
     timers = const.TIMERS
-    unhurried: Set[int] = frozenset((const.ACK,))
     reasons: tuple[str, ...] = (*wire.REASONS, TOO_LONG)
 
     def __init__(
@@ -155,6 +155,19 @@ class MeshStack:
             return LONG
         reason: int = self.coder.decode(data, self.inbox)
         return reason
+
+    def behind(self, count: int) -> Collection[int]:
+        """Acks leave behind frames to others; what goes the same way would hold them up.
+
+        On a serial line of 115,200 baud that would be longer than the neighbour waits for them.
+        """
+        out = self.out
+        sent = [i for i in range(count) if out.action[i].kind == SEND]
+        if len(sent) < 2:
+            return ()
+        acks = [i for i in sent if out.frame[i].kind == const.ACK]
+        ways = {out.frame[i].link_dst for i in sent if i not in acks} if acks else ()
+        return [i for i in acks if const.ALL not in ways and out.frame[i].link_dst not in ways]
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.
