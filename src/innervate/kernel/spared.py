@@ -5,8 +5,8 @@ reads, and colours the messages of attempts that do not matter; it looks for var
 an instruction holds, asks again what it was told before, and compiles a function once more for
 callers that are themselves to be inlined. After each of nine passes it works out which variables
 are alive where, of which it asks after three; and it goes through all kinds of numbers that NumPy
-can add for every sum of two integers. Without it a loop takes a third less processor time, and does
-the same.
+can add for every sum of two integers. Without it a loop takes three tenths less processor time, and
+does the same.
 
 This reaches into Numba's insides: what is not there any more stays as Numba does it.
 """
