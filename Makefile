@@ -14,7 +14,9 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 
 BIN := .venv/bin
-# The environment is made again when pyproject.toml says something else, and only then.
+# The environment is made again when pyproject.toml says something else, and only then. Its packages
+# are translated by all processors together, which pip would do by one; what is no Python of today
+# (templates of packages) stays as it is.
 STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
 
@@ -53,7 +55,8 @@ $(STAMP):
 	    echo "$$python has no venv module; install it (Debian, Ubuntu: apt install python3-venv)" >&2; exit 1; fi; \
 	  echo "Setting up .venv with pip (once, a minute or two) ..."; \
 	  "$$python" -m venv .venv; \
-	  $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[all,dev]'; \
+	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e '.[all,dev]'; \
+	  $(BIN)/python -m compileall -qq -j 0 .venv/lib/python*/site-packages || true; \
 	fi
 	@touch $@
 

@@ -3,8 +3,10 @@
 For every pass over every function Numba writes out its arguments' types, measures time that nobody
 reads, and colours the messages of attempts that do not matter; it looks for variables in all that
 an instruction holds, asks again what it was told before, and compiles a function once more for
-callers that are themselves to be inlined. Without it a loop takes a quarter less processor time,
-and does the same.
+callers that are themselves to be inlined. After each of nine passes it works out which variables
+are alive where, of which it asks after three; and it goes through all kinds of numbers that NumPy
+can add for every sum of two integers. Without it a loop takes three tenths less processor time, and
+does the same.
 
 This reaches into Numba's insides: what is not there any more stays as Numba does it.
 """
@@ -15,14 +17,18 @@ from functools import cache
 from typing import Any
 
 from llvmlite.binding import ffi
-from numba.core import compiler_machinery, errors, event, ir, itanium_mangler
+from numba.core import compiler_machinery, errors, event, ir, itanium_mangler, transforms
+from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.targetconfig import TargetConfig
-from numba.core.types import Record
+from numba.core.types import Integer, Record
+from numba.core.typing.npydecl import NumpyRulesArrayOperator
 from numba.core.typing.templates import _OverloadFunctionTemplate
 
 NEVER_HELD = frozenset({str, int, bool, float, type(None), ir.Loc})  # these hold no variable
 
 _numbas_words = Record.__repr__
+_numbas_lifetimes = PostProcessor.run
+_numbas_elementwise = NumpyRulesArrayOperator.generic
 
 
 @contextmanager
@@ -48,6 +54,8 @@ def _instead() -> list[tuple[Any, str, Any]]:
         (ir.Inst, "_rec_list_vars", _variables),
         (itanium_mangler, "_escape_string", _escaped),
         (_OverloadFunctionTemplate, "_get_impl", _compiled_for),
+        (PostProcessor, "run", _lifetimes),
+        (NumpyRulesArrayOperator, "generic", _elementwise),
     ]
 
 
@@ -83,6 +91,26 @@ def _compiled_for(template: Any, args: Any, kws: Any) -> Any:
     """A function for arguments of these types, whoever calls it."""
     key = template.context, tuple(args), tuple(kws.items())
     return template._impl_cache.get(key) or template._build_impl(key, args, kws)
+
+
+def _lifetimes(processor: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+    """Where variables are alive is worked out when somebody asks; generators ask at once."""
+    function = processor.func_ir
+    if function.is_generator:
+        _numbas_lifetimes(processor, emit_dels, extend_lifetimes)
+        return
+    function.blocks = transforms.canonicalize_cfg(function.blocks)
+    function.variable_lifetime = VariableLifetime(function.blocks)
+    function.generator_info = None
+    if emit_dels:
+        processor._insert_var_dels(extend_lifetimes=extend_lifetimes)
+
+
+def _elementwise(template: Any, args: Any, kws: Any) -> Any:
+    """How NumPy would do it element by element; numbers have no elements."""
+    if all(isinstance(kind, Integer) for kind in args):
+        return None
+    return _numbas_elementwise(template, args, kws)
 
 
 def _variables(_instruction: Any, held: Any) -> list[Any]:
