@@ -47,7 +47,7 @@ class Soak:
         self.network = network
         self.chance = random.Random(seed)
         self.states = Counter()
-        self.delivered = {}  # number: for whom, when
+        self.delivered = {}  # number: for whom, when it was sent, when its sender was told
         self.heard = Counter()  # (number, which life of its recipient)
         self.last = {}
         self.back = {name: [] for name in network.names}  # when its listener was there (again)
@@ -99,12 +99,13 @@ class Soak:
             payload = number.to_bytes(4, "big") + bytes([stream])
             request = {"do": "send", "to": self.network.names.index(dest), "in_order": True,
                        "payload": payload.hex()}  # fmt: skip
+            sent = time.monotonic()
             told = await self.ended(reader, writer, request)
             self.states[
                 f"{told['state']}: {told['reason']}" if told["reason"] else told["state"]
             ] += 1
             if told["state"] == "delivered":
-                self.delivered[number] = dest, time.monotonic()
+                self.delivered[number] = dest, sent, time.monotonic()
             if told["state"] == GONE:
                 writer.close()
                 reader, writer = await self.connect(name)
@@ -167,21 +168,24 @@ class Soak:
         heard = {number for number, _ in self.heard}
         return [(n, self.was_away(*self.delivered[n])) for n in self.delivered.keys() - heard]
 
-    def was_away(self, name, when):
-        """True if a node, or its listener, was not there at that time, or nearly so."""
+    def was_away(self, name, sent, told):
+        """True if a node, or its listener, was not there in between, or nearly so.
+
+        It was handed up at some moment in between: where acks were lost, long before they are told.
+        """
         for at in self.hurts.killed[name]:
             back = min((b for b in self.back[name] if b > at), default=math.inf)
-            if at - NEAR_S < when < back + NEAR_S:
+            if at - NEAR_S < told and sent < back + NEAR_S:
                 return True
         return False
 
     def about(self, number):
         """When a message was delivered, by what had happened to its recipient, and was to."""
-        name, when = self.delivered[number]
+        name, sent, when = self.delivered[number]
         moments = [(at, "killed") for at in self.hurts.killed[name]]
         moments += [(at, "listened to") for at in self.back[name]]
         near = [f"{what} {at - when:+.1f} s" for at, what in sorted(moments) if abs(at - when) < 30]
-        return f"{number} to {name} ({', '.join(near)})"
+        return f"{number} to {name} (sent {sent - when:+.1f} s, {', '.join(near)})"
 
     def grown(self):
         """(name, MiB when it had settled, MiB at its end) of each life that was long enough."""
