@@ -57,5 +57,5 @@ def tries_for(node, params, k):
     """
     if k < 0 or node.heard[k] != node.ticks or params.transmissions == 1:
         return params.transmissions
-    wanted = params.transmissions * ALL_ACKED // max(node.ack_ratio[k], POOR_MIN)
+    wanted = params.transmissions * ALL_ACKED // max(node.ack_ratio[k], RATIO_MIN)
     return max(params.transmissions, min(wanted, TRIES_MAX))
