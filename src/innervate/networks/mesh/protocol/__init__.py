@@ -336,8 +336,9 @@ Constants and settings
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
 | `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
 |                                                | double                                          |
-| `ALL_ACKED = 255`, `RATIO_MIN = 43`,           | shares of transmissions acknowledged: all, the  |
-| `SMOOTHING = 3`, `MISSES_MAX = 31`             | least believed; an eighth of what is new        |
+| `ALL_ACKED = 255`, `RATIO_MIN = 64`,           | shares of transmissions acknowledged: all; the  |
+| `POOR_MIN = 32`, `SMOOTHING = 3`,              | least believed, of a loud link, of a faint one; |
+| `MISSES_MAX = 31`                              | an eighth of what is new                        |
 | `UNIT = 4`, `SPARE = 1428`, `TRIES_MAX = 12`   | an ack in quarters; what it takes back; most    |
 |                                                | transmissions because a link is poor            |
 | `LONGEST_US = 65536`                           | of a pause before it is doubled                 |
@@ -368,8 +369,7 @@ Constants and settings
 | `width`, `row`, `places`, `nodes`              | sizes of a capacity class, and of this network  |
 | `told`, `hop_acks`                             | the layer below says SENT; hops acknowledge, or |
 |                                                | SENT says so                                    |
-| `min_rssi`, `faint`                            | weaker links are not reported; A2: first or     |
-|                                                | best uplink                                     |
+| `min_rssi`, `faint`, `poor`                    | not reported; A2: best uplink; decision 0068    |
 | `reliable`, `standby`, `job_tries`, `asks`     | messages are kept; there is a standby; tries of |
 |                                                | a table; who did not respond is asked once more |
 | `monitor`, `flood`, `instances`                | A14; when alarms are flooded, and how often     |

@@ -39,12 +39,15 @@ def note_missed(node, params, now, k):
         node.pause = (now + draw(node, span) + 1) & MASK30
 
 
-def note_answer(node, k):
+def note_answer(node, params, k):
     """The neighbour in place k has acknowledged: the channel has room."""
-    learn_misses(node, k)
-    node.strain = max(node.strain - relief(node, k), 0)
-    learn_ack(node, k)
     node.pause = NO_BACKOFF
+    back = UNIT
+    if k >= 0:
+        learn_misses(node, k)
+        back = relief(node, params, k)
+        learn_ack(node, k)
+    node.strain = max(node.strain - back, 0)
 
 
 def is_held(node, i):

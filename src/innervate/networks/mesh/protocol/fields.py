@@ -360,6 +360,7 @@ PARAMS = (
     ("suspect_us", 0, 1, 268435455, "us", "a neighbour that does not answer is avoided"),
     ("min_rssi", 0, -128, 127, "dBm", "weaker links are not reported"),
     ("faint", 0, -128, 127, "dBm", "a first request below it waits for better; <= min_rssi: stays"),
+    ("poor", 0, -128, 127, "dBm", "links that are fainter lose frames in a free channel, too"),
     ("jitter_us", 0, 0, 16777215, "us", "requests are passed on within"),
     ("copies", 0, 1, 15, "copies", "of a request"),
     ("flood_us", 0, 0, 16777215, "us", "floods are passed on within"),

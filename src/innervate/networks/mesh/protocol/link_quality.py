@@ -6,7 +6,8 @@ acks that are missing because the link is as it is are not held against the chan
 """
 
 ALL_ACKED = 255
-RATIO_MIN = 43  # a sixth: worse is the channel, or the neighbour
+RATIO_MIN = 64  # a quarter: worse is the channel, or the neighbour
+POOR_MIN = 32  # an eighth, of who is heard so faintly that the link itself loses much
 SMOOTHING = 3  # an eighth of what is new
 MISSES_MAX = 31  # so many in a row leave nothing of a ratio
 TRIES_MAX = 12
@@ -26,24 +27,26 @@ def note_miss(node, k):
 
 def learn_misses(node, k):
     """The neighbour in place k answers again: what it did not acknowledge was lost on the link."""
-    if k >= 0:
-        for _ in range(node.misses[k]):
-            node.ack_ratio[k] = node.ack_ratio[k] - (node.ack_ratio[k] >> SMOOTHING)
-        node.misses[k] = 0
+    for _ in range(node.misses[k]):
+        node.ack_ratio[k] = node.ack_ratio[k] - (node.ack_ratio[k] >> SMOOTHING)
+    node.misses[k] = 0
 
 
 def learn_ack(node, k):
     """The neighbour in place k has acknowledged a transmission."""
-    if k >= 0:
-        rise = ALL_ACKED + (1 << SMOOTHING) - 1 - node.ack_ratio[k]
-        node.ack_ratio[k] = node.ack_ratio[k] + (rise >> SMOOTHING)
+    rise = ALL_ACKED + (1 << SMOOTHING) - 1 - node.ack_ratio[k]
+    node.ack_ratio[k] = node.ack_ratio[k] + (rise >> SMOOTHING)
 
 
-def relief(node, k):
-    """How much of the strain an ack from the neighbour in place k takes back, in quarters."""
-    if k < 0:
-        return UNIT
-    return max(UNIT, SPARE // max(node.ack_ratio[k], RATIO_MIN) - UNIT)
+def relief(node, params, k):
+    """How much of the strain an ack from the neighbour in place k takes back, in quarters.
+
+    Faint links lose frames whether others send or not; loud ones do in a full channel.
+    """
+    least = RATIO_MIN
+    if node.rssi[k] < 4 * params.poor:
+        least = POOR_MIN
+    return max(UNIT, SPARE // max(node.ack_ratio[k], least) - UNIT)
 
 
 def tries_for(node, params, k):

@@ -20,13 +20,13 @@ def clear_neighbours(node, params):
     """Empty the neighbour table, as after switching on."""
     for k in range(params.places):
         node.neighbour[k] = FREE
-        node.suspect[k] = 0
-        node.round_depth[k] = UNHEARD
         forget_link(node, k)
 
 
 def forget_link(node, k):
     """Nothing is known of how often the neighbour in place k answers, and how soon."""
+    node.suspect[k] = 0
+    node.round_depth[k] = UNHEARD
     node.ack_ratio[k] = ALL_ACKED
     node.misses[k] = 0
     node.hop_trip[k] = 0
@@ -54,25 +54,21 @@ def hear(node, params, who, rssi):
     k = place_of(node, params, who)
     if k >= 0:
         node.rssi[k] = node.rssi[k] + ((4 * rssi - node.rssi[k]) >> 2)
-        node.heard[k] = node.ticks
-        node.suspect[k] = 0
-        return k
-    faintest = 0
-    for j in range(params.places):
-        if node.neighbour[j] == FREE:
-            faintest = j
-            break
-        if node.rssi[j] < node.rssi[faintest]:
-            faintest = j
-    k = faintest
-    if node.neighbour[k] != FREE and node.rssi[k] >= 4 * rssi:
-        return -1
-    node.neighbour[k] = who
-    node.rssi[k] = 4 * rssi
+    else:
+        k = 0
+        for j in range(params.places):
+            if node.neighbour[j] == FREE:
+                k = j
+                break
+            if node.rssi[j] < node.rssi[k]:
+                k = j
+        if node.neighbour[k] != FREE and node.rssi[k] >= 4 * rssi:
+            return -1
+        node.neighbour[k] = who
+        node.rssi[k] = 4 * rssi
+        forget_link(node, k)
     node.heard[k] = node.ticks
     node.suspect[k] = 0
-    node.round_depth[k] = UNHEARD
-    forget_link(node, k)
     return k
 
 

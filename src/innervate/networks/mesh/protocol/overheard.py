@@ -16,7 +16,7 @@ def drop_overheard(node, params, frame, out):
         state = node.q_state[i]
         if state == UNACKED or (state == WAITS and node.q_tries[i] > 0):
             if is_passed_on(node, i, frame) or is_confirmed(node, i, frame):
-                note_answer(node, place_of(node, params, node.q_link_dst[i]))
+                note_answer(node, params, place_of(node, params, node.q_link_dst[i]))
                 tell_hop(node, i, out)
                 drop(node, params, i)
         elif state == WAITS and node.q_kind[i] == ALARM and is_confirmed(node, i, frame):

@@ -353,7 +353,7 @@ def take_ack(node, params, origin, seq, who, k):
     for i in range(node.places):
         if node.q_state[i] == UNACKED and node.q_seq[i] == seq and node.q_origin[i] == origin:
             if node.q_link_dst[i] == who:
-                note_answer(node, k)
+                note_answer(node, params, k)
                 drop(node, params, i)
                 return i
     return -1

@@ -6,7 +6,7 @@ from typing import Any
 from innervate.networks.mesh.protocol import constants as w
 from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.scenario.plan import CLASSES
-from innervate.networks.mesh.scenario.profiles import REPORT_CDB, Profile
+from innervate.networks.mesh.scenario.profiles import POOR_CDB, REPORT_CDB, Profile
 
 DISCOVERY = {"list": w.LIST, "tree": w.TREE, "each": w.EACH}
 FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "search": w.SEARCH,
@@ -83,6 +83,7 @@ def parameters(
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": min_rssi,
         "faint": min(min_rssi + 1, LOUDEST_DBM) if _takes_best(settings) else FAINTEST_DBM,
+        "poor": round((profile.rssi50_cdb + POOR_CDB) / 100),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
         "standby": 0,

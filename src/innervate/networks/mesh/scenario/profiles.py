@@ -6,6 +6,7 @@ from innervate.networks.mesh.protocol.constants import ACK_BYTES
 
 GOOD_CDB = 300  # a good link is so much above the 50 % point, both ways
 REPORT_CDB = 200  # one that is reported to the gateway, so much
+POOR_CDB = 100  # one that is less above it loses a quarter and more of its frames each way
 SMALL = 15  # up to so many nodes a slow radio can afford twice the rounds
 LARGE = 20  # above so many, it can only afford half the beacons
 CROWD = 32  # up to so many nodes rounds take the time of the profile; beyond, see `crowded`
