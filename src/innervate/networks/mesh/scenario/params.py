@@ -83,7 +83,7 @@ def parameters(
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": min_rssi,
         "faint": min(min_rssi + 1, LOUDEST_DBM) if _takes_best(settings) else FAINTEST_DBM,
-        "poor": round((profile.rssi50_cdb + POOR_CDB) / 100),
+        "poor": _poor_dbm(profile, settings),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
         "standby": 0,
@@ -110,6 +110,13 @@ def _takes_best(settings: Any) -> bool:
     if settings.uplink is None:
         return bool(settings.discovery == "list")
     return bool(settings.uplink == "best")
+
+
+def _poor_dbm(profile: Profile, settings: Any) -> int:
+    """Links that are fainter lose frames in a free channel, too; a flooded graph leaves none."""
+    if settings.failover == "graph":
+        return FAINTEST_DBM
+    return round((profile.rssi50_cdb + POOR_CDB) / 100)
 
 
 def _routing(settings: Any) -> dict[str, int]:
