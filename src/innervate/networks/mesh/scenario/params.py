@@ -70,6 +70,7 @@ def parameters(
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     min_rssi = chosen.value("min_rssi_dbm", min_rssi_dbm)
+    routing = _routing(settings)
     params: dict[str, Any] = {
         "nodes": nodes,
         "row": fields.row_bytes(width),
@@ -83,14 +84,14 @@ def parameters(
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": min_rssi,
         "faint": min(min_rssi + 1, LOUDEST_DBM) if _takes_best(settings) else FAINTEST_DBM,
-        "poor": _poor_dbm(profile, settings),
+        "poor": poor_dbm(profile, routing["mode"]),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
         "standby": 0,
         "jobs": chosen.value("table_window", profile.jobs),
         "job_us": chosen.micros("table_retry_s", profile.job),
         "job_tries": chosen.value("table_tries", profile.job_tries),
-        **_routing(settings),
+        **routing,
         **{name: int(chosen.value(name, getattr(profile, name))) for name in OF_PROFILE},
         **_rounds(profile, chosen),
         **NO_FENCE,
@@ -112,9 +113,9 @@ def _takes_best(settings: Any) -> bool:
     return bool(settings.uplink == "best")
 
 
-def _poor_dbm(profile: Profile, settings: Any) -> int:
+def poor_dbm(profile: Profile, mode: int) -> int:
     """Links that are fainter lose frames in a free channel, too; a flooded graph leaves none."""
-    if settings.failover == "graph":
+    if mode == w.WHOLE_GRAPH:
         return FAINTEST_DBM
     return round((profile.rssi50_cdb + POOR_CDB) / 100)
 
