@@ -135,7 +135,7 @@ def test_faint_links_lose_by_themselves_but_where_the_graph_is_flooded() -> None
     said = 'nodes = 5\nprotocol.failover = "{}"'
     assert [made(said.format(way)).params["poor"] for way in ways] == [-94, -94, -128]
     assert made("nodes = 5\nprotocol.tables = false").params["poor"] == -94
-    slow = 'nodes = 30\nradio.profile = "38k4"\n' + said
+    slow = said.replace("5", "30") + '\nradio.profile = "38k4"'
     assert [made(slow.format(way)).params["poor"] for way in ("search", "auto")] == [-104, -128]
 
 
