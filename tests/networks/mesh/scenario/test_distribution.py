@@ -61,6 +61,14 @@ def test_it_is_said_with_the_reason():
     assert re.search(r"failover search \(auto: tables .* s, the graph holds 85 nodes\)", more)
 
 
+def test_a_graph_that_is_chosen_has_the_parameters_of_one_that_was_asked_for():
+    auto, graph = (
+        plan(loads(FIELD.format(nodes=30, failover=failover))) for failover in ("auto", "graph")
+    )
+    assert auto.params == graph.params
+    assert plan(loads(FIELD.format(nodes=80, failover="auto"))).params["poor"] == -104
+
+
 def test_without_tables_there_is_nothing_to_choose():
     text = FIELD.format(nodes=30, failover="auto")
     with pytest.raises(ScenarioError, match='tables = false and failover = "auto" are two modes'):

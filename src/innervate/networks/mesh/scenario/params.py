@@ -70,7 +70,6 @@ def parameters(
     if min_rssi_dbm is None:
         min_rssi_dbm = round((profile.rssi50_cdb + REPORT_CDB) / 100)
     min_rssi = chosen.value("min_rssi_dbm", min_rssi_dbm)
-    routing = _routing(settings)
     params: dict[str, Any] = {
         "nodes": nodes,
         "row": fields.row_bytes(width),
@@ -84,14 +83,13 @@ def parameters(
         "suspect_us": chosen.micros("suspect_s", profile.suspect),
         "min_rssi": min_rssi,
         "faint": min(min_rssi + 1, LOUDEST_DBM) if _takes_best(settings) else FAINTEST_DBM,
-        "poor": poor_dbm(profile, routing["mode"]),
         "e2e_us": chosen.micros("e2e_s", profile.e2e),
         "monitor": monitor,
         "standby": 0,
         "jobs": chosen.value("table_window", profile.jobs),
         "job_us": chosen.micros("table_retry_s", profile.job),
         "job_tries": chosen.value("table_tries", profile.job_tries),
-        **routing,
+        **_routing(settings, profile),
         **{name: int(chosen.value(name, getattr(profile, name))) for name in OF_PROFILE},
         **_rounds(profile, chosen),
         **NO_FENCE,
@@ -113,18 +111,21 @@ def _takes_best(settings: Any) -> bool:
     return bool(settings.uplink == "best")
 
 
-def poor_dbm(profile: Profile, mode: int) -> int:
-    """Links that are fainter lose frames in a free channel, too; a flooded graph leaves none."""
-    if mode == w.WHOLE_GRAPH:
-        return FAINTEST_DBM
-    return round((profile.rssi50_cdb + POOR_CDB) / 100)
+def of_mode(mode: int, profile: Profile) -> dict[str, int]:
+    """How nodes get their routes, and what goes with it.
+
+    Links below `poor`, dBm, lose frames in a free channel, too; a flooded graph leaves none free.
+    """
+    poor_dbm = round((profile.rssi50_cdb + POOR_CDB) / 100)
+    return {"mode": mode, "poor": FAINTEST_DBM if mode == w.WHOLE_GRAPH else poor_dbm}
 
 
-def _routing(settings: Any) -> dict[str, int]:
-    """What a scenario says of routes, whatever the radio."""
+def _routing(settings: Any, profile: Profile) -> dict[str, int]:
+    """What a scenario says of routes; with "auto" that of tables."""
     graph = settings.failover == "graph"
+    mode = w.WHOLE_GRAPH if graph else w.TABLES if settings.tables else w.TABLE_FREE
     return {
-        "mode": w.WHOLE_GRAPH if graph else w.TABLES if settings.tables else w.TABLE_FREE,
+        **of_mode(mode, profile),
         "discovery": DISCOVERY[settings.discovery],
         "failover": FAILOVER[settings.failover],
         "avoid_origin": int(settings.avoid == "origin"),

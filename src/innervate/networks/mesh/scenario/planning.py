@@ -14,7 +14,7 @@ from innervate.networks.mesh.scenario.access import access, suited
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.network import Network, linked, placed
 from innervate.networks.mesh.scenario.nodes import Nodes, nodes_of
-from innervate.networks.mesh.scenario.params import parameters, poor_dbm
+from innervate.networks.mesh.scenario.params import of_mode, parameters
 from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.networks.mesh.scenario.profiles import Profile, profile_of
 from innervate.topology.placement import neighbours
@@ -44,7 +44,7 @@ def plan(scenario: Any) -> MeshPlan:
     if model.protocol.failover == "auto":
         near = neighbours(count, network.good)
         mode = distribution.less_of_both(network.radio, params, near, gateway)
-        params |= {"mode": mode, "poor": poor_dbm(profile, mode)}
+        params |= of_mode(mode, profile)
     walks = mesh_robots.walks(model, nodes, network.points, duration_us)
     if fence is not None:
         visited = [(x, y) for walk in walks for _, x, y in walk.points]
