@@ -1,10 +1,12 @@
 """An authority: which numbers it gives, which serials, and whom it has put out; by its files."""
 
+import errno
 import os
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from innervate.live import enrolment
 from innervate.live import identity as identities
 from innervate.live.enrolment import LIST, NUMBER_MAX, Authority, read_list
 from innervate.live.errors import LiveError
@@ -59,6 +61,18 @@ def test_those_who_enrol_at_the_same_time_wait_for_each_other(folder):
     assert sorted(Authority(folder).issued) == [
         (number, identities.load(path, number).serial) for number, path in enumerate(made)
     ]
+
+
+@pytest.mark.parametrize("why", [errno.EBADF, errno.ENOLCK, errno.EOPNOTSUPP])
+def test_where_a_folder_cannot_be_locked_nodes_are_enrolled_all_the_same(folder, monkeypatch, why):
+    """As on NFS, which locks no folders."""
+
+    def fails(*_):
+        raise OSError(why, os.strerror(why))
+
+    monkeypatch.setattr(enrolment.fcntl, "flock", fails)
+    Authority(folder).enrol(1)
+    assert Authority(folder).revoke([1]).serials == {1}
 
 
 def test_an_authority_s_file_is_on_the_disk_before_it_replaces_the_old_one(folder, monkeypatch):

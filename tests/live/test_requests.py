@@ -61,6 +61,31 @@ def test_what_was_asked_is_done_though_its_caller_left(tmp_path, count, size, re
     assert sorted(done) == list(range(-(not reads), count))
 
 
+def test_of_who_reads_no_answers_and_leaves_all_that_came_is_done(tmp_path, monkeypatch):
+    """Also what the node had not read yet when an answer could not be written."""
+    done, where, count = [], tmp_path / "s", 600
+    monkeypatch.setattr(status, "BOUNDS", status.BOUNDS._replace(limit=1_000))
+
+    async def handle(request, writer):
+        done.append(request["n"])
+        await writer.line({"much": "x" * 200_000})
+
+    async def main():
+        async with serving(where, handle), asyncio.timeout(10):
+            _, writer = await asyncio.open_unix_connection(where)
+            writer.transport.set_write_buffer_limits(0)
+            writer.write(b"".join(line(n=n, payload="x" * 500) for n in range(count)))
+            await writer.drain()
+            await asyncio.sleep(0.2)
+            assert len(done) < 10  # its own answers are in its way
+            writer.close()
+            while len(done) < count:
+                await asyncio.sleep(0.01)
+
+    asyncio.run(main())
+    assert done == list(range(count))
+
+
 def test_who_asks_for_much_at_once_leaves_others_their_turn(tmp_path):
     turns, left, where = [0], [], tmp_path / "s"
 

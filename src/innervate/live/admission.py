@@ -11,6 +11,7 @@ BACKLOG = 100
 REST_S = 0.05  # nobody is let in for so long once a burst was; frames have their turn
 SPENT_S = 1.0  # the same when files have run out
 CLOSE_S = 1.0  # a caller that does not read what it asked for has so long
+LEFT_MAX = 1 << 20  # bytes: no socket of ours has more that were not read
 
 # Serves one caller, and does not raise.
 Serve = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Awaitable[None]]
@@ -35,8 +36,15 @@ class Bounds(NamedTuple):
 class Heard(asyncio.StreamReader):
     """What a caller sent can be read to its end, also when answers do not reach them any more."""
 
+    def __init__(self, caller: socket.socket, limit: int, loop: asyncio.AbstractEventLoop) -> None:
+        super().__init__(limit, loop)
+        self._caller = caller
+
     def set_exception(self, exc: Exception) -> None:
-        """The connection broke: nothing more comes."""
+        """The connection broke: what the system still has is the last that comes."""
+        with suppress(OSError):
+            if left := self._caller.recv(LEFT_MAX):
+                self.feed_data(left)
         self.feed_eof()
 
 
@@ -118,7 +126,7 @@ class BoundedListener:
         self._rest = self._loop.call_later(seconds, again, self._sock.fileno(), self._knock)
 
     async def _let_in(self, caller: socket.socket) -> None:
-        reader = Heard(self._bounds.limit, self._loop)
+        reader = Heard(caller, self._bounds.limit, self._loop)
         protocol = asyncio.StreamReaderProtocol(reader, loop=self._loop)
         try:
             transport, _ = await self._loop.connect_accepted_socket(lambda: protocol, caller)

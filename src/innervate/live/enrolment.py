@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -146,7 +146,8 @@ class Authority:
             self.folder.mkdir(mode=private.FOLDER, parents=True, exist_ok=True)
             if fcntl is not None:
                 held = os.open(self.folder, os.O_RDONLY)
-                fcntl.flock(held, fcntl.LOCK_EX)
+                with suppress(OSError):  # not every file system locks folders: NFS does not
+                    fcntl.flock(held, fcntl.LOCK_EX)
             if self._path.exists() and self._path.read_bytes() != self._kept.encode():
                 self._read()
             yield

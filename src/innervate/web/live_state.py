@@ -73,7 +73,10 @@ class State:
         return np.array([any(place == at for at, _ in paths) for place in self.map.places])
 
     def paths_beyond(self) -> set[tuple[Place, int]]:
-        """Paths on which somebody is heard, by cables to nobody who runs here."""
+        """Paths on which somebody is heard, by cables to nobody who runs here.
+
+        Where no path has a name that its far end knows, too, nobody's cables are known.
+        """
         ends = ((link.a, link.paths_a, link.b, link.paths_b) for link in self.map.links)
         inside = {(at, port) for a, paths_a, b, paths_b in ends
                   for at, paths in ((a, paths_a), (b, paths_b)) for port in paths}  # fmt: skip
@@ -81,7 +84,10 @@ class State:
             (self.map.place(i, int(path["port"])), int(path["port"]))
             for i, one in self.told.items()
             for path in one.get("paths", ())
-            if path["up"] and path.get("heard_s") is not None and not path.get("broken")
+            if path["up"]
+            and path.get("heard_s") is not None
+            and not path.get("broken")
+            and (path.get("own") or self.map.links)
         }
         return heard - inside
 

@@ -5,6 +5,8 @@ import asyncio
 import pytest
 
 from innervate.live import local
+from innervate.live.enrolment import Authority
+from innervate.live.identity import load
 from innervate.live.keys import Sealer, ring_of
 from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
@@ -12,18 +14,26 @@ from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from tests.live.net import until
-from tests.live.sealed_by_the_page import SealedEnd
+from tests.live.sealed_by_the_page import Identity, SealedEnd
 from tests.networks.mesh.live.by_the_page import ASKS_END_TO_END, DATA, END_TO_END_ACK, Stranger
 
 KEY, USE = bytes(range(32)), 3
 
 
-@pytest.mark.parametrize("sealed", [False, True], ids=["clear", "sealed"])
-def test_a_node_written_from_the_page_alone_relays_sends_and_receives(sealed):
+@pytest.mark.parametrize("sealed", ["", "key", "identities"])
+def test_a_node_written_from_the_page_alone_relays_sends_and_receives(sealed, tmp_path):
     """0 - 1 - stranger - 3: all that 3 knows of the others came by the stranger."""
+    authority, own, psk, key = Authority(tmp_path), None, KEY, USE
+    if sealed == "identities":
+        own = Identity(authority.enrol(2).read_text())
+        psk, key = own.shared, 0
 
     def sealer(number):
-        return Sealer(ring_of("mesh", {USE: KEY}, USE), number, State(None)) if sealed else None
+        if sealed == "identities":
+            ring = ring_of("mesh", {}, 0, load(authority.enrol(number), number))
+        else:
+            ring = ring_of("mesh", {USE: KEY}, USE)
+        return Sealer(ring, number, State(None)) if sealed else None
 
     async def main():
         params = mesh_parameters(4, {})
@@ -36,7 +46,7 @@ def test_a_node_written_from_the_page_alone_relays_sends_and_receives(sealed):
         }
         stranger = Stranger(2, [])
         for link in (cables[1][1], cables[2][0]):
-            end = SealedEnd(link.path, 2, KEY, USE, stranger.take) if sealed else link.path
+            end = SealedEnd(link.path, 2, psk, key, stranger.take, own) if sealed else link.path
             stranger.ends.append(end)
             await link.open(end.came if sealed else stranger.take)
         heard = {i: [] for i in nodes}

@@ -5,8 +5,10 @@ import pytest
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.live.machine import Machine, machine, on
 from innervate.live.receipts import DELIVERED
+from innervate.networks.mesh.live import node as mesh_node
 from innervate.networks.mesh.live.chains import drawn_number
 from innervate.networks.mesh.live.order import QUIET_US, Order
+from innervate.networks.mesh.protocol.constants import TABLES, WHOLE_GRAPH
 from innervate.networks.mesh.protocol.duplicates import ANEW
 from tests.live import time_by_hand
 from tests.live.net import Mesh
@@ -102,3 +104,36 @@ def test_a_sender_that_lost_its_numbers_is_heard_all_the_same():
     heard, states = time_by_hand.run(main())
     assert states == [DELIVERED] * 7
     assert heard == [b"a", b"b", b"c", b"f", b"g", b"h", b"\0"]
+
+
+@pytest.mark.parametrize("mode", [TABLES, WHOLE_GRAPH])
+@pytest.mark.parametrize("in_order", [False, True])
+@pytest.mark.parametrize("behind", [30, 100, 300])
+def test_what_a_sender_says_that_drew_its_numbers_near_its_old_ones_is_delivered_only_if_handed_up(
+    behind, in_order, mode, monkeypatch
+):
+    """One in 200 lives that lost their numbers: what was not heard must not count as if it was."""
+
+    async def main():
+        async with Mesh(2, [(0, 1)], **PROFILE, mode=mode) as mesh:
+            heard, delivered = [], []
+            mesh.nodes[0].receive_messages(lambda _, data: heard.append(data), in_order=in_order)
+            sender = mesh.nodes[1]
+            for k in range(60):
+                receipt = sender.send_message(0, b"old %d" % k, in_order=in_order)
+                assert await receipt.wait() == DELIVERED
+            first = (receipt.seq - behind) & MASK16
+            await sender.stop()
+            sender.state.numbers = -1
+            monkeypatch.setattr(mesh_node, "drawn_number", lambda: (7, first))
+            await sender.start()
+            await until_simulated(lambda: sender.stack.node.known)
+            for k in range(60):
+                text = b"new %d" % k
+                if await sender.send_message(0, text, in_order=in_order).wait() == DELIVERED:
+                    delivered.append(text)
+            return heard[60:], delivered
+
+    heard, delivered = time_by_hand.run(main())
+    assert heard == delivered
+    assert delivered[-20:] == [b"new %d" % k for k in range(40, 60)]

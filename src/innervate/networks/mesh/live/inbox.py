@@ -12,7 +12,7 @@ from innervate.networks.mesh.live.order import BEFORE_BYTES, BOOTS, NEW_AHEAD, M
 from innervate.networks.mesh.live.pieces import NEW, NO_TURN, REFUSAL, Piece, Pieces, read_piece
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
 
-HAD = 320  # messages of a sender that are known again, as many as the router's window has
+HAD = 320  # packets of a sender that are known again, as many as the router's window has
 HAD_US = 30_000_000  # a packet is tried for 26 s at most
 
 
@@ -43,7 +43,7 @@ class Inbox:
         """A message, or a piece of one, came; the record is used again."""
         body = bytes(frame.body[: frame.length])
         before = boot = piece = None
-        if frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES:
+        if _is_headed(frame, body):
             piece = read_piece(frame.seq, body)
             before = int.from_bytes(body[:BEFORE_BYTES], "big")
             behind = (frame.seq + NEW_AHEAD - before) & MASK16
@@ -51,15 +51,22 @@ class Inbox:
             if boot is not None or later(before, frame.seq):  # or of a last piece, which expired
                 before = frame.seq
             body = body[BEFORE_BYTES:]
+        is_copy = self._is_copy(frame.origin, frame.seq, body)
         if piece is None:
-            is_again = self._is_copy(frame.origin, frame.seq, body) or is_again
+            is_again = is_copy or is_again
         if not is_again:
             self.outcomes["messages received" if piece is None else "pieces received"] += 1
         message = Message(frame.origin, frame.seq, before, body, boot)
         self._came.append((message, piece, is_again))
 
+    def is_another(self, frame: Any, body: bytes) -> bool:
+        """True if not this packet came under its number: its sender has begun anew near there."""
+        known = self._had.get(frame.origin, {}).get(frame.seq)
+        begins = BEFORE_BYTES if _is_headed(frame, body) else 0
+        return known is not None and known[0] != hash(body[begins:])
+
     def _is_copy(self, sender: int, seq: int, body: bytes) -> bool:
-        """True if this message came before, and the router does not know.
+        """True if this packet came before, and the router does not know.
 
         Its window begins anew with the first packet of a sender that was switched on. If that was
         under way while its sender was switched off and on again, what came of the new life since
@@ -146,3 +153,8 @@ class Inbox:
         self._sweep = None
         self.pieces.forget(clock_us())
         self._arm()
+
+
+def _is_headed(frame: Any, body: bytes) -> bool:
+    """True if in front of what a packet says is the number of the one before it, or of a piece."""
+    return bool(frame.flags & ORDERED and frame.dest != ALL and len(body) >= BEFORE_BYTES)

@@ -53,7 +53,7 @@ class MeshNode(LiveNode):
         self.arrived_by: dict[int, list[int]] = {}  # the way of each sender's newest message
         self.outgoing = Outgoing(stack, self._hand_down, self.inbox.put_own, self.outcomes)
         self.inbox.refuse, self.inbox.refused = self._refuse, self.outgoing.refused
-        self.arrivals = self.inbox.arrivals
+        self.arrivals, stack.is_another = self.inbox.arrivals, self.inbox.is_another
         self._ending = stack.item()
         self._owed: list[tuple[int, int]] = []  # whose packets are to be acknowledged end to end
         self.alarms = Alarms()

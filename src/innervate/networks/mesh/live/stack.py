@@ -2,11 +2,12 @@
 
 import functools
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from types import SimpleNamespace
 from typing import Any
 
 from innervate.dialect import plain
+from innervate.dialect.arith import MASK16
 from innervate.dialect.outbox import SEND
 from innervate.dialect.rng import seeded
 from innervate.live.stack import filled
@@ -14,7 +15,8 @@ from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
-from innervate.networks.mesh.protocol.frames import is_sound
+from innervate.networks.mesh.protocol.duplicates import ANEW
+from innervate.networks.mesh.protocol.frames import inner, is_sound
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
     SUSPECT,
@@ -80,6 +82,8 @@ class MeshStack:
         self.acked: Counter[int] = Counter()
         # Who was asked to acknowledge which packet (origin, number): how often it has not.
         self._unanswered: dict[tuple[int, int, int], int] = {}
+        # Is asked if data with this payload is another than came under its number.
+        self.is_another: Callable[[Any, bytes], bool] = lambda *_: False
 
     def on_start(self, now: int, cause: int) -> None:
         """Switch on; after a restart with the epoch that was followed before.
@@ -110,12 +114,32 @@ class MeshStack:
     def on_frame(self, now: int, port: int) -> None:
         """The frame in the inbox was received, and there is no objection to it."""
         self._place(self.inbox.link_src, port)
+        self._heed_new_life(self.inbox)
         if self.inbox.kind != const.ACK:  # acks tell how loud the frame was that they are for
             self.inbox.rssi = RSSI
         elif self.inbox.link_dst == self.node.number:
             for origin, seq in wire.acked(self.inbox):
                 self._note_answer((self.inbox.link_src, origin, seq))
         self.do.on_frame(self.node, self.gate, self.params, now, 0, self.inbox, self.out)
+
+    def _heed_new_life(self, frame: Any) -> None:
+        """Begin the window of an origin anew that has begun anew in it, having lost its numbers.
+
+        The router would take what it says for what it said, and acknowledge it unheard.
+        """
+        node, origin = self.node, frame.origin
+        if frame.kind == const.DATA and frame.dest in (node.number, const.ALL):
+            behind = (node.newest[origin] - frame.seq) & MASK16
+            if behind < ANEW and self.is_another(frame, self._said(frame)):
+                node.idle[origin] = 0
+
+    def _said(self, frame: Any) -> bytes:
+        """The payload without what forwarding has put around it."""
+        body = bytes(frame.body[: frame.length])
+        if self.params.mode == const.TABLES:
+            return body
+        body = body[inner(frame) :]
+        return body[: -1 - body[-1]] if frame.flags & const.DETOURED and body else body
 
     def _note_answer(self, what: tuple[int, int, int]) -> None:
         if self._unanswered.get(what):
