@@ -81,12 +81,25 @@ def test_load_is_a_share_of_what_fills_a_link():
     assert state_of(three(c0={"command": 0})).more()["told"][0] == 0
 
 
+def roles(told, *names):
+    return [one.get("role") for one in SkinLiveView().unknown(told, [*names])]
+
+
 def test_of_those_who_do_not_answer_one_is_the_pc_where_no_other_is():
-    view, cells = SkinLiveView(), [one for one in three().values() if one["role"] == "cell"]
-    assert [one.get("role") for one in view.unknown(cells, 2)] == ["sink", None]
-    assert [one.get("role") for one in view.unknown(list(three().values()), 2)] != ["sink", None]
-    assert all(one.get("role") != "sink" for one in view.unknown(list(three().values()), 1))
-    assert view.unknown(cells, 0) == []
+    cells = [cell(0, None, udp((1, 2), (3, 4))), cell(1, None, udp((4, 3)))]
+    assert roles(cells, "a", "b") == ["sink", None]
+    assert roles(cells, "a", "pc") == [None, "sink"]
+    assert roles(list(three().values()), "a", "pc") == [None, None]
+    assert roles(cells) == []
+
+
+def test_who_died_beside_cells_whose_pc_runs_elsewhere_is_not_the_pc():
+    cells = [cell(0, None, udp((1, 2), (3, 4))), cell(1, None, udp((4, 3), (5, 6)))]
+    cells[1]["paths"][1]["heard_s"] = 0.01  # another cell, on another machine
+    assert roles(cells, "c2") == [None]
+    away = [cell(0, 0, udp((1, 2)))]  # its way leads there, too
+    assert roles(away, "c2") == [None]
+    assert roles(away, "pc") == ["sink"]
 
 
 class Asked:

@@ -15,6 +15,7 @@ from innervate.web.live_state import State
 from innervate.web.live_view import Ask, LiveView
 from innervate.web.messages import Give, number
 
+PC = "pc"  # what `live up` calls it
 LOAD_FULL = 66  # cells whose samples fill a link, at 250 Hz each
 
 
@@ -145,11 +146,20 @@ class SkinLiveView(LiveView):
             labels={name: graph.label(i) for i, name in enumerate(names)},
         )
 
-    def unknown(self, told: list[Status], count: int) -> list[Status]:
-        """If the PC is not among those that answer, it is among those that do not."""
-        found = super().unknown(told, count)
-        if count and all(one.get("role") != "sink" for one in told):
-            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": "", "counters": {}}]}
+    def unknown(self, told: list[Status], names: list[str]) -> list[Status]:
+        """The PC is among those that do not answer if it is called so, or runs nowhere else.
+
+        It does run elsewhere while a cell has a way, or hears somebody who is none of these.
+        """
+        found = super().unknown(told, names)
+        if not names or any(one.get("role") == "sink" for one in told):
+            return found
+        cells = dict(enumerate(told))
+        state = self.state(self.map(cells), cells)
+        away = state.hears_beyond().any() or any(one.get("parent") is not None for one in told)
+        if PC in names or not away:
+            at = names.index(PC) if PC in names else 0
+            found[at] |= {"role": "sink", "paths": [{"port": 0, "name": "", "counters": {}}]}
         return found
 
     def can(self, last: Mapping[int, Status]) -> tuple[str, ...]:
