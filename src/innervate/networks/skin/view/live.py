@@ -48,7 +48,8 @@ class SkinState(State):
         if not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
         joined = reach(live, roots | self.hears_beyond()) if where.links else ~none
-        self._facts = self._skin_facts(lost, joined)
+        here = reach(live, roots) if where.links else ~self.hears_beyond()
+        self._facts = self._skin_facts(lost, joined, here)
         left = (self.node_up == 1) & joined & ~self._is_port()
         found = lost, lost & joined, left
         without, astray, could = (int(np.count_nonzero(who)) for who in found)
@@ -58,8 +59,8 @@ class SkinState(State):
         """The headline by the ways and loads that `look` found."""
         return skin_headline(self._facts, self.map.names.__getitem__)
 
-    def _skin_facts(self, lost: Any, joined: Any) -> SkinFacts:
-        """What cells say of their ways; `joined`: cables join them with the PC."""
+    def _skin_facts(self, lost: Any, joined: Any, here: Any) -> SkinFacts:
+        """What cells say of their ways; `joined`: cables can join them with the PC, `here`: do."""
         places = self.map.places
         is_cell = np.array([place.port < 0 for place in places], np.bool_)
         told = np.array([place.node in self.told for place in places], np.bool_)
@@ -78,6 +79,8 @@ class SkinState(State):
             pc_off=bool(len(ports)) and not ports.any(),
             beyond=of(self._beyond),
             served=sum(sum(one.get("cells", ())) for one in self.told.values()),
+            of_cells=next((n for one in self.told.values() if (n := one.get("of_cells"))), None),
+            afar=of(told & lost & ~apart & ~here),
         )
 
     def _ports(self) -> Any:
