@@ -272,6 +272,16 @@ def test_who_runs_here_and_is_silent_is_not_elsewhere():
     )
 
 
+def test_a_gateway_alone_on_its_machine_is_well_if_it_hears_somebody():
+    paths = [{"port": 0, "up": True}]
+    told = {0: node(0, role="gateway", neighbours=hears(2), paths=paths)}
+    assert judged(told)[0] == "ok"
+    told[0]["neighbours"] = []
+    assert judged(told) == ("no data", "The only node leads, and hears nobody.")
+    told[0]["paths"] = []
+    assert judged(told) == ("ok", "The only node leads.")
+
+
 def test_who_died_here_with_a_number_that_nobody_knows_takes_nobodys_gateway_away():
     """On a robot two nodes ran; the gateway runs elsewhere, and is heard."""
     told = {0: node(1, neighbours=hears(0), onward=[0]), 1: node(3)}

@@ -24,7 +24,9 @@ def elsewhere(said: Iterable[Status], here: Collection[int], all_known: bool) ->
     led = {one["gateway"] for one in said if one.get("gateway") is not None} - set(here)
     heard = {one["gateway"] for one in said if not one.get("gateway_silent")} & led
     nodes = tuple(sorted(near - set(here) | led))
-    return Elsewhere(nodes, bool(heard), bool(led) and not heard, all_known)
+    linked = any(one.get("paths") for one in said)
+    silent = bool(led) and not heard
+    return Elsewhere(nodes, bool(heard), silent, all_known, bool(near) or not linked)
 
 
 def hand_on(known: Choices, links: Flags, leads: Flags) -> None:
