@@ -87,18 +87,18 @@ def roles(told, *names):
 
 def test_of_those_who_do_not_answer_one_is_the_pc_where_no_other_is():
     cells = [cell(0, None, udp((1, 2), (3, 4))), cell(1, None, udp((4, 3)))]
-    assert roles(cells, "a", "b") == ["sink", None]
-    assert roles(cells, "a", "pc") == [None, "sink"]
-    assert roles(list(three().values()), "a", "pc") == [None, None]
+    assert roles(cells, "a", "b") == ["sink", "cell"]
+    assert roles(cells, "a", "pc") == ["cell", "sink"]
+    assert roles(list(three().values()), "a", "pc") == ["cell", "cell"]
     assert roles(cells) == []
 
 
 def test_who_died_beside_cells_whose_pc_runs_elsewhere_is_not_the_pc():
     cells = [cell(0, None, udp((1, 2), (3, 4))), cell(1, None, udp((4, 3), (5, 6)))]
     cells[1]["paths"][1]["heard_s"] = 0.01  # another cell, on another machine
-    assert roles(cells, "c2") == [None]
+    assert roles(cells, "c2") == ["cell"]
     away = [cell(0, 0, udp((1, 2)))]  # its way leads there, too
-    assert roles(away, "c2") == [None]
+    assert roles(away, "c2") == ["cell"]
     assert roles(away, "pc") == ["sink"]
 
 

@@ -154,7 +154,7 @@ class SkinLiveView(LiveView):
 
         It does run elsewhere while a cell has a way, or hears somebody who is none of these.
         """
-        found = super().unknown(told, names)
+        found = [one | {"role": "cell"} for one in super().unknown(told, names)]
         if not names or any(one.get("role") == "sink" for one in told):
             return found
         cells = dict(enumerate(told))
