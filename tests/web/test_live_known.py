@@ -8,7 +8,9 @@ from pathlib import Path
 
 from innervate.live import status
 from innervate.web.live import Live, find
+from innervate.web.live_known import silent
 from innervate.web.live_poll import Poller
+from innervate.web.live_view import LiveView
 from innervate.web.serve import serving
 from tests.live.net import Mesh
 from tests.web.page import Page
@@ -125,6 +127,14 @@ def test_a_pc_that_ended_has_the_ports_of_its_file(tmp_path, monkeypatch):
 def test_without_a_file_a_socket_that_nobody_serves_is_a_node_too(tmp_path, monkeypatch):
     told = {0: cell(0, [(2, 1)])}
     monkeypatch.setattr(Poller, "ask_all", lambda self, request: dict(told))
-    source = Live([tmp_path / "c0.sock", tmp_path / "c1.sock"])
-    assert source.fields()["node_up"].tolist() == [1, 0]
-    assert source.fields()["headline"]["level"] == "down"  # no PC answers
+    for name, level in ("c1", "degraded"), ("pc", "down"):  # a cell that has a way has it by a PC
+        source = Live([tmp_path / "c0.sock", tmp_path / f"{name}.sock"])
+        assert source.fields()["node_up"].tolist() == [1, 0]
+        assert source.fields()["headline"]["level"] == level
+
+
+def test_who_is_called_as_a_node_without_a_name_has_the_number_of_that_name(tmp_path):
+    heard = [{"kind": "mesh", "number": 7}]
+    paths = [tmp_path / f"{name}.sock" for name in ("n3", "n07", "n7", "arm")]
+    found = silent(LiveView(), heard, paths)
+    assert [found[path].get("number") for path in paths] == [3, None, None, None]

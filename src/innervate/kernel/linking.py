@@ -21,10 +21,11 @@ This reaches into Numba's insides: where they have changed, everything is compil
 
 import gc
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cache
 from typing import Any
 
+import numba
 from llvmlite.binding import Linkage
 from numba import _dynfunc
 from numba.core.codegen import CPUCodeLibrary
@@ -33,8 +34,7 @@ from numba.core.cpu import CPUContext
 from numba.core.registry import cpu_target
 from numba.core.runtime.context import NRTContext
 
-from innervate.kernel.spared import spared
-
+KNOWN = 0, 68  # the newest Numba whose insides `spared` knows
 NEEDED = ("_linking_libraries", "_final_module", "_finalized", "_reload_init")
 
 NOT_CALLED = "linked into the loop that calls it; not to be called from Python"
@@ -61,12 +61,21 @@ def as_one(name: str) -> Iterator[None]:
         collects = gc.isenabled()
         gc.disable()  # a tenth of the time went into looking for what is in use to the end
         try:
-            with spared():
+            with _spared():
                 yield
         finally:
             _top.pop()
             if collects:
                 gc.enable()
+
+
+def _spared() -> AbstractContextManager[None]:
+    """What is left out of compiling; nothing, with a Numba whose insides may be others."""
+    if numba.version_info.short > KNOWN:
+        return nullcontext()
+    from innervate.kernel.spared import spared
+
+    return spared()
 
 
 def _finalize(library: Any) -> None:

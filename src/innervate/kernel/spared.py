@@ -8,7 +8,8 @@ are alive where, of which it asks after three; and it goes through all kinds of 
 can add for every sum of two integers. Without it a loop takes three tenths less processor time, and
 does the same.
 
-This reaches into Numba's insides: what is not there any more stays as Numba does it.
+This reaches into Numba's insides, and only `linking` loads it, where it knows that they are these:
+what a Numba of today does not have stays as it is.
 """
 
 from collections.abc import Iterator

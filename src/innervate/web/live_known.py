@@ -5,7 +5,8 @@ socket, one that ended does not; its file says where it would be, what it is and
 to, so that it has its place on the map.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from innervate.live import status
@@ -50,8 +51,19 @@ def silent(view: LiveView, heard: list[Status], sockets: list[Path]) -> dict[Pat
     found = {at: unheard(known[at]) for at in sockets
              if at in known and known[at].table.kind == kind}  # fmt: skip
     others = [at for at in sockets if at not in known]
-    made = view.unknown([*heard, *found.values()], len(others))
-    return found | {at: {**one, "name": at.stem} for at, one in zip(others, made, strict=True)}
+    known_ones = [*heard, *found.values()]
+    made = view.unknown(known_ones, [at.stem for at in others])
+    taken = {one.get("number") for one in known_ones}
+    return found | {
+        at: {**_numbered(at.stem, taken), **one, "name": at.stem}
+        for at, one in zip(others, made, strict=True)
+    }
+
+
+def _numbered(name: str, taken: Collection[int | None]) -> Status:
+    """The number of a node that is called as one whose file gives it no name."""
+    found = re.fullmatch(r"n(0|[1-9]\d{0,8})", name)
+    return {"number": int(found[1])} if found and int(found[1]) not in taken else {}
 
 
 def unheard(node: Loaded) -> Status:

@@ -57,10 +57,10 @@ class LiveView:
         """What nodes tell of that is not their own state, for the log: (text, level), once each."""
         return []
 
-    def unknown(self, told: list[Status], count: int) -> list[Status]:
-        """What stands for nodes that have not answered, beside those that have."""
+    def unknown(self, told: list[Status], names: list[str]) -> list[Status]:
+        """What stands for nodes of these names that have not answered, beside those that have."""
         one: Status = {"kind": told[0]["kind"], "neighbours": [], "paths": [], "counters": {}}
-        return [dict(one) for _ in range(count)]
+        return [dict(one) for _ in names]
 
     def note(self, state: State, now_us: int, told: Mapping[int, Status]) -> None:
         """A new state: what can only be told over some time is worked out."""

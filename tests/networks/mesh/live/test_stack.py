@@ -6,8 +6,9 @@ import pytest
 
 from innervate.dialect.outbox import SEND, put
 from innervate.networks.mesh.live.parameters import mesh_parameters
-from innervate.networks.mesh.live.stack import ASKED, MeshStack
+from innervate.networks.mesh.live.stack import ASKED, RSSI, MeshStack
 from innervate.networks.mesh.protocol.constants import ACK, ALL, DATA, E2E_ACK
+from innervate.networks.mesh.protocol.neighbours import hear, is_suspect, suspect, sweep
 from tests.live.net import Mesh
 
 
@@ -66,3 +67,32 @@ def test_an_ack_leaves_behind_what_goes_to_others_and_before_what_goes_its_own_w
         frame = stack.out.frame[put(stack.out, SEND, 0, 0, 0)]
         frame.kind, frame.link_dst = kind, whom
     assert list(stack.behind(len(sent))) == behind
+
+
+def said_suspect(stack):
+    return [one["node"] for one in stack.status(0)["neighbours"] if one["suspect"]]
+
+
+def test_who_did_not_acknowledge_is_said_not_to_answer_until_it_is_heard_again():
+    """The suspicion ends before: one transmission is made, which nobody answers either."""
+    stack = stack_of()
+    stack.on_start(0, 0)
+    hear(stack.node, stack.params, 1, RSSI)
+    suspect(stack.node, stack.params, 0, 1, 0, stack.out)
+    for _ in range(2 * stack.params.suspect_us // stack.params.tick_us):
+        stack.node.ticks += 1
+        sweep(stack.node, stack.params)
+    assert not is_suspect(stack.node, stack.params, 1)
+    assert said_suspect(stack) == [1]
+    hear(stack.node, stack.params, 1, RSSI)
+    assert said_suspect(stack) == []
+
+
+def test_a_gateway_of_which_no_request_came_for_twice_a_standbys_patience_is_silent():
+    stack = stack_of()
+    stack.node.leading, stack.node.quiet = 0, 2 * stack.params.dead
+    assert not stack.status(0)["gateway_silent"]
+    stack.node.quiet += 1
+    assert stack.status(0)["gateway_silent"]
+    stack.node.leading = 1
+    assert not stack.status(0)["gateway_silent"]

@@ -265,7 +265,46 @@ def test_who_runs_here_and_is_silent_is_not_elsewhere():
     assert text.startswith("1 of 4 nodes is cut off from the gateway")
     assert "run here" not in text
     del told[3]["number"]  # of a dead node whose number nobody knows the socket is left
-    assert "run here" not in judged(told, lost=[3])[1]
+    assert judged(told, lost=[3]) == (
+        "degraded",
+        "1 of 4 nodes is silent; node 2 does not run here, as far as is known, and what is said "
+        "of it is believed.",
+    )
+
+
+def test_a_gateway_alone_on_its_machine_is_well_if_it_hears_somebody():
+    paths = [{"port": 0, "up": True}]
+    told = {0: node(0, role="gateway", neighbours=hears(2), paths=paths)}
+    assert judged(told)[0] == "ok"
+    told[0]["neighbours"] = []
+    assert judged(told) == ("no data", "The only node leads, and hears nobody.")
+    told[0]["paths"] = []
+    assert judged(told) == ("ok", "The only node leads.")
+
+
+def test_who_died_here_with_a_number_that_nobody_knows_takes_nobodys_gateway_away():
+    """On a robot two nodes ran; the gateway runs elsewhere, and is heard."""
+    told = {0: node(1, neighbours=hears(0), onward=[0]), 1: node(3)}
+    del told[1]["number"]
+    assert judged(told, lost=[1]) == (
+        "degraded",
+        "1 of 2 nodes is silent; node 0 does not run here, as far as is known, and what is said "
+        "of it is believed.",
+    )
+
+
+def test_a_gateway_elsewhere_from_which_nothing_comes_leads_nobody_though_others_are_heard():
+    """It died, and messages to it go on from node to node: all of these hear each other."""
+    told = {0: node(1, neighbours=hears(2), onward=[0])}
+    assert judged(told)[0] == "ok"  # who is heard is believed to find it
+    told[0]["gateway_silent"] = True
+    assert judged(told) == (
+        "down",
+        "Nothing comes from the gateway any more, and what is sent to it does not get through; "
+        "nodes 0, 2 do not run here, and what is said of them is believed.",
+    )
+    told[1] = node(3, neighbours=hears(0), onward=[0])
+    assert judged(told)[0] == "ok"  # another one here heard it just now
 
 
 def test_a_gateway_elsewhere_beside_one_here_makes_two_parts():

@@ -81,12 +81,25 @@ def test_load_is_a_share_of_what_fills_a_link():
     assert state_of(three(c0={"command": 0})).more()["told"][0] == 0
 
 
+def roles(told, *names):
+    return [one.get("role") for one in SkinLiveView().unknown(told, [*names])]
+
+
 def test_of_those_who_do_not_answer_one_is_the_pc_where_no_other_is():
-    view, cells = SkinLiveView(), [one for one in three().values() if one["role"] == "cell"]
-    assert [one.get("role") for one in view.unknown(cells, 2)] == ["sink", None]
-    assert [one.get("role") for one in view.unknown(list(three().values()), 2)] != ["sink", None]
-    assert all(one.get("role") != "sink" for one in view.unknown(list(three().values()), 1))
-    assert view.unknown(cells, 0) == []
+    cells = [cell(0, None, udp((1, 2), (3, 4))), cell(1, None, udp((4, 3)))]
+    assert roles(cells, "a", "b") == ["sink", "cell"]
+    assert roles(cells, "a", "pc") == ["cell", "sink"]
+    assert roles(list(three().values()), "a", "pc") == ["cell", "cell"]
+    assert roles(cells) == []
+
+
+def test_who_died_beside_cells_whose_pc_runs_elsewhere_is_not_the_pc():
+    cells = [cell(0, None, udp((1, 2), (3, 4))), cell(1, None, udp((4, 3), (5, 6)))]
+    cells[1]["paths"][1]["heard_s"] = 0.01  # another cell, on another machine
+    assert roles(cells, "c2") == ["cell"]
+    away = [cell(0, 0, udp((1, 2)))]  # its way leads there, too
+    assert roles(away, "c2") == ["cell"]
+    assert roles(away, "pc") == ["sink"]
 
 
 class Asked:
@@ -165,6 +178,9 @@ def test_cells_whose_pc_runs_elsewhere_have_their_way():
     told[0]["parent"] = None
     state = state_of(told)
     assert facts(state) == ([], [], [0, 1], False)
+    assert state.headline().text == (
+        "Both cells have no way to the PC, nor do nodes that do not run here give one."
+    )
     told[0]["paths"][0]["broken"] = True
     assert facts(state_of(told)) == ([], [0, 1], [], False)
 
@@ -173,6 +189,10 @@ def test_a_cell_that_hears_its_parent_elsewhere_alone_has_a_way():
     state = state_of(heard({0: cell(1, 0, udp((4, 3)))}, (0, 0)))
     assert state.headline().level == "ok"
     assert state.more()["beyond"].tolist() == [1]
+    state = state_of(heard({0: cell(1, None, udp((4, 3)))}, (0, 0)))
+    assert state.headline()[:2] == (
+        "down", "The only cell has no way to the PC, nor do nodes that do not run here give one.",
+    )  # fmt: skip
 
 
 def test_a_dead_cell_that_is_known_is_not_elsewhere():
@@ -189,3 +209,12 @@ def test_a_pc_whose_cells_run_elsewhere(ports, level, text):
     told = {0: skin_of_three()[2] | {"cells": ports}}
     found = state_of(told).headline()
     assert (found.level, found.text) == (level, text)
+
+
+def test_a_pc_that_knows_how_many_cells_there_are_misses_those_that_died_elsewhere():
+    told = {0: skin_of_three()[2] | {"cells": [3, 0], "of_cells": 4}}
+    assert state_of(told).headline()[:2] == (
+        "degraded", "3 of 4 cells have a way to the PC, as it says; none of them runs here.",
+    )  # fmt: skip
+    told[0]["cells"] = [3, 1]
+    assert state_of(told).headline().level == "ok"

@@ -38,6 +38,9 @@ class Elsewhere(NamedTuple):
 
     nodes: tuple[int, ...] = ()  # their numbers
     leads: bool = False  # one of them is a gateway that is followed here
+    silent: bool = False  # one was, and nothing comes from it any more
+    surely: bool = True  # none of them is one of those here that are silent
+    heard: bool = True  # those that are asked have neighbours, here or there, or no links at all
 
 
 ALL_HERE = Elsewhere()
@@ -56,13 +59,15 @@ def headline(
     degraded: a message or an alarm was lost or came twice, a broadcast missed somebody, a packet
     met a node twice, a node is off, cut off or without a way, the network is in parts. down:
     nobody's messages get through to a gateway, nor did anything come to anybody else since.
-    no data: nobody has heard a gateway yet.
+    no data: nobody has heard a gateway yet, or nobody hears the only node.
     """
     lost = traffic.crossings + traffic.decided - traffic.learned - traffic.delivered
     if not (ways.on & ways.joined).any() and not ways.off.any() and not lost:
         return Headline(NO_DATA, "No node leads as gateway yet.")
-    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere.leads), *_twice(traffic)]
-    came, afar = _came(traffic, len(ways.on)), _afar(elsewhere.nodes)
+    if len(ways.on) == 1 and ways.leads.all() and not elsewhere.heard:
+        return Headline(NO_DATA, "The only node leads, and hears nobody.")
+    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere), *_twice(traffic)]
+    came, afar = _came(traffic, len(ways.on)), _afar(elsewhere)
     if not said:
         return Headline(OK, sentence([*came, _reached(ways, elsewhere.leads), *afar]))
     about = np.flatnonzero(ways.without | ways.off).tolist()
@@ -105,12 +110,14 @@ def _undelivered(traffic: Traffic) -> list[str]:
     return found
 
 
-def _apart(ways: Ways, absent: str, leads_elsewhere: bool) -> list[str]:
+def _apart(ways: Ways, absent: str, elsewhere: Elsewhere) -> list[str]:
     """Who has no way, is cut off, or off."""
     count, found = len(ways.on), []
-    leading = int(ways.leads.sum()) + leads_elsewhere
+    leading = int(ways.leads.sum()) + elsewhere.leads
     if not leading:
-        found.append("no node leads as gateway, and what is sent to it does not get through")
+        none = "nothing comes from" if elsewhere.silent else "no node leads as"
+        which = "the gateway any more" if elsewhere.silent else "gateway"
+        found.append(f"{none} {which}, and what is sent to it does not get through")
     else:
         if leading > 1:
             found.append(
@@ -164,13 +171,15 @@ def _reached(ways: Ways, leads_elsewhere: bool) -> str:
     return f"{_part(count, count, 'node')} {verb(count, 'has')} a way to the gateway"
 
 
-def _afar(nodes: tuple[int, ...]) -> list[str]:
+def _afar(elsewhere: Elsewhere) -> list[str]:
     """That what is said of nodes that do not run here is believed."""
+    nodes = elsewhere.nodes
     if not nodes:
         return []
     few = f"node {nodes[0]} does" if len(nodes) == 1 else f"nodes {listed([*map(str, nodes)])} do"
     them = "it" if len(nodes) == 1 else "them"
-    return [f"{few} not run here, and what is said of {them} is believed"]
+    here = "run here" if elsewhere.surely else "run here, as far as is known"
+    return [f"{few} not {here}, and what is said of {them} is believed"]
 
 
 def traffic(

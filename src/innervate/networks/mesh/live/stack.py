@@ -19,7 +19,6 @@ from innervate.networks.mesh.protocol.duplicates import ANEW
 from innervate.networks.mesh.protocol.frames import inner, is_sound
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
-    SUSPECT,
     is_strong,
     is_suspect,
     place_of,
@@ -30,6 +29,7 @@ from innervate.networks.mesh.protocol.upward import is_better, is_uplink
 
 CLASSES = (32, 64, 128, 254)
 OUTBOX = 160  # more than twice the frames that a queue can hold
+QUIET = 2  # gateways of which no request came for so many times what a standby waits are silent
 ASKED = 256  # frames that may still be acknowledged: a slow link's acks come late
 RSSI = -50  # of every frame that comes over a cable, dBm
 
@@ -219,7 +219,7 @@ class MeshStack:
                     {
                         "node": who,
                         "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
-                        "suspect": bool(node.suspect[k] & SUSPECT),
+                        "suspect": bool(node.suspect[k]),  # until it is heard again
                         "ports": self.places.get(who, []),
                     }
                 )
@@ -235,6 +235,7 @@ class MeshStack:
             **self._robot_status(),
             "role": "gateway" if node.leading else "standby" if node.rank >= 0 else "node",
             "gateway": node.gateway if node.known and node.gateway != const.ALL else None,
+            "gateway_silent": bool(node.quiet > QUIET * params.dead and not node.leading),
             "epoch": node.epoch,
             "round": node.round,
             "table": node.version,

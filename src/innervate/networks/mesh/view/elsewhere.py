@@ -14,12 +14,19 @@ from innervate.networks.mesh.analysis.reach import Choices, Ways
 from innervate.web.live_map import Status
 
 
-def elsewhere(said: Iterable[Status], here: Collection[int]) -> Elsewhere:
-    """Of whom these speak that are none of those `here`, by their numbers."""
+def elsewhere(said: Iterable[Status], here: Collection[int], all_known: bool) -> Elsewhere:
+    """Of whom these speak that are none of those `here`, by their numbers.
+
+    `all_known`: of everybody here the number is known, of the silent ones too.
+    """
     said = list(said)
     near = {other["node"] for one in said for other in one.get("neighbours", ())}
-    led = {one["gateway"] for one in said if one.get("gateway") is not None}
-    return Elsewhere(tuple(sorted((near | led) - set(here))), bool(led - set(here)))
+    led = {one["gateway"] for one in said if one.get("gateway") is not None} - set(here)
+    heard = {one["gateway"] for one in said if not one.get("gateway_silent")} & led
+    nodes = tuple(sorted(near - set(here) | led))
+    linked = any(one.get("paths") for one in said)
+    silent = bool(led) and not heard
+    return Elsewhere(nodes, bool(heard), silent, all_known, bool(near) or not linked)
 
 
 def hand_on(known: Choices, links: Flags, leads: Flags) -> None:

@@ -9,7 +9,6 @@ from innervate.analysis.headline import Headline
 from innervate.analysis.ways import NOWHERE
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Choices, Ways, ways
-from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.view.elsewhere import elsewhere, hand_on, without_it
 from innervate.web.live_map import Link, Map, Place, Status
 from innervate.web.live_scene import Drawn
@@ -64,12 +63,14 @@ class MeshState(State):
     def _find_ways(self) -> Ways:
         """Who reaches its gateway, by what the nodes say of each other."""
         places, count = self.map.places, len(self.map.places)
-        numbered = self.map.numbered(self.told).items()
+        numbered = self.map.numbered(self.told)
         said = [self.told.get(place.node, {}) for place in places]
-        self.elsewhere = elsewhere(self.told.values(), self._here())
+        assert isinstance(self.map, MeshMap)
+        here = {*self.map.by_number, *numbered}
+        self.elsewhere = elsewhere(self.told.values(), here, len(here) == count)
         more = bool(self.elsewhere.nodes)
         place_of: dict[Any, int] = dict.fromkeys(self.elsewhere.nodes, count)
-        place_of |= {name: self.map.number[at] for name, at in numbered}
+        place_of |= {name: self.map.number[at] for name, at in numbered.items()}
         on = np.array([place.node in self.told for place in places] + [True] * more, np.bool_)
         said += [{}] * more
         onward = [
@@ -95,14 +96,6 @@ class MeshState(State):
         leads[count] = self.elsewhere.leads
         hand_on(known, links, leads)
         return without_it(ways(known, links, on, ~on, leads))
-
-    def _here(self) -> set[int]:
-        """Numbers of those that run here or did; if one does not say its own, any can be its."""
-        assert isinstance(self.map, MeshMap)
-        known = {*self.map.by_number, *self.map.numbered(self.told)}
-        if len(self.map.by_number) < len(self.map.places):
-            return {*range(const.IDS)}
-        return known
 
     def _links(self, more: bool) -> Any:
         """Who is joined with whom by links that are up; `more`: those elsewhere are the last."""

@@ -32,6 +32,10 @@ class SkinFacts(NamedTuple):
     # running nodes only: cells whose way goes on by nodes that do not run here, and is believed
     beyond: Collection[int] = ()
     served: int = 0  # running nodes only: cells whose ways end at the PC, as it says itself
+    of_cells: int | None = None  # running nodes only: how many there are, if the PC's file says it
+    # running nodes only: those of `seeking` that nodes alone could join with the PC that do not
+    # run here
+    afar: Collection[int] = ()
     # most cells that were cut off at the same time, if that is more than are now; a live
     # page, which shows the moment, leaves it at 0
     cut_off_before: int = 0
@@ -56,7 +60,7 @@ def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) ->
     if facts is None:
         return Headline(NO_DATA, "Nobody watched who had a way to the PC.")
     if not facts.cells:
-        return _pc_alone(facts.served)
+        return _pc_alone(facts.served, facts.of_cells)
     if len(facts.silent) == facts.cells:
         return Headline(NO_DATA, "No cell answers: nothing is known of the skin.")
     troubled = (*facts.cut_off, *facts.seeking, *facts.silent, *facts.off)
@@ -68,11 +72,14 @@ def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) ->
     return Headline(level, text, tuple(sorted(map(int, troubled))))
 
 
-def _pc_alone(served: int) -> Headline:
-    """Of a PC whose cells run elsewhere."""
+def _pc_alone(served: int, cells: int | None) -> Headline:
+    """Of a PC whose cells run elsewhere; a cell that moves can be counted twice for a moment."""
     if not served:
         return Headline(NO_DATA, "No cell runs here, and none has a way to the PC.")
     who = f"{number_of(served, 'cell')} {verb(served, 'has')}"
+    if cells is not None and served < cells:
+        who = f"{served:,} of {number_of(cells, 'cell')} {verb(served, 'has')}"
+        return Headline(DEGRADED, f"{who} a way to the PC, as it says; none of them runs here.")
     return Headline(OK, f"{who} a way to the PC, as it says; none of them runs here.")
 
 
@@ -87,7 +94,7 @@ def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
         who, them = _who(facts, facts.cut_off, label, "is"), _them(facts.cut_off)
         why = f"no cable joins {them} with the PC any more"
         found.append(f"{who} cut off{since}: {why}")
-    old = [cell for cell in facts.seeking if cell not in set(facts.never)]
+    old = [cell for cell in facts.seeking if cell not in {*facts.never, *facts.afar}]
     if facts.never:
         none = len(facts.never) == facts.cells
         who = "no cell ever" if none else f"{_who(facts, facts.never, label)} never"
@@ -96,6 +103,9 @@ def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
         joined = "it with the PC" if _them(old) == "it" else "them with it"
         who = _who(facts, old, label, "has")
         found.append(f"{who} no way to the PC, although cables join {joined}")
+    if facts.afar:
+        who = _who(facts, facts.afar, label, "has")
+        found.append(f"{who} no way to the PC, nor do nodes that do not run here give one")
     if facts.silent:
         found.append(f"{_who(facts, facts.silent, label, 'does')} not answer")
     if facts.off:

@@ -156,8 +156,9 @@ class SinkNode(LiveNode):
         return sizes
 
     def status(self) -> dict[str, Any]:
-        """As of all nodes, and how many cells each interface port serves."""
-        return {**super().status(), "cells": self._served()}
+        """As of all nodes, how many cells each interface port serves, and how many there are."""
+        cells = self.cell_max + 1 if self.knows_cells else None
+        return {**super().status(), "cells": self._served(), "of_cells": cells}
 
     def _asked_for_command(self, request: dict[str, Any]) -> dict[str, Any]:
         cell = request.get("cell")

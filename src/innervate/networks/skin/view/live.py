@@ -15,6 +15,7 @@ from innervate.web.live_state import State
 from innervate.web.live_view import Ask, LiveView
 from innervate.web.messages import Give, number
 
+PC = "pc"  # what `live up` calls it
 LOAD_FULL = 66  # cells whose samples fill a link, at 250 Hz each
 
 
@@ -47,7 +48,8 @@ class SkinState(State):
         if not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
         joined = reach(live, roots | self.hears_beyond()) if where.links else ~none
-        self._facts = self._skin_facts(lost, joined)
+        here = reach(live, roots) if where.links else ~self.hears_beyond()
+        self._facts = self._skin_facts(lost, joined, here)
         left = (self.node_up == 1) & joined & ~self._is_port()
         found = lost, lost & joined, left
         without, astray, could = (int(np.count_nonzero(who)) for who in found)
@@ -57,8 +59,8 @@ class SkinState(State):
         """The headline by the ways and loads that `look` found."""
         return skin_headline(self._facts, self.map.names.__getitem__)
 
-    def _skin_facts(self, lost: Any, joined: Any) -> SkinFacts:
-        """What cells say of their ways; `joined`: cables join them with the PC."""
+    def _skin_facts(self, lost: Any, joined: Any, here: Any) -> SkinFacts:
+        """What cells say of their ways; `joined`: cables can join them with the PC, `here`: do."""
         places = self.map.places
         is_cell = np.array([place.port < 0 for place in places], np.bool_)
         told = np.array([place.node in self.told for place in places], np.bool_)
@@ -77,6 +79,8 @@ class SkinState(State):
             pc_off=bool(len(ports)) and not ports.any(),
             beyond=of(self._beyond),
             served=sum(sum(one.get("cells", ())) for one in self.told.values()),
+            of_cells=next((n for one in self.told.values() if (n := one.get("of_cells"))), None),
+            afar=of(told & lost & ~apart & ~here),
         )
 
     def _ports(self) -> Any:
@@ -145,11 +149,20 @@ class SkinLiveView(LiveView):
             labels={name: graph.label(i) for i, name in enumerate(names)},
         )
 
-    def unknown(self, told: list[Status], count: int) -> list[Status]:
-        """If the PC is not among those that answer, it is among those that do not."""
-        found = super().unknown(told, count)
-        if count and all(one.get("role") != "sink" for one in told):
-            found[0] |= {"role": "sink", "paths": [{"port": 0, "name": "", "counters": {}}]}
+    def unknown(self, told: list[Status], names: list[str]) -> list[Status]:
+        """The PC is among those that do not answer if it is called so, or runs nowhere else.
+
+        It does run elsewhere while a cell has a way, or hears somebody who is none of these.
+        """
+        found = [one | {"role": "cell"} for one in super().unknown(told, names)]
+        if not names or any(one.get("role") == "sink" for one in told):
+            return found
+        cells = dict(enumerate(told))
+        state = self.state(self.map(cells), cells)
+        away = state.hears_beyond().any() or any(one.get("parent") is not None for one in told)
+        if PC in names or not away:
+            at = names.index(PC) if PC in names else 0
+            found[at] |= {"role": "sink", "paths": [{"port": 0, "name": "", "counters": {}}]}
         return found
 
     def can(self, last: Mapping[int, Status]) -> tuple[str, ...]:
