@@ -248,12 +248,14 @@ class Sealer:
         self.state.write()
         count = len(new.serials)
         are = "is" if count == 1 else "are"
-        what = f"{number_of(count, 'certificate')} {are} put out, list {new.version}"
-        self.said("revoked", what)
+        what = f"{number_of(count, 'certificate')} {are} put out"
+        if self.ring.identity is not None and self.ring.identity.serial in new.serials:
+            what = "this node's identity is put out"
+        self.said("revoked", f"{what}, list {new.version}")
         for contact in self._contacts.values():
-            contact.put_out(lambda who: who.serial in new.serials)
             for session in contact.all_sessions():
                 contact.tell(session, REVOKED, new.data)
+            contact.put_out(lambda who: who.serial in new.serials)
 
     def status(self) -> dict[str, Any]:
         """Which key handshakes begin with, which are accepted; with an identity, its own."""
