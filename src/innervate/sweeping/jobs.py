@@ -272,7 +272,8 @@ def _text(raw: bytes) -> str:
 def _in_words(name: str, error: sqlite3.Error) -> str:
     code = getattr(error, "sqlite_errorname", "") or ""
     if code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
-        return f"another sweep is at work in {Path(name).parent}; wait for it, or choose another folder"
+        folder = Path(name).parent
+        return f"another sweep is at work in {folder}; wait for it, or choose another folder"
     if code.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM")):
         return f"{name} cannot be written; choose another folder"
     if code.startswith(("SQLITE_FULL", "SQLITE_IOERR")):
