@@ -82,9 +82,11 @@ def test_where_no_node_is_told_it_is_said_what_to_do_there(folder, tmp_path, cap
     Authority(tmp_path / "keys").enrol(3)
     assert live_enrol.revoke(tmp_path / "keys", 3) == 1
     assert capsys.readouterr().out == (
-        f"told nobody; nodes hand it on to each other\nwhere a node runs: innervate live revoke "
-        f"{LIST}\n"
+        f"told nobody: no node runs here that takes it; copy {tmp_path / 'keys' / LIST} to a "
+        f"machine where one runs, and there: innervate live revoke {LIST}\n"
     )
+    assert live_enrol.revoke(tmp_path / "keys" / LIST) == 1
+    assert f"copy {tmp_path / 'keys' / LIST} to" in capsys.readouterr().out
     with pytest.raises(UserError, match="which nodes"):
         live_enrol.enrol(tmp_path / "keys")
 

@@ -6,6 +6,7 @@ import re
 import pytest
 
 from innervate.live import main
+from innervate.live.enrolment import Authority
 from innervate.live.machine import Machine, on
 from innervate.live.nodefile import load
 from innervate.live.receipts import ACCEPTED, DELIVERED, EXPIRED, HOP_ACKED, Receipt
@@ -220,3 +221,14 @@ def test_the_line_by_which_a_node_says_that_it_is_ready(process, engine, why, se
     paths, no_key = re.fullmatch("([^;]*)(;.*)?", end).groups("")
     ready = f"ready: mesh node 3 of 5, {paths}, keeps processors awake{no_key}"
     assert process._ready() == ready
+
+
+def test_an_identity_is_taken_over_by_a_restart_only(process, tmp_path):
+    Authority(tmp_path).enrol(3)
+    path, text = process.loaded.path, process.loaded.path.read_text()
+    start, end = text.index("[keys]"), text.index("[[link]]")
+    path.write_text(f'{text[:start]}[keys]\nidentity = "n3.identity"\n{text[end:]}')
+    with on(Quiet()) as _:
+        process.reload()
+        said = main.machine().said
+        assert said == [f"n3: not reloaded: {path}: an identity is taken over by a restart only"]

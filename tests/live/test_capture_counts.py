@@ -37,7 +37,7 @@ def test_frames_that_came_too_fast_are_counted_and_said(tmp_path, capsys):
     assert captured(tmp_path, *told) == 0
     said = capsys.readouterr().err
     assert (
-        said == "innervate: 3 frames of 1 nodes; 7 more came too fast; opened: sealed ones of n0\n"
+        said == "innervate: 3 frames of 1 node; 7 more came too fast; opened: sealed ones of n0\n"
     )
     captured(tmp_path, {"frames": [FRAME], "missed": 0})
     assert "too fast" not in capsys.readouterr().err

@@ -35,6 +35,14 @@ def test_the_documented_node_waits_for_its_table_and_delivers(tmp_path, monkeypa
     assert capsys.readouterr().out.splitlines() == ["delivered", "3 b'hello'"]
 
 
+def test_the_documented_node_file_is_one(tmp_path):
+    (text,) = re.findall(r"```toml\n(kind = .*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    (tmp_path / "net.key").write_text("ab" * 32)
+    (tmp_path / "n3.toml").write_text(text)
+    node = build(load(tmp_path / "n3.toml"))
+    assert [path.name.partition(" ")[0] for path in node.paths] == ["udp", "udp", "serial", "udp"]
+
+
 def _snippet():
     (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     names = {}

@@ -194,3 +194,28 @@ def test_a_group_is_an_address_of_groups(tmp_path):
     serial = 'kind = "serial"\ndevice = "/dev/null"'
     with pytest.raises(LiveError, match=r"link\.1\.group: 10\.0\.0\.1 is no multicast group"):
         build(load(write(tmp_path, GOOD.replace(serial, group))))
+
+
+UDP = 'kind = "udp"\nbind = "{}"\npeers = ["127.0.0.1:4701"]'
+GROUP = 'kind = "multicast"\ngroup = "{}"\ninterface = "127.0.0.{}"'
+
+
+@pytest.mark.parametrize(("first", "second", "says"), [
+    (UDP.format("0.0.0.0:4700"), GROUP.format("239.77.0.1:4700", 1), "link.1 and link.0 "),
+    (UDP.format("127.0.0.1:4700"), UDP.format("0.0.0.0:4700"), "both take UDP port 4700; give"),
+    (UDP.format("127.0.0.1:4700"), UDP.format("127.0.0.1:4700"), "one of them another"),
+    (UDP.format("127.0.0.1:4700"), UDP.format("127.0.0.2:4700"), ""),
+    (UDP.format("127.0.0.1:4700"), GROUP.format("239.77.0.1:4700", 1), ""),
+    (UDP.format("0.0.0.0:4700"), UDP.format("0.0.0.0:4702"), ""),
+    (UDP.format("0.0.0.0:0"), UDP.format("0.0.0.0:0"), ""),
+    (GROUP.format("239.77.0.1:4700", 1), GROUP.format("239.77.0.1:4700", 2), ""),
+    (GROUP.format("239.77.0.1:4700", 1), GROUP.format("239.77.0.1:4700", 1), "both take"),
+])  # fmt: skip
+def test_two_links_that_would_take_the_same_port_are_named(tmp_path, first, second, says):
+    head = 'kind = "mesh"\nnumber = 3\nnodes = 9\n'
+    loaded = load(write(tmp_path, f"{head}[[link]]\n{first}\n[[link]]\n{second}\n"))
+    if not says:
+        assert len(build(loaded).paths) == 2
+        return
+    with pytest.raises(LiveError, match=says):
+        build(loaded)

@@ -157,3 +157,16 @@ async def test_handshakes_are_counted_as_they_are_and_those_put_out_begin_anew()
     begin(b.sealer, b)
     await settle()
     assert [one.who.number for one in contact_of(a).all_sessions()] == [2]
+
+
+@timed
+async def test_a_twin_that_is_given_another_number_is_forgotten():
+    sealer = network_sealer(1)
+    sealer.note_twin(5, "both are heard here")
+    sealer.note_twin(1, "it is on udp")
+    await settle(keys.TWINS_US / 1e6 - 1)
+    sealer.note_twin(5, "node 3 hears both")
+    await settle(1.000001)
+    assert sealer.status()["twins"] == {"5": "node 3 hears both"}
+    await settle(keys.TWINS_US / 1e6)
+    assert "twins" not in sealer.status()

@@ -127,7 +127,7 @@ def test_impossible_names(tmp_path, name):
     assert "\n" not in str(caught.value)
     assert "\0" not in str(caught.value)
     why = "no such path can be" if "\0" in name else "File name too long"
-    assert str(caught.value).endswith(f": {why}; choose another folder with --out")
+    assert str(caught.value).endswith(f": {why}; choose another folder")
 
 
 def test_through_a_link(tmp_path):

@@ -1,4 +1,5 @@
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -160,3 +161,18 @@ def test_tables_for_numpy_and_pandas(name):
         assert all(len(column) == whole.height == len(frame) for column in arrays.values())
     with pytest.raises(RunError, match="there is no table 'roots'; there are "):
         done.numpy("roots")
+
+
+@pytest.mark.parametrize(("more", "says"), [
+    ({"overrides": {"protocol.k": 0}}, "override protocol.k=0: protocol.k must be a whole number"),
+    ({"overrides": "protocol.k"}, "override protocol.k: write it as key=value"),
+    ({"seed": -1}, "override seed=-1: seed must be a whole number from 0, not -1"),
+])  # fmt: skip
+def test_a_wrong_override_is_not_called_by_the_option_of_a_command(more, says):
+    with pytest.raises(ScenarioError, match=f"^{re.escape(says)}"):
+        run("line", **more)
+
+
+def test_nor_where_it_is_found_wrong_later():
+    loaded = innervate.load("line", overrides={"data.rate_hz": 1})
+    assert str(loaded.source.error(("data", "rate_hz"), "no")) == "override data.rate_hz=1: no"

@@ -135,7 +135,7 @@ def test_what_is_no_table_is_said_and_let_go_of(tmp_path):
 @pytest.mark.parametrize(
     ("code", "words"),
     [
-        ("SQLITE_BUSY", "another sweep is at work in /a; wait for it, or choose --out"),
+        ("SQLITE_BUSY", "another sweep is at work in /a; wait for it, or choose another folder"),
         ("SQLITE_LOCKED_SHAREDCACHE", "another sweep is at work in /a"),
         ("SQLITE_READONLY_DBMOVED", "/a/b cannot be written"),
         ("SQLITE_PERM", "/a/b cannot be written"),

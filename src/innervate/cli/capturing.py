@@ -15,6 +15,7 @@ import innervate
 from innervate.cli.errors import UserError, check_seconds, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
+from innervate.kernel.words import number_of
 from innervate.live import private, status
 from innervate.live.machine import ANSWER_S
 from innervate.network import known
@@ -109,7 +110,8 @@ class Recorder:
             self._write(None)
         lost = f"; {self.missed} more came too fast" if self.missed else ""
         opened = f"; opened: sealed ones of {', '.join(self.sealed)}" if self.sealed else ""
-        say(f"{self.frames} frames of {len(self.followed)} nodes{lost}{opened}")
+        frames, nodes = number_of(self.frames, "frame"), number_of(len(self.followed), "node")
+        say(f"{frames} of {nodes}{lost}{opened}")
         return 0
 
     async def _follow(self, path: Path) -> None:

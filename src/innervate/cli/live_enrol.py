@@ -65,8 +65,9 @@ def revoke(where: Path, /, *numbers: int, as_json: Json = False) -> int:
     else:
         for line in silent:
             print(line)
-        names = ", ".join(str(one["node"]) for one in told) or "nobody"
-        print(f"told {names}; nodes hand it on to each other")
-        if not told:
-            print(f"where a node runs: innervate live revoke {LIST}")
+        names = ", ".join(str(one["node"]) for one in told)
+        file = where / LIST if where.is_dir() else where
+        print(f"told {names}; nodes hand it on to each other" if told else
+              f"told nobody: no node runs here that takes it; copy {file} to a machine where one "
+              f"runs, and there: innervate live revoke {file.name}")  # fmt: skip
     return 0 if told else 1

@@ -332,7 +332,10 @@ class MeasuredOptions:
     around: str | None = None
     """A node as the file calls it: only those about it, nearest first, by their better links."""
     nodes: Whole | None = None
-    """At most so many of them, 2 to 254; around the best connected node if none is named."""
+    (
+        "At most so many of them, 2 to 254, with --gateways to 2000; around the best connected\n"
+        "node if none is named."
+    )
     gateways: Whole | None = None
     """So many clusters of at most 254 nodes, each with a gateway and a channel of its own."""
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
 
 
 BROADCAST = "255.255.255.255"
+ANYWHERE = "0.0.0.0"
 
 
 def build(loaded: Loaded, engine: str = "") -> LiveNode:
@@ -56,7 +57,28 @@ def links_of(loaded: Loaded) -> list[Link]:
         link = _link(table, f"{loaded.path}: link.{len(links)}", count)
         count += len(link.paths)
         links.append(link)
+    _refuse_shared_ports(loaded)
     return links
+
+
+def _refuse_shared_ports(loaded: Loaded) -> None:
+    """Of two links that take the same UDP port the system would let in one."""
+    taken: dict[int, tuple[str, int, str]] = {}
+    for i, table in enumerate(loaded.table.link):
+        if isinstance(table, UdpTable):
+            host, port, interface = *address(table.bind, ""), ""
+        elif isinstance(table, MulticastTable):
+            host, port, interface = *address(table.group, ""), table.interface
+        else:
+            continue
+        for other, (its_host, its_port, its_interface) in taken.items():
+            is_same = (host, interface) == (its_host, its_interface)
+            if port == its_port != 0 and (is_same or ANYWHERE in (host, its_host)):
+                raise LiveError(
+                    f"{loaded.path}: link.{i} and link.{other} both take UDP port {port}; give "
+                    "one of them another"
+                )
+        taken[i] = host, port, interface
 
 
 def _link(table: Any, where: str, port: int) -> Link:

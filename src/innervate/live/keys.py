@@ -19,6 +19,7 @@ from innervate.wire import seal
 LIVES = 8  # starts of a node that are remembered
 TWIN_US = 1_000_000  # frames of a life that is over may still come for so long
 TELL_US = 10_000_000  # twins are told of each other so often
+TWINS_US = 120_000_000  # ... and forgotten when nobody noted them for so long
 
 
 class Opened(NamedTuple):
@@ -77,6 +78,7 @@ class Sealer:
         self.dropped: Counter[str] = Counter()
         self.counts: Counter[str] = Counter()
         self.twins: dict[int, str] = {}
+        self._noted: dict[int, int] = {}  # when a twin was noted last
         self.refused = 0
         self.has_bound_ends = True
         self.said: Callable[[str, str], None] = lambda _matter, _text: None
@@ -221,6 +223,7 @@ class Sealer:
         """Two nodes have one number: count it, and say so."""
         self.counts["two nodes with one number"] += 1
         self.twins[number] = where
+        self._noted[number] = clock_us()
         whose = "our number" if number == self.sender else "one number"
         self.said("twin", f"two nodes have {whose}, {number}: {where}; give one of them another")
 
@@ -248,12 +251,14 @@ class Sealer:
         self.state.write()
         count = len(new.serials)
         are = "is" if count == 1 else "are"
-        what = f"{number_of(count, 'certificate')} {are} put out, list {new.version}"
-        self.said("revoked", what)
+        what = f"{number_of(count, 'certificate')} {are} put out"
+        if self.ring.identity is not None and self.ring.identity.serial in new.serials:
+            what = "this node's identity is put out"
+        self.said("revoked", f"{what}, list {new.version}")
         for contact in self._contacts.values():
-            contact.put_out(lambda who: who.serial in new.serials)
             for session in contact.all_sessions():
                 contact.tell(session, REVOKED, new.data)
+            contact.put_out(lambda who: who.serial in new.serials)
 
     def status(self) -> dict[str, Any]:
         """Which key handshakes begin with, which are accepted; with an identity, its own."""
@@ -262,8 +267,10 @@ class Sealer:
             revoked = self.ring.revoked
             told["identity"] = {"serial": self.ring.identity.serial, "list": revoked.version,
                                 "revoked": sorted(revoked.serials)}  # fmt: skip
-        if self.twins:
-            told["twins"] = {str(number): where for number, where in self.twins.items()}
+        still = clock_us() - TWINS_US
+        if twins := {str(number): where for number, where in self.twins.items()
+                     if self._noted[number] > still}:  # fmt: skip
+            told["twins"] = twins
         return told
 
     def _drop(self, reason: str) -> Opened | None:

@@ -125,7 +125,9 @@ class Process:
         try:
             fresh = load(self.loaded.path)
             keys = fresh.table.keys
-            if self.rotation is None or keys is None or keys.identity is not None:
+            if keys is not None and keys.identity is not None:
+                raise LiveError(f"{fresh.path}: an identity is taken over by a restart only")
+            if self.rotation is None or keys is None:
                 raise LiveError(f"{fresh.path}: only other keys can be taken over without restart")
             self.rotation.begin(keys_of(keys, fresh), keys.use, keys.grace_s)
         except LiveError as error:

@@ -22,6 +22,7 @@ BATCH = 64  # datagrams read at once, before timers and other neighbours have th
 SOCKETS = 32  # of a link at most
 REOPEN_S = 0.5
 RENEW_S = 1.0
+IP_MULTICAST_ALL = 49  # Linux: what came by an interface is for its members alone
 ANY = "0.0.0.0:"
 
 
@@ -256,6 +257,8 @@ class MulticastLink(UdpLink):
         try:
             sock.setblocking(False)
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            if sys.platform == "linux":
+                sock.setsockopt(socket.IPPROTO_IP, IP_MULTICAST_ALL, 0)
             self.guard(sock)
             sock.bind(self.group)
             self._join(sock)

@@ -79,25 +79,25 @@ def check_target(folder: str | os.PathLike[str]) -> Path:
         home = next(parent for parent in target.parents if parent.exists())
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "no such path can be"
-        raise RunError(f"{shown}: {why}; choose another folder with --out") from None
+        raise RunError(f"{shown}: {why}; choose another folder") from None
     if not home.is_dir():
-        raise RunError(f"{_shown(home)} is a file; choose another folder with --out")
+        raise RunError(f"{_shown(home)} is a file; choose another folder")
     if not os.access(home, os.W_OK | os.X_OK):
-        raise RunError(f"no permission to write in {_shown(home)}; choose another --out")
+        raise RunError(f"no permission to write in {_shown(home)}; choose another folder")
     return target
 
 
 def _check_content(target: Path, shown: str) -> None:
     """That a folder may be replaced."""
     if not target.is_dir():
-        raise RunError(f"{shown} is a file; choose another folder with --out")
+        raise RunError(f"{shown} is a file; choose another folder")
     names = {entry.name for entry in target.iterdir()}
     if names and not names.issuperset(REQUIRED):
-        raise RunError(f"{shown} is not a run folder and not empty; choose another with --out")
+        raise RunError(f"{shown} is not a run folder and not empty; choose another folder")
     strange = sorted(names - {*REQUIRED, REPORT, *table_files()})
     if strange:
         what = _shown(Path(strange[0])) + (" and more" if len(strange) > 1 else "")
-        raise RunError(f"{shown} also holds {what}; move it away or choose another --out")
+        raise RunError(f"{shown} also holds {what}; move it away or choose another folder")
 
 
 @contextmanager

@@ -8,11 +8,14 @@ from msgspec import Struct, structs
 
 from innervate.network import networks
 from innervate.scenario.emit import dump as as_text
+from innervate.scenario.errors import ScenarioError
 from innervate.scenario.load import Scenario, from_dict, loads
 from innervate.scenario.load import load as load_file
+from innervate.scenario.source import OPTION
 
 Given = str | os.PathLike[str] | Scenario | Struct | dict[str, Any]
 Changes = Iterable[str] | Mapping[str, Any]
+OVERRIDE = "override"  # what errors call one that is given from Python
 
 
 def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -> Scenario:
@@ -32,6 +35,19 @@ def load(scenario: Given, *, seed: int | None = None, overrides: Changes = ()) -
     changes: list[str | tuple[str, Any]] = (
         list(overrides.items()) if isinstance(overrides, Mapping) else list(overrides)
     )
+    try:
+        made = _load(scenario, changes, seed)
+    except ScenarioError as error:
+        option, _, text = error.path.partition(" ")
+        if option != OPTION:
+            raise
+        path = f"{OVERRIDE} {text}"
+        raise ScenarioError(error.message, path, error.line, error.key) from None
+    made.source.override = OVERRIDE
+    return made
+
+
+def _load(scenario: Given, changes: list[str | tuple[str, Any]], seed: int | None) -> Scenario:
     if isinstance(scenario, Struct):
         return from_dict(tables_of(scenario), changes, seed)
     if isinstance(scenario, dict):

@@ -12,6 +12,7 @@ from innervate.scenario.lines import Key
 
 INTEGER_MAX = 2**63 - 1
 DEPTH_MAX = 16
+OPTION = "--set"
 
 
 @dataclass(slots=True)
@@ -25,6 +26,7 @@ class Source:
     # Every key that has a value of its own, in the file, a dict or by `--set`; a run may have no
     # use for it, though the value is that which it has by itself.
     given: frozenset[Key] = frozenset()
+    override: str = OPTION  # what errors call an override
 
     def error(self, key: Key, message: str) -> ScenarioError:
         """The error for a key: placed at the nearest `--set` or line above it."""
@@ -33,9 +35,9 @@ class Source:
             if part and part not in self.lines:
                 below = [text for path, text in self.sets.items() if path[:length] == part]
                 if below:
-                    return ScenarioError(message, f"--set {below[-1]}", 0, dotted(key))
+                    return ScenarioError(message, f"{self.override} {below[-1]}", 0, dotted(key))
             if part in self.sets:
-                return ScenarioError(message, f"--set {self.sets[part]}", 0, dotted(key))
+                return ScenarioError(message, f"{self.override} {self.sets[part]}", 0, dotted(key))
             if part in self.lines:
                 return ScenarioError(message, self.path, self.lines[part], dotted(key))
         return ScenarioError(message, self.path, 0, dotted(key))

@@ -109,7 +109,7 @@ class Jobs:
             folder = Path(self._name).parent
             raise SweepError(
                 f"{' and '.join(differs)} changed since the sweep in {folder} was begun; "
-                "undo the change, or begin a new one elsewhere with --out"
+                "undo the change, or begin a new one in another folder"
             )
         with self._errors():
             self._db.executemany("INSERT OR IGNORE INTO meta VALUES (?, ?)", fresh.items())
@@ -272,9 +272,10 @@ def _text(raw: bytes) -> str:
 def _in_words(name: str, error: sqlite3.Error) -> str:
     code = getattr(error, "sqlite_errorname", "") or ""
     if code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
-        return f"another sweep is at work in {Path(name).parent}; wait for it, or choose --out"
+        folder = Path(name).parent
+        return f"another sweep is at work in {folder}; wait for it, or choose another folder"
     if code.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM")):
-        return f"{name} cannot be written; choose another folder with --out"
+        return f"{name} cannot be written; choose another folder"
     if code.startswith(("SQLITE_FULL", "SQLITE_IOERR")):
         return (
             f"{name}: no space left on the disk, or it fails; make room and give the same "
@@ -283,6 +284,6 @@ def _in_words(name: str, error: sqlite3.Error) -> str:
     if code.startswith(("SQLITE_NOTADB", "SQLITE_CORRUPT")):
         return (
             f"{name} is no job table, or damaged so that nothing of it can be kept; move it away "
-            "and all is run anew, or choose another --out"
+            "and all is run anew, or choose another folder"
         )
     return f"{name}: {error}"

@@ -271,11 +271,11 @@ def _prepare(folder: Path) -> None:
         names = {entry.name for entry in folder.iterdir()}
     except OSError as error:
         why = error.strerror or type(error).__name__
-        raise SweepError(f"{folder} cannot be used: {why}; choose another with --out") from None
+        raise SweepError(f"{folder} cannot be used: {why}; choose another folder") from None
     if names and FILE not in names:
-        raise SweepError(f"{folder} is no sweep's folder and not empty; choose another --out")
+        raise SweepError(f"{folder} is no sweep's folder and not empty; choose another folder")
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise SweepError(f"no permission to write in {folder}; choose another --out")
+        raise SweepError(f"no permission to write in {folder}; choose another folder")
 
 
 def _describe(plan: SweepPlan, folder: Path) -> None:

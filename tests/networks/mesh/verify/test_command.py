@@ -113,3 +113,12 @@ def test_an_exploration_says_that_it_tried_one_value_of_wide_draws_if_there_were
     assert case.record["one_value"] == drawn
     assert re.search(f" s  {said}$", case.lines[0])
     assert case.but == (ONE_VALUE if drawn else "")
+
+
+def test_columns_stand_below_each_other_whatever_the_names():
+    asked = options(graph="line", walks=1)
+    heads = [case(lambda *_: False).lines[0] for case in command.explorations(None, asked)]
+    assert {"gateways that are asked", "a message"} <= {
+        re.search(r"(?:search|graph) +(.*?) {2,}", head)[1] for head in heads
+    }
+    assert len({head.index(" successors") for head in heads}) == 1

@@ -227,6 +227,21 @@ def test_a_node_alone_on_its_machine_has_its_way_by_those_on_others():
     )  # fmt: skip
 
 
+def path(port, **more):
+    return {"name": f"udp {port}", "own": "", "port": port, "up": True, "broken": False, **more}
+
+
+def test_a_gateway_alone_whose_every_path_is_broken_serves_nobody():
+    alone = {"role": "gateway", "onward": []}
+    for paths in ([], [path(0)], [path(0, broken=True), path(1)]):
+        assert judged({0: node(0, **alone, neighbours=[], paths=paths)})[0] == "ok"
+    paths = [path(0, broken=True), path(1, up=False)]
+    for neighbours in ([], hears(1)):  # whom it has not forgotten yet
+        level, text = judged({0: node(0, **alone, neighbours=neighbours, paths=paths)})
+        assert level == "down"
+        assert text.startswith("The only node leads, and hears nobody: no path of it carries any")
+
+
 def chain_by(middle, **more):
     """Gateway 0, then 1, then `middle` elsewhere, and 3 behind it."""
     return {0: node(0, role="gateway", neighbours=hears(1)),

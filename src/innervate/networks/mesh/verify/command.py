@@ -19,6 +19,8 @@ from innervate.verify.tally import Tally
 
 __all__ = ["MUTANTS", "hunt"]
 
+NAME_WIDE = 12  # characters of the column of names, at least
+
 
 def notice(options: Any) -> str:
     """What to say before the first: nothing is compiled."""
@@ -52,10 +54,14 @@ def wanted_of(options: Any) -> cases.MeshWanted:
 def explorations(_network: Any, options: Any) -> Iterator[Explore]:
     """All that the options of the command line ask for."""
     wanted = wanted_of(options)
-    return (partial(_explore, name, model, wanted) for name, model in cases.models(wanted))
+    models = list(cases.models(wanted))
+    wide = max(NAME_WIDE, *(len(name) for name, _ in models))
+    return (partial(_explore, name, model, wanted, wide=wide) for name, model in models)
 
 
-def _explore(name: str, model: Any, wanted: cases.MeshWanted, tell: Tell) -> Case:
+def _explore(
+    name: str, model: Any, wanted: cases.MeshWanted, tell: Tell, wide: int = NAME_WIDE
+) -> Case:
     links = cases.text_of(model.links)
 
     def progress(tally: Tally) -> bool:
@@ -64,7 +70,7 @@ def _explore(name: str, model: Any, wanted: cases.MeshWanted, tell: Tell) -> Cas
 
     found = cases.run(model, wanted, progress)
     tally, story = found.tally, story_of(found) if found.broken else None
-    head = f"{links:24} {model.failover:9} {name:12}{common.many(tally)} {tally.wall_s:7.1f} s"
+    head = f"{links:24} {model.failover:9} {name:{wide}}{common.many(tally)} {tally.wall_s:7.1f} s"
     return Case(
         lines=common.lines_of(head, story, partial(_extent, found)),
         record=_record(name, found, story),
