@@ -40,7 +40,7 @@ class Elsewhere(NamedTuple):
     leads: bool = False  # one of them is a gateway that is followed here
     silent: bool = False  # one was, and nothing comes from it any more
     surely: bool = True  # none of them is one of those here that are silent
-    heard: bool = True  # those that are asked have neighbours, here or there, or no links at all
+    heard: bool = True  # those that are asked have neighbours and a path that carries, or no paths
 
 
 ALL_HERE = Elsewhere()
@@ -58,14 +58,14 @@ def headline(
 
     degraded: a message or an alarm was lost or came twice, a broadcast missed somebody, a packet
     met a node twice, a node is off, cut off or without a way, the network is in parts. down:
-    nobody's messages get through to a gateway, nor did anything come to anybody else since.
-    no data: nobody has heard a gateway yet, or nobody hears the only node.
+    nobody's messages get through to a gateway, nor did anything come to anybody else since, or
+    the only node hears nobody. no data: nobody has heard a gateway yet.
     """
     lost = traffic.crossings + traffic.decided - traffic.learned - traffic.delivered
     if not (ways.on & ways.joined).any() and not ways.off.any() and not lost:
         return Headline(NO_DATA, "No node leads as gateway yet.")
     if len(ways.on) == 1 and ways.leads.all() and not elsewhere.heard:
-        return Headline(NO_DATA, "The only node leads, and hears nobody.")
+        return Headline(DOWN, "The only node leads, and hears nobody.", (0,))
     said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere), *_twice(traffic)]
     came, afar = _came(traffic, len(ways.on)), _afar(elsewhere)
     if not said:

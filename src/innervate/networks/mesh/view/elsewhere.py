@@ -24,9 +24,10 @@ def elsewhere(said: Iterable[Status], here: Collection[int], all_known: bool) ->
     led = {one["gateway"] for one in said if one.get("gateway") is not None} - set(here)
     heard = {one["gateway"] for one in said if not one.get("gateway_silent")} & led
     nodes = tuple(sorted(near - set(here) | led))
-    linked = any(one.get("paths") for one in said)
     silent = bool(led) and not heard
-    return Elsewhere(nodes, bool(heard), silent, all_known, bool(near) or not linked)
+    paths = [path for one in said for path in one.get("paths", ())]
+    carried = any(path["up"] and not path.get("broken") for path in paths)
+    return Elsewhere(nodes, bool(heard), silent, all_known, (bool(near) and carried) or not paths)
 
 
 def hand_on(known: Choices, links: Flags, leads: Flags) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.headline import DOWN, OK, Headline, sentence
+from innervate.analysis.headline import Headline
 from innervate.analysis.ways import NOWHERE
 from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Choices, Ways, ways
@@ -58,17 +58,7 @@ class MeshState(State):
 
     def judge(self) -> Headline:
         """The headline by the ways that `look` found; who is off is called silent."""
-        found = headline(self.ways, absent="silent", elsewhere=self.elsewhere)
-        if found.level == OK and len(self.map.places) == 1 and self._hears_nobody():
-            what = "the only node leads, and hears nobody: no path of it carries anything"
-            return Headline(DOWN, sentence([what]), (0,))
-        return found
-
-    def _hears_nobody(self) -> bool:
-        """True if the first of these leads, and all its paths are broken or cut."""
-        paths = self.word(self.map.places[0], "paths", ())
-        works = any(path["up"] and not path["broken"] for path in paths)
-        return bool(paths) and not works and bool(self.ways.leads[0])
+        return headline(self.ways, absent="silent", elsewhere=self.elsewhere)
 
     def _find_ways(self) -> Ways:
         """Who reaches its gateway, by what the nodes say of each other."""
