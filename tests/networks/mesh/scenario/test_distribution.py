@@ -84,3 +84,11 @@ def test_what_is_estimated_as_less_is_less_and_all_have_it():
     assert graph["airtime"]["tables_s"] < 0.9 * tables["airtime"]["tables_s"]
     assert graph["discovery"]["tables_s"] < tables["discovery"]["tables_s"]
     assert auto["fingerprint"] == graph["fingerprint"]
+
+
+def test_faint_links_lose_by_themselves_but_where_the_graph_is_flooded():
+    """Decision 0068: 1 dB above the radio's 50 % point."""
+    text = 'kind = "mesh"\nnodes = 5\nprotocol.{}'
+    said = [f'failover = "{way}"' for way in ("search", "alternate", "graph")]
+    found = [plan(loads(text.format(one))).params["poor"] for one in (*said, "tables = false")]
+    assert found == [-94, -94, -128, -94]

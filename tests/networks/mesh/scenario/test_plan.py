@@ -129,16 +129,6 @@ def test_first_or_best_can_be_had_with_every_discovery(discovery: str, usual: st
     assert loud.params["faint"] == 127
 
 
-def test_faint_links_lose_by_themselves_but_where_the_graph_is_flooded() -> None:
-    """Decision 0068: 1 dB above the radio's 50 % point."""
-    ways = ("search", "alternate", "graph")
-    said = 'nodes = 5\nprotocol.failover = "{}"'
-    assert [made(said.format(way)).params["poor"] for way in ways] == [-94, -94, -128]
-    assert made("nodes = 5\nprotocol.tables = false").params["poor"] == -94
-    slow = said.replace("5", "30") + '\nradio.profile = "38k4"'
-    assert [made(slow.format(way)).params["poor"] for way in ("search", "auto")] == [-104, -128]
-
-
 @pytest.mark.parametrize("profile", ["250k", "38k4", "ip", "ideal"])
 @pytest.mark.parametrize("nodes", [2, 15, 16, 32, 33, 64, 65])
 def test_parameters(profile: str, nodes: int) -> None:
