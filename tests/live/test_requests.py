@@ -116,15 +116,16 @@ def test_who_asks_for_much_at_once_leaves_others_their_turn(tmp_path):
     assert len(set(left)) == 200
 
 
+async def say_ok(request, writer):
+    await writer.line({"ok": True})
+
+
 @pytest.mark.parametrize("asked", [b"", b'{"do": ', line(do="x") + b'{"do": '])
 def test_who_does_not_end_a_request_in_time_is_told_and_hung_up_on(tmp_path, asked):
     where = tmp_path / "s"
 
-    async def handle(request, writer):
-        await writer.line({"ok": True})
-
     async def main():
-        async with serving(where, handle), asyncio.timeout(5):
+        async with serving(where, say_ok), asyncio.timeout(5):
             reader, writer = await asyncio.open_unix_connection(where)
             writer.write(asked)
             said = await reader.read()
@@ -138,11 +139,8 @@ def test_who_does_not_end_a_request_in_time_is_told_and_hung_up_on(tmp_path, ask
 def test_who_has_asked_may_take_time_to_ask_again_and_an_empty_line_is_a_request(tmp_path):
     where = tmp_path / "s"
 
-    async def handle(request, writer):
-        await writer.line({"ok": True})
-
     async def main():
-        async with serving(where, handle), asyncio.timeout(5):
+        async with serving(where, say_ok), asyncio.timeout(5):
             reader, writer = await asyncio.open_unix_connection(where)
             said = []
             for asked in (line(n=0), b"\n", b"\n\n", line(n=1), line(n=2)[:-1]):

@@ -69,8 +69,8 @@ class State:
 
     def hears_beyond(self) -> Any:
         """Per place whether it hears somebody who does not run here."""
-        paths = self.paths_beyond()
-        return np.array([any(place == at for at, _ in paths) for place in self.map.places])
+        hearing = {place for place, _ in self.paths_beyond()}
+        return np.array([place in hearing for place in self.map.places], np.bool_)
 
     def paths_beyond(self) -> set[tuple[Place, int]]:
         """Paths on which somebody is heard, by cables to nobody who runs here.
