@@ -17,7 +17,6 @@ from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Measured, Point
 from innervate.plot import style
-from innervate.scenario import Scenario
 from innervate.sim.cables.simulation import Result
 
 SETUPS = tuple(f"setup-{i}" for i in range(1, 9))
@@ -48,21 +47,28 @@ RULES = (
 )
 
 
-def loaded(
+def planned(
     setup: str, seed: int, duration_s: float, more: Mapping[str, Any] | None = None, **protocol: Any
-) -> Scenario:
-    """A bundled skin without its events.
+) -> Plan:
+    """The plan of a bundled skin without its events.
 
     `more` are other keys of the scenario, dotted; of those of [protocol] None leaves one as it is.
     """
     set_ = {f"protocol.{name}": value for name, value in protocol.items() if value is not None}
     changes = {**set_, "event": [], "duration_s": duration_s, **(more or {})}
-    return scenario.load(setup, changes.items(), seed)
+    made: Plan = scenario.plan(scenario.load(setup, changes.items(), seed))
+    return made
+
+
+def tabled(tables: dict[str, Any], seed: int) -> Plan:
+    """The plan of a scenario given as tables."""
+    made: Plan = scenario.plan(scenario.from_dict(tables, seed=seed))
+    return made
 
 
 def simulated(tables: dict[str, Any], seed: int, **options: Any) -> Result:
     """Run a scenario given as tables."""
-    return simulate(scenario.plan(scenario.from_dict(tables, seed=seed)), **options)
+    return simulate(tabled(tables, seed), **options)
 
 
 def plan_of(setup: str) -> Plan:
@@ -106,12 +112,11 @@ class Case:
         whose = {"random": which} if what == "random" else {what: int(which)}
         event = {"action": "cut", "at_s": [settled, settled + DRAWN_PERIODS * period], **whose}
         duration_s = settled + (DRAWN_PERIODS + self.k + WATCH_PERIODS) * period
-        made: Plan = scenario.plan(loaded(
+        return planned(
             self.setup, seed, duration_s, SILENT | {"event": [event]}, rule=self.rule,
             updates=self.updates, beacon_hz=self.beacon_hz, k=self.k, m=self.m or None,
             gap_us=self.gap_us if self.gap_us >= 0 else None,
-        ))  # fmt: skip
-        return made
+        )  # fmt: skip
 
     def point(self, seeds: range) -> Point:
         """The point that measures its recoveries."""

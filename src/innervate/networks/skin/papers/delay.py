@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate import scenario
-from innervate.networks.skin.papers.common import loaded, seeds_of
+from innervate.networks.skin.papers.common import planned, seeds_of
 from innervate.networks.skin.protocol.constants import DATA, PORTS
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Claims, Measured, Point, about, verdict
@@ -41,10 +40,8 @@ def measure(rate_hz: int, seeds: Sequence[int]) -> dict[str, Any]:
     """Delay from a cell to the PC of all samples together (ms), how many, and the hop latency."""
     parts = []
     for seed in seeds:
-        plan = scenario.plan(loaded(
-            SETUP, seed, SETTLED_S + COUNTED_S, {"data.rate_hz": rate_hz}, updates="periodic",
-            beacon_hz=BEACON_HZ,
-        ))  # fmt: skip
+        plan = planned(SETUP, seed, SETTLED_S + COUNTED_S, {"data.rate_hz": rate_hz},
+                       updates="periodic", beacon_hz=BEACON_HZ)  # fmt: skip
         ways = _Ways(plan.graph)
         simulate(plan, tap=ways)
         parts.append(np.array(ways.took, float))

@@ -8,10 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate import scenario
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
 from innervate.networks.skin.analysis.rows import parent_changes
-from innervate.networks.skin.papers.common import SILENT, loaded, number, plan_of, seeds_of
+from innervate.networks.skin.papers.common import SILENT, number, plan_of, planned, seeds_of
 from innervate.networks.skin.papers.startup import CLOCKS
 from innervate.networks.skin.papers.steps import stale_sizes
 from innervate.networks.skin.sim.simulate import simulate
@@ -89,10 +88,10 @@ def points(quick: bool) -> list[Point]:
 def measure(setup: str, periods: int, rule: str, seed: int) -> dict[str, Any]:
     """Moves while watched, and the balance factor at the end."""
     settle = max(SETTLE, SETTLE_TURNS * periods)
-    result = simulate(scenario.plan(loaded(
+    result = simulate(planned(
         setup, seed, (settle + WATCH) / HZ, SILENT, updates="periodic", beacon_hz=HZ,
         balance_periods=periods, balance_rule=rule,
-    )))  # fmt: skip
+    ))  # fmt: skip
     changes = parent_changes(result)
     late = changes.balancing & (changes.time_us > 1e6 * settle / HZ)
     return {"moves": int(late.sum()), "beta": balance_factor(port_loads(result))}

@@ -3,10 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate import scenario
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.frames import beacon_share
-from innervate.networks.skin.papers.common import loaded
+from innervate.networks.skin.papers.common import planned
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
@@ -38,8 +37,8 @@ def points(quick: bool) -> list[Point]:
 
 def measure(updates: str, beacon_hz: int) -> float | None:
     """Share of the cables' capacity that beacons took, start-up included, nothing failing."""
-    made = loaded(SETUP, 1, PERIODS / beacon_hz, updates=updates, beacon_hz=beacon_hz)
-    return beacon_share(simulate(scenario.plan(made)))
+    plan = planned(SETUP, 1, PERIODS / beacon_hz, updates=updates, beacon_hz=beacon_hz)
+    return beacon_share(simulate(plan))
 
 
 def draw(got: Measured) -> Figure:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from innervate.analysis.intervals import mean_interval
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
-from innervate.networks.skin.papers.common import loaded, number, seeds_of
+from innervate.networks.skin.papers.common import number, planned, seeds_of
 from innervate.networks.skin.papers.steps import Steps
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, about, verdict
@@ -89,7 +89,7 @@ def points(quick: bool) -> list[Point]:
 
 def measure(setup: str, mode: Mode, seed: int, window_s: float) -> dict[str, Any]:
     """Balance factor, loads and loss after settling."""
-    steps = Steps(loaded(
+    steps = Steps(planned(
         setup, seed, mode.settle_s + window_s, {"data.rate_hz": RATE_HZ, "data.queue": mode.queue},
         rule=mode.rule, updates="periodic", beacon_hz=BEACON_HZ, forward_us=list(mode.forward_us),
     ))  # fmt: skip

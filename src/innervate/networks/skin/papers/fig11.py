@@ -5,12 +5,11 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate import scenario
 from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import unrouted_steps
 from innervate.networks.skin.papers import arm
-from innervate.networks.skin.papers.common import loaded, seeds_of
+from innervate.networks.skin.papers.common import planned, seeds_of
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, about, verdict
@@ -69,8 +68,8 @@ def measure(rule: str, cut: bool, seed: int) -> dict[str, Any]:
     event = [{"action": "cut", "interface": 1, "at_s": LEAD_S + UNPLUG_S}] if cut else []
     hand = {"path": touch(), "radius_mm": 26.0, "force_n": 1.5}
     more = {"data.rate_hz": DATA_HZ, "touch": hand, "event": event}
-    plan = scenario.plan(loaded(SETUP, seed, LEAD_S + DURATION_S, more, rule=rule,
-                                updates="periodic", beacon_hz=BEACON_HZ, k=K))  # fmt: skip
+    plan = planned(SETUP, seed, LEAD_S + DURATION_S, more, rule=rule, updates="periodic",
+                   beacon_hz=BEACON_HZ, k=K)  # fmt: skip
     result = simulate(plan, deliveries=True)
     steps = slice(round(LEAD_S * 1e6 / arm.STEP_US), None)
     moved = arm.move(result.deliveries, arm.torque_table(ROWS, COLUMNS), result.ended_us)

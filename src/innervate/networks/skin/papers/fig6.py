@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.rows import broken_changes
-from innervate.networks.skin.papers.common import seeds_of, simulated
+from innervate.networks.skin.papers.common import seeds_of, simulated, tabled
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import ONE
 from innervate.papers import drawing
@@ -101,7 +101,7 @@ def points(quick: bool) -> list[Point]:
 def history(r_f: float, r_r: float) -> list[float]:
     """p_f of n1's port to the PC after each period, from the moment the cable is loose."""
     end_s = LOOSE_S + (SHOWN_PERIODS + 1) / HZ
-    steps = Steps(loose(r_f, r_r, LOSS, end_s), SHOWN_SEED)
+    steps = Steps(tabled(loose(r_f, r_r, LOSS, end_s), SHOWN_SEED))
     found = []
     for i in range(1, SHOWN_PERIODS + 1):
         steps.to(LOOSE_S + (i + 0.5) / HZ)  # half-way between two ticks

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate import scenario
 from innervate.networks.skin.analysis.rows import unrouted_steps
 from innervate.networks.skin.papers import common
 from innervate.networks.skin.papers.common import RULES, SETUPS, Rule, seeds_of
@@ -55,10 +54,10 @@ def measure(setup: str, rule: Rule, lock_step: bool, seed: int) -> dict[str, Any
             first_us.append(int(sent["start"][0]))
 
     more = {**common.SILENT, "timing.lock_step": lock_step}
-    plan = scenario.plan(common.loaded(
+    plan = common.planned(
         setup, seed, PERIODS / HZ, more, rule=rule.name, updates="periodic", beacon_hz=HZ, k=K,
         m=rule.m or None,
-    ))  # fmt: skip
+    )  # fmt: skip
     steps = unrouted_steps(simulate(plan, tap=note_first))
     done = steps.time_us[-1] if steps.cells[-1] == 0 else np.nan
     return {"periods": float(done - first_us[0]) * HZ / 1e6, "depth": plan.depth_max}

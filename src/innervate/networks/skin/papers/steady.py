@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate import scenario
-from innervate.networks.skin.papers.common import SILENT, loaded, seeds_of
+from innervate.networks.skin.papers.common import SILENT, planned, seeds_of
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.papers.experiment import Claim, Measured, Point, Span, beyond, verdict
@@ -49,7 +49,7 @@ def longer(setup: str, variant: Variant, seed: int) -> list[list[int]]:
     """Cells not on a shortest way: at LOOKS after switching on, and after interface 1 is cut."""
     rule, updates, m = variant
     cut = {"action": "cut", "interface": 1, "at_s": CUT_AFTER / HZ}
-    steps = Steps(loaded(
+    steps = Steps(planned(
         setup, seed, (CUT_AFTER + LOOKS[-1] + 1) / HZ, SILENT | {"event": [cut]}, rule=rule,
         updates=updates, beacon_hz=HZ, k=K, m=m or None,
     ))  # fmt: skip

@@ -4,12 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from innervate import scenario
 from innervate.networks.skin.analysis.load import interfaces_along
-from innervate.networks.skin.papers.common import SILENT, loaded
+from innervate.networks.skin.papers.common import SILENT, planned
 from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.sim.simulate import simulation
-from innervate.scenario import Scenario
 from innervate.sim.status import DONE
 
 BEACON_HZ = 250
@@ -17,15 +15,14 @@ STALE_FROM = 300  # periods until first routes and their sizes stand
 
 
 class Steps:
-    """Runs a scenario up to given times; between them `world` may be read.
+    """Runs a plan up to given times; between them `world` may be read.
 
     Rows that the run reports are dropped: what is asked of it here is its state.
     """
 
-    def __init__(self, source: Scenario | dict[str, Any], seed: int | None = None) -> None:
-        made = source if isinstance(source, Scenario) else scenario.from_dict(source, seed=seed)
-        self.plan: Plan = scenario.plan(made)
-        self._running = simulation(self.plan)
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self._running = simulation(plan)
 
     @property
     def world(self) -> Any:
@@ -55,7 +52,7 @@ def stale_sizes(setup: str, lock_step: bool, watched: int, seed: int) -> list[in
     """
     more = {**SILENT, "timing.lock_step": lock_step}
     duration_s = (STALE_FROM + watched + 1) / BEACON_HZ
-    steps = Steps(loaded(setup, seed, duration_s, more, updates="periodic", beacon_hz=BEACON_HZ))
+    steps = Steps(planned(setup, seed, duration_s, more, updates="periodic", beacon_hz=BEACON_HZ))
     before: Any = None
     found: list[int] = []
     since, fresh = -1, False
