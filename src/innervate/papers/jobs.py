@@ -141,16 +141,17 @@ class Compared:
         return made
 
     def less(
-        self, where: Mapping[str, Case], name: str, pair: tuple[Entry, Entry], words: Words
+        self, where: Mapping[str, Case], name: str, pair: tuple[str, str], words: Words
     ) -> Claim:
-        """The claim that, seed by seed, the first of a pair gives less than the second.
+        """The claim that, seed by seed, the first of a pair of entries gives less than the second.
 
         It holds if in all cases, `where` by a word for each, the 95 % interval of the median
         difference lies below 0.
         """
+        known = {one.name: one for one in entries(self.job.name)}
         holds, said = True, []
         for word, case in where.items():
-            ours, its = (self._by_seed(case, entry, name) for entry in pair)
+            ours, its = (self._by_seed(case, known[who], name) for who in pair)
             both = [(ours[seed], its[seed]) for seed in ours if seed in its]
             differences = [a - b if a != b else 0.0 for a, b in both]
             between = intervals.median_interval(differences)

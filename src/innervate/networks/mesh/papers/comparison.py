@@ -14,7 +14,7 @@ from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import in_field, jobs
 from innervate.papers.experiment import Claim
 from innervate.papers.in_field import NEVER, Sent, World
-from innervate.papers.jobs import Case, Column, Compared, Entry, Given, Job, Words, entries
+from innervate.papers.jobs import Case, Column, Compared, Entry, Given, Job, Words
 from innervate.scenario.actions.field import KILL, REVIVE
 from innervate.trace.streams import stream
 
@@ -245,13 +245,11 @@ CLAIMS = (
 def judge(compared: Compared) -> Iterator[Claim]:
     """What is better here, and what is not."""
     cases = {case.name: case for case in compared.cases()}
-    who = {entry.name: entry for entry in entries("mesh")}
     for one in CLAIMS:
         if one.case not in cases:  # of the full size
             continue
-        where = {one.case: cases[one.case]}
-        pair = (who[one.ours], who[one.other])
-        yield compared.less(where, one.name, pair, Words(one.claim, one.why))
+        where, words = {one.case: cases[one.case]}, Words(one.claim, one.why)
+        yield compared.less(where, one.name, (one.ours, one.other), words)
 
 
 SEARCH: Options = ()

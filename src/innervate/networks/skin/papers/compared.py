@@ -153,7 +153,6 @@ def judge(compared: jobs.Compared) -> Iterator[Claim]:
 
 
 def _recovery(compared: jobs.Compared, place: str, cases: dict[str, jobs.Case]) -> Iterator[Claim]:
-    known = {one.name: one for one in jobs.entries(compared.job.name)}
     for ours, other, words, why in (
         (OURS, RFC, "at the same beacon rate, with k = 5,", SLOW_TO_FIND),
         (FAST, RFC, "at the same beacon rate, with k = 2,", NOTHING_TO_DO),
@@ -161,19 +160,17 @@ def _recovery(compared: jobs.Compared, place: str, cases: dict[str, jobs.Case]) 
         (OURS, STATIC, "with the same time to find a failure", ""),
     ):
         claim = f'{place}: {words} all cells of "{ours}" have a way again sooner than of "{other}"'
-        yield compared.less(cases, "routed_ms", (known[ours], known[other]), jobs.Words(claim, why))
+        yield compared.less(cases, "routed_ms", (ours, other), jobs.Words(claim, why))
 
 
 def _calm(compared: jobs.Compared, place: str, calm: dict[str, jobs.Case]) -> Iterator[Claim]:
-    known = {one.name: one for one in jobs.entries(compared.job.name)}
     for name, words, why, digits in (
         ("start_ms", "starts up sooner", LISTENS, 1),
         ("bits_per_s", "sends less control", WAVES, 0),
         ("largest_share", "loads the busiest port less", NO_TIES, 2),
     ):
         claim = f'{place}: "{OURS}" {words} than "{RFC}"'
-        pair = known[OURS], known[RFC]
-        yield compared.less(calm, name, pair, jobs.Words(claim, why, digits))
+        yield compared.less(calm, name, (OURS, RFC), jobs.Words(claim, why, digits))
 
 
 def _loops(compared: jobs.Compared) -> Claim:
