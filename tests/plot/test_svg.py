@@ -39,7 +39,7 @@ def test_any_text_makes_well_formed_xml(parse, label, words):
 
 def test_labels_and_tips(parse):
     drawing = svg.Drawing(20, 10, 'cut "A" & <B>')
-    drawing.rect((0, 0), (-3, 4), "bar", "p0 r1 c2")
+    drawing.path("M0,0h3v4z", "bar", "p0 r1 c2")
     tree = parse(drawing)
     assert tree.get("aria-label") == 'cut "A" & <B>'
     assert tree.get("role") == "img"

@@ -1,4 +1,4 @@
-"""What figures are drawn with: looks of series, bands, logarithmic axes, legends outside."""
+"""What figures are drawn with: logarithmic axes, rows, shares, legends outside, names of curves."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -7,15 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from innervate.plot import style
-
 HOLLOW: dict[str, Any] = {"ls": "", "mfc": "white"}  # markers of what is less than it should be
-
-
-def look(i: int, dash: int | None = None) -> dict[str, Any]:
-    """Colour, dash and marker of the i-th series; with the dash of another one."""
-    dash = i if dash is None else dash
-    return {"color": style.SERIES[i], "ls": style.DASHES[dash % 4], "marker": style.MARKERS[i]}
 
 
 def legend(
@@ -42,10 +34,10 @@ def logarithmic(ax: Axes, x: Sequence[float] = (), y: Sequence[float] = ()) -> N
     ax.minorticks_off()
 
 
-def rows(ax: Axes, names: Sequence[str], below: float = 0.6) -> None:
+def rows(ax: Axes, names: Sequence[str]) -> None:
     """Names of rows, the first one above."""
     ax.set_yticks(range(len(names)), names)
-    ax.set_ylim(len(names) - 1 + below, -0.6)
+    ax.set_ylim(len(names) - 0.4, -0.6)
 
 
 def tail(ax: Axes, values: Any, **how: Any) -> None:
@@ -67,12 +59,10 @@ def each_mode(ax: Axes, names: Sequence[str]) -> None:
 LEADER = (0.012, 0.05)  # from the axes' edge to the text, as shares of the axes' width
 
 
-def end_labels(
-    ax: Axes, ends: Sequence[tuple[float, str, str]], gap: float = 0.062, size: float = 6.5
-) -> None:
+def end_labels(ax: Axes, ends: Sequence[tuple[float, str, str]], gap: float = 0.062) -> None:
     """Name curves at their `ends` (last value, text, colour), when the limits of the axes are set.
 
-    `gap` is the least distance of two names, as a share of the axes' height; `size` is in points.
+    `gap` is the least distance of two names, as a share of the axes' height.
     """
     to_axes = ax.transData + ax.transAxes.inverted()
     x = ax.get_xlim()[1]
@@ -92,7 +82,7 @@ def end_labels(
             edge, start = LEADER
             ax.plot([1.0, 1 + edge, 1 + start], [height, y, y], color=colour, lw=0.5,
                     transform=ax.transAxes, clip_on=False)  # fmt: skip
-            ax.text(1.01 + start, y, text, color=colour, va="center", fontsize=size,
+            ax.text(1.01 + start, y, text, color=colour, va="center", fontsize=6.5,
                     transform=ax.transAxes)  # fmt: skip
 
 

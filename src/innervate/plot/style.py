@@ -49,6 +49,13 @@ _RC |= dict.fromkeys(("axes.labelcolor", "text.color", "xtick.labelcolor", "ytic
 _RC["grid.color"] = FAINT
 
 
+def look(number: int) -> dict[str, Any]:
+    """Colour, marker and dash of a series by its number, 0 and following."""
+    turn, i = divmod(number, len(SERIES))
+    marker = MARKERS[(i + turn) % len(MARKERS)]
+    return {"color": SERIES[i], "marker": marker, "ls": DASHES[number % len(DASHES)]}
+
+
 @contextmanager
 def house() -> Iterator[None]:
     """Draw and save inside this: the house style, whatever the user's own settings are."""

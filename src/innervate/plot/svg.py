@@ -116,11 +116,11 @@ class Drawing:
         """A straight line of a style class."""
         self.add("line", class_=kind, x1=start[0], y1=start[1], x2=end[0], y2=end[1])
 
-    def rect(self, corner: Point, size: Point, kind: str, tip: str = "") -> None:
+    def rect(self, corner: Point, size: Point, kind: str) -> None:
         """A rectangle; negative sizes count as nothing."""
         wide, high = max(size[0], 0.0), max(size[1], 0.0)
         data = f"M{number(corner[0])},{number(corner[1])}h{number(wide)}v{number(high)}"
-        self.path(f"{data}h{number(-wide)}z", kind, tip)
+        self.path(f"{data}h{number(-wide)}z", kind)
 
     def circle(self, centre: Point, radius: float, kind: str) -> None:
         """A circle of a style class, its radius in the drawing's units."""

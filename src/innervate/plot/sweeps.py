@@ -109,7 +109,7 @@ def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
         there = _from_first_to_last([place for place in places if place in groups], groups)
         found = [mean_interval(groups[place]) if groups[place] else GAP for place in there]
         across = [numbers[place] for place in there]
-        look = _look(number, "" if value is None else _text(value))
+        look = _look(number, value)
         ax.plot(across, [one.value for one in found], **look)
         low, high = [one.low for one in found], [one.high for one in found]
         ax.fill_between(across, low, high, color=look["color"], alpha=0.18, lw=0)
@@ -131,7 +131,7 @@ def _dots(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:
     for number, value in enumerate(_values(columns, by)[:LINES_MAX]):
         rows = zip(columns[x], columns[y], side, strict=True)
         kept = [(a, b) for a, b, c in rows if c == value and a is not None and b is not None]
-        look = _look(number, "" if value is None else _text(value))
+        look = _look(number, value)
         ax.plot([a for a, _ in kept], [b for _, b in kept], **(look | {"ls": "", "alpha": 0.6}))
     ax.set(xlabel=label(x), ylabel=label(y))
 
@@ -213,14 +213,8 @@ def _groups(columns: Columns, keys: tuple[str, str], y: str, value: Any) -> dict
     return groups
 
 
-def _look(number: int, name: str) -> dict[str, Any]:
-    i = number % len(style.SERIES)
-    return {
-        "color": style.SERIES[i],
-        "marker": style.MARKERS[(i + number // len(style.SERIES)) % len(style.MARKERS)],
-        "ls": style.DASHES[number % len(style.DASHES)],
-        "label": name or None,
-    }
+def _look(number: int, value: Any) -> dict[str, Any]:
+    return style.look(number) | {"label": None if value is None else _text(value) or None}
 
 
 def _name_places(ax: Axes, places: list[Any], numbers: dict[Any, float]) -> None:

@@ -112,7 +112,7 @@ def draw(got: Measured) -> Figure:
     for which, ax, title in zip(("first", "later"), axes[:2], titles, strict=True):
         for i, rule in enumerate(RULES):
             shares = [100 * lost(got, rule, which, k) for k in dead]
-            ax.plot(dead, shares, label=NAMES.get(rule.name, rule.name), **drawing.look(i))
+            ax.plot(dead, shares, label=NAMES.get(rule.name, rule.name), **style.look(i))
         ax.set(xlabel="dead nodes that nobody knows of", title=title)
     axes[0].set_ylabel("lost of connected (%)")
     _reliable(axes[2], got)

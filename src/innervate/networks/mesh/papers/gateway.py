@@ -135,7 +135,7 @@ def draw(got: Measured) -> Figure:
         ax = axes[flow]
         for i, setting in enumerate((ALONE, ONE, SECOND, BUSY)):
             x, y = _shares(got, setting, flow)
-            ax.plot(x, 100 * y, markevery=(i, 5), label=setting.name, **drawing.look(i))
+            ax.plot(x, 100 * y, markevery=(i, 5), label=setting.name, **style.look(i))
         ax.axvline(0, color=style.INK, lw=0.8)
         ax.set(ylim=(-4, 104), xlabel="offered so long after the death (s)", title=title)
     axes[0].set_ylabel("delivered (%)")

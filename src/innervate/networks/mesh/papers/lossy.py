@@ -121,7 +121,7 @@ def draw(got: Measured) -> Figure:
     figure, axes = style.panels(style.WIDE_IN, 2.7, 1, 3)
     some = losses(got.quick)
     for i, rule in enumerate(RULES):
-        look = drawing.look(i)
+        look = style.look(i)
         y = over_time(got, rule, FIVE)
         axes[0].plot((np.arange(len(y)) + 0.5) * BIN_S, 100 * y, label=rule.name, **look)
         axes[1].plot(some, [100 * delivered(got, rule, k) for k in some], **look)

@@ -97,7 +97,7 @@ def draw(got: Measured) -> Figure:
         _line(axes[0], i, ms, [told(got, "recall", reading, one) for one in ms])
         _line(axes[1], i, ns, [told(got, "recall", reading, nodes=n) for n in ns])
         spent = [np.mean(told(got, "airtime_s", reading, nodes=n)) for n in ns]
-        axes[2].plot(ns, spent, **drawing.look(i))
+        axes[2].plot(ns, spent, **style.look(i))
     axes[0].set_xscale("log")
     axes[0].set_xticks(SOME_MS, [str(ms) for ms in SOME_MS])
     axes[0].set(xlabel="jitter of requests (ms)", title="a  30 nodes")
@@ -115,7 +115,7 @@ def _line(ax: Axes, i: int, x: Any, found: list[list[float]]) -> None:
     low, high = ([end(values) for values in found] for end in (min, max))
     ax.fill_between(x, low, high, color=style.SERIES[i], alpha=0.15, lw=0)
     ax.plot(x, [np.mean(values) for values in found], label=f"{reading}: {READINGS[reading]}",
-            **drawing.look(i))  # fmt: skip
+            **style.look(i))  # fmt: skip
 
 
 def judge(got: Measured) -> Claims:

@@ -139,7 +139,7 @@ def draw(got: Measured) -> Figure:
     figure, axes = style.panels(style.WIDE_IN, 2.7, 1, 2, sharey=True)
     for ax, radio, letter in zip(axes, RADIOS, "ab", strict=True):
         for i, scheme in enumerate(SCHEMES):
-            _curve(ax, sizes(got, radio, scheme), scheme, drawing.look(i))
+            _curve(ax, sizes(got, radio, scheme), scheme, style.look(i))
         ax.axhline(100 * HALF, color=style.INK, lw=0.8, ls=":", label="half")
         ax.set_yscale("log")
         drawing.logarithmic(ax, SOME if got.quick else (10, 30, 100, 250))

@@ -108,9 +108,9 @@ def draw(got: Measured) -> Figure:
     some = degrees(got.quick)
     for i, reading in enumerate(READINGS):
         y = [mean(got, reading, degree) for degree in some]
-        left.plot(some, y, label=reading, **drawing.look(i))
+        left.plot(some, y, label=reading, **style.look(i))
         apart = [k for k, degree in enumerate(some) if broken(got, reading, degree)]
-        left.plot(some, y, markevery=apart, **drawing.look(i) | drawing.HOLLOW)
+        left.plot(some, y, markevery=apart, **style.look(i) | drawing.HOLLOW)
     left.axhline(1, color=style.INK, lw=0.6)
     left.set(xlabel="mean degree", ylabel="hops / shortest way", xticks=some,
              title="a  stretch of the tables' ways, by discovery")  # fmt: skip

@@ -83,9 +83,9 @@ def draw(got: Measured) -> Figure:
     figure, axes = style.panels(style.WIDE_IN, 2.9, 1, 2)
     for i, scheme in enumerate(SCHEMES):
         lost = [100 * (1 - one) for one in shares(got, scheme, "came")]
-        axes[0].plot(speeds(got.quick), lost, label=scheme, **drawing.look(i))
+        axes[0].plot(speeds(got.quick), lost, label=scheme, **style.look(i))
         round_ = [100 * one for one in shares(got, scheme, "looped")]
-        axes[1].plot(speeds(got.quick), round_, **drawing.look(i))
+        axes[1].plot(speeds(got.quick), round_, **style.look(i))
     for ax, words, letter in zip(axes, ("lost", "visited a node twice"), "ab", strict=True):
         ax.set(xlabel="speed of half of the nodes (m/s)", ylabel=f"{words} (%)",
                title=f"{letter}  {words}")  # fmt: skip

@@ -15,6 +15,7 @@ WIDTH, HEIGHT_MAX, MARGIN = 760.0, 660.0, 34.0
 LONELY_CM = 500.0, 100.0  # around a node that is alone
 SCALE_PX = 16.0  # below the map, for the bar that says how long metres are
 DOT_PX = 5.0
+STEP_PX = 7.0  # between the places on a line that keep names away
 NAME_PX, STRONG_PX, LINE_PX = 6.6, 7.6, 12.0  # letters at 11 px, on the safe side
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -133,10 +134,10 @@ class Labels:
         x, y = centre
         self._taken.append((x - radius, y - radius, x + radius, y + radius))
 
-    def block_line(self, points: Iterable[Point], step: float = 7.0) -> None:
+    def block_line(self, points: Iterable[Point]) -> None:
         """Nothing may be written on a line."""
         for (ax, ay), (bx, by) in pairwise(points):
-            count = max(1, int(max(abs(bx - ax), abs(by - ay)) / step))
+            count = max(1, int(max(abs(bx - ax), abs(by - ay)) / STEP_PX))
             for i in range(count + 1):
                 share = i / count
                 self.block((ax + share * (bx - ax), ay + share * (by - ay)), 2.0)

@@ -86,7 +86,7 @@ def draw(got: Measured) -> Figure:
     for ax in (whole, middle):
         lanes.draw(ax, got.values["fig1 run"], NAMES, range(4), waves=True)
     whole.set_xlim(-0.3, UNTIL_US / 1e3)
-    whole.legend(handles=lanes.keys(waves=True, deaf=True), loc="lower left", ncols=6,
+    whole.legend(handles=lanes.keys(waves=True), loc="lower left", ncols=6,
                  bbox_to_anchor=(0, 1), columnspacing=1.2)  # fmt: skip
     middle.set_xlim(4.9, 12.6)
     middle.text(REPORTS[0][2] / 1e3 + 0.06, R2 + 0.12, "reports", fontsize=6)

@@ -77,8 +77,8 @@ def _frame(ax: Axes, run: Any, frame: Any, floor: float) -> None:
                     fontsize=6, clip_on=True)  # fmt: skip
 
 
-def keys(waves: bool, deaf: bool) -> list[Patch]:
-    """Entries of the legend; `waves`: CD and VOC lines too, `deaf`: the radio's switching too."""
+def keys(waves: bool) -> list[Patch]:
+    """Entries of the legend; `waves`: CD and VOC lines, too."""
     made = [
         Patch(facecolor=FILLS[DATA][0], edgecolor=style.INK, lw=0.5, label="packet"),
         Patch(facecolor=FILLS[DATA][0], edgecolor=style.VERMILION, hatch=COLLIDED, lw=0.5,
@@ -88,6 +88,4 @@ def keys(waves: bool, deaf: bool) -> list[Patch]:
     if waves:
         made.append(Patch(facecolor=style.INK, label="CD = 1 (upper line)"))
         made.append(Patch(facecolor=style.GREEN, label="VOC = 1 (lower line)"))
-    if deaf:
-        made.append(Patch(facecolor=style.PALE, edgecolor=style.FAINT, label="cannot listen"))
-    return made
+    return [*made, Patch(facecolor=style.PALE, edgecolor=style.FAINT, label="cannot listen")]

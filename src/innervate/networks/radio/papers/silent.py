@@ -56,7 +56,7 @@ def draw(got: Measured) -> Figure:
     figure, (left, right) = style.panels(style.WIDE_IN, 2.5, 1, 2, width_ratios=(1.25, 1))
     lanes.draw(left, got.values["silent run"], ("Robot1", "Robot2"), range(2), waves=True)
     left.set(xlim=(-0.5, 12), title="a  two robots, 2 ms turnaround: nobody hears anybody")
-    left.legend(handles=lanes.keys(waves=True, deaf=True), loc="upper center", ncols=3,
+    left.legend(handles=lanes.keys(waves=True), loc="upper center", ncols=3,
                 bbox_to_anchor=(0.45, -0.22), columnspacing=1.2)  # fmt: skip
     _share(right, got)
     return figure

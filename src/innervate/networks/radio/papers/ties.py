@@ -98,7 +98,7 @@ def draw(got: Measured) -> Figure:
     names = [f"robot {node + 1}" for node in range(5)]
     lanes.draw(right, run, names, order, waves=False)
     right.set(xlim=(FROM_US / 1e3, UNTIL_US / 1e3), title="b  five robots: later CR-Rs overlap")
-    right.legend(handles=lanes.keys(waves=False, deaf=True), loc="upper center", ncols=4,
+    right.legend(handles=lanes.keys(waves=False), loc="upper center", ncols=4,
                  bbox_to_anchor=(0.45, -0.19), columnspacing=1.2)  # fmt: skip
     return figure
 

@@ -118,7 +118,7 @@ def _moves(ax: Axes, got: Measured) -> None:
             for rate in rates(got.quick)
         }
         means = [1000 * np.mean(found[periods]) / WATCH for periods in sorted(found)]
-        ax.plot(sorted(found), means, label=number(setup), **drawing.look(i))
+        ax.plot(sorted(found), means, label=number(setup), **style.look(i))
     drawing.logarithmic(ax, [2, 8, 40, 160, 1600])
     ax.set_yscale("symlog", linthresh=1)
     ax.set_yticks([0, 1, 10, 100, 1000, 10_000], ["0", "1", "10", "100", "1000", "10000"])
