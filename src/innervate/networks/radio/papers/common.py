@@ -1,6 +1,6 @@
 """What the figures of the radio paper share: runs of the slotted level, looks of curves."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,6 +24,7 @@ SHORT = dict(zip(CONTENDING, ("D1", "D2", "D2'"), strict=True))
 PEERS = ("p-persistent", "slotted-aloha", "dcf", "tree", "tdma")
 MACS = (RESERVED, *CONTENDING, *PEERS)
 READING_B = f"{RESERVED} B"
+EVERYBODY = (RESERVED, READING_B, *CONTENDING, *PEERS)
 WHOLE = tuple(range(2, 101))
 FEW = (2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 70, 100)
 
@@ -104,6 +105,13 @@ def slope(x: Any, y: Any) -> tuple[float, float, float]:
     return float(rise), float(start), float(1 - left / ((y - y.mean()) ** 2).sum())
 
 
+def overtaken(
+    got: Measured, curves: Iterable[Curve], ahead: Callable[[int, float], bool]
+) -> dict[str, int | None]:
+    """By the names of CSMA/CDs, from which n on CSMA/CD-R is `ahead` of them: (n, their mean)."""
+    return {SHORT[one.mac]: first_from(one.ns, map(ahead, one.ns, one.mean(got))) for one in curves}
+
+
 class Look(NamedTuple):
     """How a curve is called and drawn."""
 
@@ -111,6 +119,12 @@ class Look(NamedTuple):
     colour: str
     dash: Any
     marker: str
+
+    @property
+    def how(self) -> dict[str, Any]:
+        """The same, as matplotlib calls it."""
+        marker = self.marker or None
+        return {"label": self.name, "color": self.colour, "ls": self.dash, "marker": marker}
 
 
 _LONG, _DOT, _MIXED = style.DASHES[1:]
@@ -134,10 +148,7 @@ def line(ax: Axes, look: Look, x: Sequence[float], y: Any, marks: Iterable[float
     """A curve with markers at some of its places."""
     chosen = set(marks)
     where = [i for i, n in enumerate(x) if n in chosen]
-    ax.plot(
-        x, y, color=look.colour, ls=look.dash, marker=look.marker or None, markevery=where,
-        label=look.name, ms=3, lw=1.1,
-    )  # fmt: skip
+    ax.plot(x, y, markevery=where, ms=3, lw=1.1, **look.how)
 
 
 SPREAD = (5, 95)  # percentiles of the runs
@@ -149,10 +160,8 @@ def bars(ax: Axes, look: Look, x: Sequence[float], runs: Any) -> None:
     low, high = (
         np.array([np.percentile(some, share) for some in runs]) - means for share in SPREAD
     )
-    ax.errorbar(
-        x, means, yerr=[np.maximum(-low, 0), np.maximum(high, 0)], color=look.colour, ls=look.dash,
-        marker=look.marker or None, ms=3, lw=1.1, elinewidth=0.8, capsize=1.5, label=look.name,
-    )  # fmt: skip
+    reach = [np.maximum(-low, 0), np.maximum(high, 0)]
+    ax.errorbar(x, means, reach, ms=3, lw=1.1, elinewidth=0.8, capsize=1.5, **look.how)
 
 
 def band(ax: Axes, look: Look, x: Sequence[float], runs: Any) -> None:

@@ -182,9 +182,8 @@ def _panel(ax: Axes, got: Measured, size: int, n: int) -> None:
         found = [delay(got, who, size, n, load) for load in loads(got.quick)]
         means, halves = zip(*found, strict=True)
         low = [min(half, 0.9 * mean) for mean, half in found]
-        ax.errorbar(x, means, yerr=[low, halves], color=look.colour, ls=look.dash,
-                    marker=look.marker, ms=3, lw=1.1, elinewidth=0.6, capsize=1.5,
-                    label=look.name)  # fmt: skip
+        reach = [low, halves]
+        ax.errorbar(x, means, reach, ms=3, lw=1.1, elinewidth=0.6, capsize=1.5, **look.how)
     fine = np.linspace(0.05, 0.95, 60)
     for per_turn, colour, name in ((1, style.INK, "floor: one perfect queue"),
                                    (4, style.SOFT, "floor, 4 packets a turn")):  # fmt: skip

@@ -110,10 +110,8 @@ def draw(got: Measured) -> Figure:
 
 def _loads(ax: Axes, got: Measured) -> None:
     for mac in LIGHT:
-        look = LOOKS[mac]
         values = [got[level(mac, load, got.quick)]["delay"][1] for load in LOADS]
-        ax.plot(LOADS, values, color=look.colour, ls=look.dash, marker=look.marker,
-                label=look.name)  # fmt: skip
+        ax.plot(LOADS, values, **LOOKS[mac].how)
     for mode, colour, marker in zip(EVENT, (style.SKY, style.BLACK), ("P", "X"), strict=True):
         found = [got[event(mode, load, got.quick)]["delay"] for load in LOADS]
         values = [float(np.mean([one["p95"] for one in some])) for some in found]

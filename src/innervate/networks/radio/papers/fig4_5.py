@@ -35,8 +35,7 @@ def curve(mac: str, size: int, quick: bool) -> Curve:
 
 def points(quick: bool) -> list[Point]:
     """All protocols at both packet lengths."""
-    macs = (RESERVED, common.READING_B, *common.CONTENDING, *common.PEERS)
-    return [curve(mac, size, quick).point() for size in SIZES for mac in macs]
+    return [curve(mac, size, quick).point() for size in SIZES for mac in common.EVERYBODY]
 
 
 def draw(got: Measured) -> Figure:
@@ -82,17 +81,14 @@ def _small(got: Measured) -> Claim:
 
 
 def _crossing(got: Measured, size: int) -> Claim:
-    found = {}
-    for mac, name in common.SHORT.items():
-        one = curve(mac, size, got.quick)
-        ours = np.array([forms.reserved_throughput(n, size) for n in one.ns])
-        found[name] = common.first_from(one.ns, ours > one.mean(got))
+    curves = [curve(mac, size, got.quick) for mac in common.CONTENDING]
+    found = common.overtaken(got, curves, lambda n, s: forms.reserved_throughput(n, size) > s)
     return Claim(
         str(SIZES.index(size) + 4),
         f"T = {size}: CSMA/CD-R shows increasingly superior performance as n increases",
         "CSMA/CD-R has the higher S than "
         + joined(f"{name} from n = {n}" for name, n in found.items())
-        + f" ({one.seeds} runs each)",
+        + f" ({curves[-1].seeds} runs each)",
         verdict(all(found.values()), "Q14"),
         "which CSMA/CD the paper means it does not say; where the curves cross depends on it",
     )

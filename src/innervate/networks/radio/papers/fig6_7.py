@@ -1,6 +1,5 @@
 """Figs. 6 and 7: how long a disaster takes, T_D over n, T = 5 and 25; all protocols beside it."""
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -33,8 +32,7 @@ def curve(mac: str, size: int, quick: bool) -> Curve:
 
 def points(quick: bool) -> list[Point]:
     """All protocols at both packet lengths."""
-    macs = (RESERVED, common.READING_B, *common.CONTENDING, *common.PEERS)
-    return [curve(mac, size, quick).point() for size in SIZES for mac in macs]
+    return [curve(mac, size, quick).point() for size in SIZES for mac in common.EVERYBODY]
 
 
 def draw(got: Measured) -> Figure:
@@ -116,17 +114,14 @@ def _small(got: Measured) -> Claim:
 
 
 def _crossing(got: Measured, size: int) -> Claim:
-    found = {}
-    for mac, name in common.SHORT.items():
-        one = curve(mac, size, got.quick)
-        ours = np.array([forms.reserved_duration_slots(n, size) for n in one.ns])
-        found[name] = common.first_from(one.ns, ours < one.mean(got))
+    curves = [curve(mac, size, got.quick) for mac in common.CONTENDING]
+    found = common.overtaken(got, curves, lambda n, t: forms.reserved_duration_slots(n, size) < t)
     return Claim(
         str(SIZES.index(size) + 6),
         f"T = {size}: CSMA/CD-R is superior as the number of collisions increases",
         "T_D of CSMA/CD-R is shorter than of "
         + joined(f"{name} from n = {n}" for name, n in found.items())
-        + f" ({one.seeds} runs each)",
+        + f" ({curves[-1].seeds} runs each)",
         verdict(all(found.values()), "Q14"),
         "D2' only adds backoffs after the own packet: it differs from D2 by chance alone",
     )

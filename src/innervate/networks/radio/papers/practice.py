@@ -241,12 +241,9 @@ def _disaster(ax: Axes, got: Measured, setting: Setting, size: int) -> None:
     rise, start, fit = common.slope(places, ours)
     for mac in WITH_RETURN:
         found = [rival(got, setting, mac, size, b, "disaster") for b in readings(setting)]
-        look = LOOKS[mac]
-        ax.plot(places, np.min(found, axis=0), color=look.colour, ls=look.dash,
-                marker=look.marker, label=look.name)  # fmt: skip
+        ax.plot(places, np.min(found, axis=0), **LOOKS[mac].how)
     plain = reserved(setting, size, "disaster", got.quick).mean(got)
-    look = LOOKS[RESERVED]
-    ax.plot(places, plain, color=look.colour, marker=look.marker, label="CSMA/CD-R slotted")
+    ax.plot(places, plain, **LOOKS[RESERVED]._replace(name="CSMA/CD-R slotted").how)
     ax.plot(places, ours, "X", color=style.BLACK, ms=4, label="practical mode")
     ax.plot(places, start + rise * places, color=style.BLACK, lw=0.8, ls="--",
             label=f"{start:.0f} + {rise:.1f} n\n$R^2$ = {fit:.4f}")  # fmt: skip
