@@ -34,7 +34,8 @@ def test_counts_of_lost_cells_agree_with_the_observer_at_any_time(many):
     for time_us in range(0, many.result.ended_us, 7_003):
         moment = history.at(time_us)
         lost = sum(moment.server[cell] < 0 for cell in connected(graph, moment))
-        assert lost == history.unrouted_at(time_us), time_us
+        unrouted = history.lacking_at(time_us) - history.cut_off_at(time_us)
+        assert lost == unrouted, time_us
 
 
 def test_damage(many):
@@ -61,6 +62,6 @@ def test_worst_and_half_way(cut):
     assert (when, most) == (300_000, cut.summary["recoveries"][0]["cut_cells"])
     half_us, half = history.first_below(when, 400_000, most / 2)
     assert 0 < half <= most / 2
-    assert history.unrouted_at(half_us) == half
-    assert history.unrouted_at(half_us - 1) > most / 2
+    assert history.lacking_at(half_us) == half
+    assert history.lacking_at(half_us - 1) > most / 2
     assert history.first_below(450_000, 460_000, -1) == (460_000, 0)

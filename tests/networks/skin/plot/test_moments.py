@@ -8,7 +8,7 @@ from types import SimpleNamespace as Of
 import numpy as np
 import pytest
 
-from innervate.networks.skin.plot.history import History
+from innervate.networks.skin.plot.history import History, together
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTART, RESTORE, REVIVE
 from tests.networks.skin.runs import line, plan_of
@@ -36,8 +36,8 @@ def history(faults=(), changes=CHANGES, steps=(), apart=()):
                     for i, (_, action, end, node) in enumerate(faults)}  # fmt: skip
     made._marks = table(("time_us", "event"), [(at, i) for i, (at, *_) in enumerate(faults)])
     made._changes = table(("time_us", "cell", "new"), changes)
-    made._steps, made._apart = (table(("time_us", "cells"), some) for some in (steps, apart))
-    made._lacking = made._all_lacking()
+    unrouted, made._apart = (table(("time_us", "cells"), some) for some in (steps, apart))
+    made._lacking = together(unrouted, made._apart)
     return made
 
 
@@ -96,7 +96,8 @@ def test_who_lacks_a_way_is_unrouted_or_cut_off(counted):
     for at, many in LACKING:
         assert counted.lacking_at(at) == many
         assert counted.lacking_at(at + 9) == many
-    assert (counted.unrouted_at(45), counted.cut_off_at(45)) == (2, 0)
+    assert (counted.lacking_at(45), counted.cut_off_at(45)) == (2, 0)
+    assert (counted.lacking_at(35), counted.cut_off_at(35)) == (1, 1)
 
 
 @pytest.mark.parametrize(("first", "last", "most"), [

@@ -35,9 +35,8 @@ class History:
         self.graph = result.plan.graph
         self._changes = rows.parent_changes(result)
         self._marks = rows.marks(result)
-        self._steps = rows.unrouted_steps(result)
         self._apart = rows.apart_steps(result)
-        self._lacking = self._all_lacking()
+        self._lacking = together(rows.unrouted_steps(result), self._apart)
         self._faults: dict[int, Fault] = {fault.index: fault for fault in result.plan.faults}
 
     def steps(self) -> tuple[Numbers, Numbers]:
@@ -55,15 +54,11 @@ class History:
 
     def lacking_at(self, time_us: int) -> int:
         """Cells that are on and have no way to the PC at a time, those cut off included."""
-        return self.unrouted_at(time_us) + self.cut_off_at(time_us)
-
-    def unrouted_at(self, time_us: int) -> int:
-        """Connected cells without a route at a time."""
-        return _step_at(self._steps, time_us)
+        return int(_step_at(*self._lacking, time_us))
 
     def cut_off_at(self, time_us: int) -> int:
         """Cells that are on, but that no cable joins with the PC at a time."""
-        return _step_at(self._apart, time_us)
+        return int(_step_at(self._apart.time_us, self._apart.cells, time_us))
 
     def first_below(self, first_us: int, last_us: int, limit: float) -> tuple[int, int]:
         """(when, how many) no more than `limit` cells lacked a way for the first time."""
@@ -72,16 +67,6 @@ class History:
         if len(places) == 0:
             return last_us, self.lacking_at(last_us)
         return int(times[places[0]]), int(cells[places[0]])
-
-    def _all_lacking(self) -> tuple[Numbers, Numbers]:
-        """Cells without a route and cells cut off together, after all that a moment brought."""
-        times = np.union1d(self._steps.time_us, self._apart.time_us)
-        cells = np.zeros(len(times), np.int64)
-        for steps in (self._steps, self._apart):
-            if len(steps.row):
-                behind = np.searchsorted(steps.time_us, times, "right")
-                cells += np.where(behind > 0, steps.cells[behind - 1], 0)
-        return times, cells
 
     def at(self, time_us: int) -> Moment:
         """The skin after everything that happened up to and including `time_us`."""
@@ -134,10 +119,15 @@ class History:
         reasons[cable] = max(0, reasons.get(cable, 0) + by)
 
 
-def _step_at(steps: rows.Steps, time_us: int) -> int:
-    """What a step function is after all that happened up to a time."""
-    behind = int(np.searchsorted(steps.time_us, time_us, "right"))
-    return int(steps.cells[behind - 1]) if behind else 0
+def together(one: rows.Steps, other: rows.Steps) -> tuple[Numbers, Numbers]:
+    """The sum of two step functions, after all that a moment brought: (times in us, cells)."""
+    times = np.union1d(one.time_us, other.time_us)
+    return times, sum(_step_at(steps.time_us, steps.cells, times) for steps in (one, other))
+
+
+def _step_at(times_us: Numbers, cells: Numbers, at_us: Any) -> Any:
+    """What a step function is after all that happened up to a time, or to each of several."""
+    return np.append(0, cells)[np.searchsorted(times_us, at_us, "right")]
 
 
 def hops_of(moment: Moment, sink: int) -> Numbers:
