@@ -36,21 +36,21 @@ class Point:
 
     @classmethod
     def each(
-        cls, what: str, cost_s: float, seeds: Sequence[int], measure: Callable[..., Any], *case: Any
+        cls, what: str, cost_s: float, seeds: int, measure: Callable[..., Any], *case: Any
     ) -> Point:
-        """The series that calls `measure(*case, seed)` for every seed.
+        """The series that calls `measure(*case, seed)` for the seeds 1 and following.
 
         Its result is a list of what came, or a list under each name where a dict came.
 
         Args:
             what: says the case, all of it; the seeds are added to it.
             cost_s: of one seed.
-            seeds: of the runs.
+            seeds: how many.
             measure: runs a case with a seed and measures it.
             case: the first arguments of `measure`.
         """
-        key = f"{what}, seeds {seeds[0]}-{seeds[-1]}"
-        return cls(key, partial(columns, measure, case, seeds), cost_s * len(seeds))
+        work = partial(columns, measure, case, range(1, seeds + 1))
+        return cls(f"{what}, seeds 1-{seeds}", work, cost_s * seeds)
 
 
 def columns(measure: Callable[..., Any], case: Sequence[Any], seeds: Sequence[int]) -> Any:

@@ -295,8 +295,7 @@ def ahead(*alike):
 
 
 def put_in_order(rules, n, count):
-    seeds = len(ties.SEEDS)
-    return (ties.within(rules, n, QUICK), {"ordered": [1] * count + [0] * (seeds - count)})
+    return (ties.within(rules, n, QUICK), {"ordered": [1] * count + [0] * (ties.SEEDS - count)})
 
 
 def helped(two, short, ten, stretched):

@@ -32,9 +32,8 @@ def of(figure, **knobs):
     return globals()[f"_{figure}"](**knobs)
 
 
-def recovered(one, seeds, converged, routed=None, detected=None, loops=0):
+def recovered(one, count, converged, routed=None, detected=None, loops=0):
     """Recoveries of a case in periods; a list goes round over the seeds."""
-    count = len(seeds)
 
     def ms(value):
         values = value if isinstance(value, list) else [value]
@@ -42,7 +41,7 @@ def recovered(one, seeds, converged, routed=None, detected=None, loops=0):
 
     routed = converged if routed is None else routed
     return {
-        one.point(seeds).key: {
+        one.point(count).key: {
             "converged_ms": ms(converged),
             "routed_ms": ms(routed),
             "detected_ms": ms(one.k if detected is None else detected),
@@ -158,11 +157,11 @@ def _fig10(beta=1.0, over=0.0, gain=0.10, even=0.10, worst=0.30, wild=0.0, less=
         each = cells / ports
         largest = {fig10.DYNAMIC: each, fig10.QUEUED: each}
         for mode in (*fig10.DRAWN, fig10.QUEUED):
-            seeds = list(fig10.seeds(QUICK, mode))
-            for seed, point in zip(seeds, fig10.runs(setup, mode, QUICK), strict=True):
+            count = fig10.seeds(QUICK, mode)
+            for seed, point in enumerate(fig10.runs(setup, mode, QUICK), 1):
                 loss = dynamic
                 if mode is fig10.STATIC:
-                    loss += _tree(seed, len(seeds), gain, worst if setup == "setup-7" else gain)
+                    loss += _tree(seed, count, gain, worst if setup == "setup-7" else gain)
                 elif mode is fig10.EVEN:
                     loss += even
                 elif mode is fig10.DYNAMIC:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from innervate.networks.skin.papers import arm, eq7, fig8a, fig8b, fig10, modes, steady
-from innervate.networks.skin.papers.common import RULES, Case, recovery, seeds_of
+from innervate.networks.skin.papers.common import RULES, Case, recovery
 from innervate.papers.experiment import FAILS, HOLDS, Measured, columns
 
 
@@ -120,7 +120,7 @@ def test_the_drawn_ring_is_a_ring(made):
 @pytest.mark.parametrize("k", [2, 5])
 def test_setup_1_lies_in_the_band_of_eq_4(k):
     case = Case("setup-1", 250, k)
-    found = columns(recovery, (case,), seeds_of(3))
+    found = columns(recovery, (case,), range(1, 4))
     off = np.array(found["converged_ms"]) / case.period_ms - 7 - k
     assert np.abs(off).max() <= fig8a.BAND
     late = np.array(found["detected_ms"]) / case.period_ms - k
@@ -129,7 +129,7 @@ def test_setup_1_lies_in_the_band_of_eq_4(k):
 
 def test_a_case_says_all_that_decides_it():
     keys = {
-        Case("setup-1", 250, 3, gap_us=gap, m=m, cut=cut).point(seeds_of(2)).key
+        Case("setup-1", 250, 3, gap_us=gap, m=m, cut=cut).point(2).key
         for gap in (-1, 0, 60)
         for m in (0, 1)
         for cut in ("interface 1", "random link")
@@ -138,14 +138,14 @@ def test_a_case_says_all_that_decides_it():
 
 
 def test_waves_are_near_the_floor():
-    found = columns(recovery, (modes.case("setup-1", 3, modes.WAVE),), seeds_of(3))
+    found = columns(recovery, (modes.case("setup-1", 3, modes.WAVE),), range(1, 4))
     after = np.array(found["routed_ms"]) - np.array(found["detected_ms"])
     assert after.max() < modes.floor_ms(3, 7) - 12 + 2
 
 
 def test_random_cables_cut_off_few():
     found = columns(
-        recovery, (RULES[0].case("setup-3", eq7.HZ, eq7.K, "random link"),), seeds_of(3)
+        recovery, (RULES[0].case("setup-3", eq7.HZ, eq7.K, "random link"),), range(1, 4)
     )
     bound = (eq7.depth("setup-3") + eq7.K) * 4
     assert all(ms is None or ms <= bound for ms in found["converged_ms"])

@@ -79,7 +79,7 @@ def late(results, cases, seeds, count):
 def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_4(rule):
     sweep, results = fig8a.grid(QUICK), of("fig8a")
     cases = fig8a.cells(sweep, rule)
-    most = int(0.05 * len(cases) * len(sweep.seeds))
+    most = int(0.05 * len(cases) * sweep.seeds)
     words = f"{rule.words}: convergence of setup 1"
     assert FAILS not in verdicts("fig8a", words, late(results, cases, sweep.seeds, most))
     assert verdicts("fig8a", words, late(results, cases, sweep.seeds, most + 1)) == {FAILS}
@@ -89,7 +89,7 @@ def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_4(rule):
 def test_ninety_five_percent_of_the_recoveries_are_in_the_band_of_eq_6(setup):
     rule, seeds, results = RULES[0], fig8b.seeds(QUICK), of("fig8b")
     cases = [rule.case(setup, fig8b.HZ, k) for k in fig8b.KS]
-    most = int(0.05 * len(cases) * len(seeds))
+    most = int(0.05 * len(cases) * seeds)
     words = f"{rule.words}: convergence = (ceil"
     assert FAILS not in verdicts("fig8b", words, late(results, cases, seeds, most))
     assert verdicts("fig8b", words, late(results, cases, seeds, most + 1)) == {FAILS}

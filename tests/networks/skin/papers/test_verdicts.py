@@ -129,12 +129,12 @@ def test_at_most_so_many_ms_has_no_exception(place, k):
 def judged_with_some(figure, cases, seeds, more, words):
     """Verdicts where of these cases one recovery in twenty is later, and where one more is."""
     points = [one.point(seeds) for one in cases]
-    few, found = len(points) * len(seeds) // 20, []
+    few, found = len(points) * seeds // 20, []
     for count in (few, few + 1):
         made = of(figure)
         for i in range(count):
-            one, place = points[i // len(seeds)], i % len(seeds)
-            made[one.key]["converged_ms"][place] += more * cases[i // len(seeds)].period_ms
+            one, place = points[i // seeds], i % seeds
+            made[one.key]["converged_ms"][place] += more * cases[i // seeds].period_ms
         judged = list(experiment(figure).judge(Measured(made, QUICK)))
         found.append([claim.verdict != FAILS for claim in judged if words in claim.claim])
     return found

@@ -138,7 +138,7 @@ def point(scheme: Scheme, dead: int, quick: bool) -> Point:
     """Crossings; a 99th percentile wants 300, and a few robots are cut off."""
     words = " ".join(f"{name}={value}" for name, value in scheme.protocol)
     what = f"crossings: {scheme.name} {words} {dead} dead"
-    return Point.each(what, 0.08, range(1, 21 if quick else 401), measure, scheme, dead)
+    return Point.each(what, 0.08, 20 if quick else 400, measure, scheme, dead)
 
 
 def told(got: Measured, scheme: Scheme, dead: int) -> dict[str, Any]:

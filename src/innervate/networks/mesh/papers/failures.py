@@ -12,7 +12,7 @@ from innervate.networks.mesh.analysis.summary import connected, looped
 from innervate.networks.mesh.papers import losses
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, beyond, ours, said
-from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options, seeds_of
+from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, sized, verdict
@@ -49,7 +49,7 @@ RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH = (
 RULES = (DOCUMENT, RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH)
 
 
-def sending(rule: Rule, dead: int, seeds: range, reliable: bool = True) -> Point:
+def sending(rule: Rule, dead: int, seeds: int, reliable: bool = True) -> Point:
     """The networks of a rule; not `reliable` = no second try from end to end either."""
     again: Options = () if reliable or rule is DOCUMENT else (("reliable", False),)
     testbed = MeshTestbed(protocol=(*QUIET, *rule.protocol, *again), duration_s=DURATION_S)
@@ -88,7 +88,7 @@ NAMES = {"document": "the document to the letter"}
 
 def point(rule: Rule, dead: int, quick: bool, end: bool = False) -> Point:
     """The runs of a rule, without a second try from end to end, or with it."""
-    return sending(rule, dead, seeds_of(quick), reliable=end)
+    return sending(rule, dead, beds.seeds(quick), reliable=end)
 
 
 def points(quick: bool) -> list[Point]:

@@ -10,7 +10,7 @@ from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import beyond, ours
-from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options, seeds_of
+from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, MONITOR
 from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.mesh.sim.simulate import simulate
@@ -59,7 +59,7 @@ def point(setting: Setting, quick: bool) -> Point:
     more: Options = (("standby", list(setting.standbys)),) if setting.standbys else ()
     testbed = MeshTestbed(protocol=WAITS, duration_s=DIES_S + PERIOD_S + AFTER_S + 3, more=more)
     what = f"gateway dies, {setting.name}, every {setting.every_s} s"
-    return testbed.point(what, seeds_of(quick), measure, setting)
+    return testbed.point(what, beds.seeds(quick), measure, setting)
 
 
 def points(quick: bool) -> list[Point]:
@@ -157,7 +157,7 @@ def _times(ax: Axes, got: Measured) -> None:
 def judge(got: Measured) -> Claims:
     """The document's single gateway; ours."""
     gone, after = (_shares(got, ALONE, flow)[1][BEFORE:] for flow in range(2))
-    networks = len(seeds_of(got.quick))
+    networks = beds.seeds(got.quick)
     yield ours(
         "1.1",
         "the network outlives the gateway that has computed its tables (0.9 of the messages to "

@@ -9,7 +9,7 @@ from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.papers.document import RELIABLE, beyond, ours, said
 from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
-from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of, send_anywhere
+from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_TABLE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate
@@ -39,7 +39,7 @@ RULES = (DOCUMENT, THREE, PLAIN_SEARCH, PLAIN_GRAPH)
 def point(rule: Rule, loss: int, quick: bool) -> Point:
     """Networks whose gateway goes on looking every 10 s, as it always does."""
     testbed = MeshTestbed(protocol=rule.protocol, duration_s=UNTIL_S + 2.0)
-    return testbed.point(f"lossy {loss} %", seeds_of(quick), measure, loss)
+    return testbed.point(f"lossy {loss} %", seeds(quick), measure, loss)
 
 
 def points(quick: bool) -> list[Point]:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers import uplinks
 from innervate.networks.mesh.papers.document import RESPONDS, ours, said
-from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
+from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds
 from innervate.networks.mesh.protocol.constants import REQUEST, RESPONSE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.papers import drawing
@@ -39,7 +39,7 @@ def point(quick: bool, reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30)
     """Networks that run one discovery round of a reading, and send nothing."""
     protocol = (("discovery", reading), ("jitter_s", jitter_ms / 1000))
     return MeshTestbed(nodes, protocol=protocol, duration_s=8.0).point(
-        "round", seeds_of(quick), measure
+        "round", seeds(quick), measure
     )
 
 
@@ -60,13 +60,13 @@ def other_uplink(quick: bool, reading: str) -> Point:
     """The same networks with the other next hop."""
     uplink = "first" if uplink_of(reading) == "best" else "best"
     protocol = (("discovery", reading), ("uplink", uplink))
-    return MeshTestbed(protocol=protocol, duration_s=8.0).point("round", seeds_of(quick), measure)
+    return MeshTestbed(protocol=protocol, duration_s=8.0).point("round", seeds(quick), measure)
 
 
 def first_ones(quick: bool) -> Point:
     """The same networks with discovery tree: whom nodes heard first, and who is the best."""
     bed = MeshTestbed(protocol=(("discovery", "tree"),), duration_s=8.0)
-    return bed.point("first and best", seeds_of(quick), uplinks.measure)
+    return bed.point("first and best", seeds(quick), uplinks.measure)
 
 
 def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:

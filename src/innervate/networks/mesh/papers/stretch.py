@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.mesh.papers.document import SHORTEST, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
-from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds_of
+from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds
 from innervate.papers import drawing
 from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.papers.words import joined, percent
@@ -30,7 +30,7 @@ degrees = sized((6, 8), (5, 6, 8, 10, 12))  # mean degrees of the networks
 def point(reading: str, degree: int, quick: bool) -> Point:
     """One round and its tables."""
     testbed = MeshTestbed(degree=degree, protocol=(("discovery", reading),), duration_s=8.0)
-    return testbed.point("ways by tables", seeds_of(quick), measure)
+    return testbed.point("ways by tables", seeds(quick), measure)
 
 
 def points(quick: bool) -> list[Point]:

@@ -15,7 +15,7 @@ from innervate.trace.streams import stream
 Options = tuple[tuple[str, Any], ...]
 GATEWAY = 0
 BYTES = 16  # of a message
-seeds_of = sized(range(1, 5), range(1, 31))  # each of one network
+seeds = sized(4, 30)  # how many, each of one network
 # The document to the letter: one transmission, another neighbour for the next packet, no second
 # try from end to end.
 LITERAL: Options = (
@@ -62,10 +62,8 @@ class MeshTestbed:
         """Simulate the network of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
-    def point(
-        self, what: str, seeds: Sequence[int], measure: Callable[..., Any], *args: Any
-    ) -> Point:
-        """The point that measures every seed with `measure(testbed, *args, seed)`.
+    def point(self, what: str, seeds: int, measure: Callable[..., Any], *args: Any) -> Point:
+        """The point that measures so many seeds with `measure(testbed, *args, seed)`.
 
         Its key says `what` is measured with which arguments.
         """

@@ -46,7 +46,7 @@ def point(scheme: str, speed: float, quick: bool) -> Point:
     protocol: Options = (*SCHEMES[scheme], ("period_max_s", 10.0))
     testbed = MeshTestbed(protocol=protocol, duration_s=UNTIL_S + 2.0, more=(("robot", robots),))
     what = f"versions at {speed:g} m/s, {scheme}"
-    return Point.each(what, 0.5, range(1, 5 if quick else 16), measure, testbed)
+    return Point.each(what, 0.5, 4 if quick else 15, measure, testbed)
 
 
 def points(quick: bool) -> list[Point]:

@@ -110,7 +110,7 @@ class Offered:
 
 def point(who: tuple[str, int], size: int, n: int, load: float, quick: bool) -> Point:
     """One place of a curve."""
-    packets, seeds = (600, range(1, 3)) if quick else (3000, range(1, 6))
+    packets, seeds = (600, 2) if quick else (3000, 5)
     offered = Offered(*who, size, n, load, packets)
     return Point.each(str(offered), 3e-4 * packets, seeds, offered.measure)
 

@@ -20,7 +20,7 @@ CAPTION = (
     "arrivals, from the offer to the end of the packet. Event level: means of the runs."
 )
 N, SIZE = 10, 25
-seeds = sized(range(1, 4), range(1, 11))  # of the runs of each protocol
+seeds = sized(3, 10)  # how many runs of each protocol
 packets = sized(300, 1000)  # of a station in a run
 LOADS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 LIGHT = ("csma-cd-d1", "csma-cd-d2", RESERVED)
@@ -47,8 +47,8 @@ def event(mode: str, load: float, quick: bool) -> Point:
 def level(mac: str, load: float | None, quick: bool) -> Point:
     """The slotted level; no load = saturated."""
     words = "saturated" if load is None else f"load {load:g}"
-    key = f"delays {mac} n={N} T={SIZE} {words} {packets(quick)} seeds 1-{len(seeds(quick))}"
-    return Point.of(key, 0.03 * len(seeds(quick)), waits, mac, load, quick)
+    key = f"delays {mac} n={N} T={SIZE} {words} {packets(quick)} seeds 1-{seeds(quick)}"
+    return Point.of(key, 0.03 * seeds(quick), waits, mac, load, quick)
 
 
 def waits(mac: str, load: float | None, quick: bool) -> dict[str, Any]:
@@ -56,7 +56,7 @@ def waits(mac: str, load: float | None, quick: bool) -> dict[str, Any]:
     traffic = "saturated" if load is None else "poisson"
     runs = [
         slotted(mac, N, SIZE, traffic, packets=packets(quick), seed=seed, load=load)
-        for seed in seeds(quick)
+        for seed in range(1, seeds(quick) + 1)
     ]
     # A station that got nothing has waited all the time.
     starved = [run.elapsed_slots for run in runs if min(run.successes) == 0]
@@ -163,7 +163,7 @@ def _tails(got: Measured, delays: dict[str, list[float]]) -> Claim:
     words = (f"{name} {' / '.join(f'{x:,.0f}' for x in some)}" for name, some in tails.items())
     return beyond(
         "in saturation nobody waits long under CSMA/CD-R",
-        f"slots, 50 / 95 / 99 % / longest, of {len(seeds(got.quick))} runs: " + joined(words, "; "),
+        f"slots, 50 / 95 / 99 % / longest, of {seeds(got.quick)} runs: " + joined(words, "; "),
         verdict(max(delays[RESERVED][3], practical[3]) < min(some[3] for some in theirs.values())),
         "most waits of CSMA/CD are short because one station waits for nothing while the "
         "others get nothing (F3)",

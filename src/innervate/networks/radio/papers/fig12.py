@@ -67,7 +67,7 @@ def event(
     """The event level with that turnaround; there X2 has none, not for CR-Rs either."""
     ta = TURNAROUND_US if reading.turnaround else 0
     packets = 1 if traffic == "disaster" else 40 if quick else 200
-    seeds = range(1, 21) if traffic == "disaster" else range(1, 3 if quick else 11)
+    seeds = 20 if traffic == "disaster" else 2 if quick else 10
     return Channel(mode, n, reading.size, ta, traffic, packets=packets).point(seeds)
 
 

@@ -1,6 +1,5 @@
 """Runs of CSMA/CD-R on the event level: frames of microseconds, half-duplex radios [radio 3]."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -94,8 +93,8 @@ class Channel:
         """Simulate the plan of a seed to its end, compiled."""
         return simulate(self.plan(seed))
 
-    def point(self, seeds: Sequence[int]) -> Point:
-        """The point that measures it."""
+    def point(self, seeds: int) -> Point:
+        """The point that measures it with so many seeds."""
         cost = 0.004 + 8e-5 * self.n * self.packets
         return Point.each(str(self), cost, seeds, measure, self)
 

@@ -47,14 +47,14 @@ def saturated(setting: Setting, size: int, quick: bool) -> list[Point]:
     options = (("per_turn", setting.per_turn),) if setting.per_turn > 1 else ()
     return [
         Channel("practical", n, size, setting.ta_us, "saturated", options=options,
-                packets=max(30, (600 if quick else 2000) // n)).point(range(1, 2 if quick else 4))
+                packets=max(30, (600 if quick else 2000) // n)).point(1 if quick else 3)
         for n in ns(quick)
     ]  # fmt: skip
 
 
 def disasters(setting: Setting, size: int, quick: bool) -> list[Point]:
     """The practical mode where all have one packet at once, over n."""
-    seeds = range(1, 9 if quick else 61)
+    seeds = 8 if quick else 60
     return [Channel("practical", n, size, setting.ta_us).point(seeds) for n in ns(quick)]
 
 

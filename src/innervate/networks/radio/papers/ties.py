@@ -19,7 +19,7 @@ CAPTION = (
     "reservation puts in order. b: five robots, in the order of their ends; their CR-Rs overlap."
 )
 NS = tuple(range(2, 13))
-ONE, FEW, SEEDS = range(1, 2), range(1, 11), range(1, 41)
+FEW, SEEDS = 10, 40
 SIZE = 25
 DILATED = 2 * SIZE - 6
 FROM_US, UNTIL_US = 5000, 6200
@@ -53,7 +53,7 @@ def within(rules: Rules, n: int, quick: bool) -> Point:
 def apart(n: int) -> Point:
     """Stations whose ends lie more than a slot apart."""
     starts = tuple((SLOT + 1) * i for i in range(n))
-    return Channel("paper", n, SIZE, starts_us=starts).point(ONE)
+    return Channel("paper", n, SIZE, starts_us=starts).point(1)
 
 
 def saturated(n: int, quick: bool, **options: Any) -> Point:
@@ -61,7 +61,7 @@ def saturated(n: int, quick: bool, **options: Any) -> Point:
     chosen = (("wait_us", TAU_US - 1), *options.items())
     packets = 20 if quick else 200  # a station
     traffic = "saturated"
-    return Channel("paper", n, SIZE, traffic=traffic, packets=packets, options=chosen).point(ONE)
+    return Channel("paper", n, SIZE, traffic=traffic, packets=packets, options=chosen).point(1)
 
 
 def variants(quick: bool) -> list[Point]:
@@ -117,7 +117,7 @@ def _shares(ax: Axes, got: Measured) -> None:
 
 def judge(got: Measured) -> Claims:
     """As worded; with the rules; with gaps; how many get through; variants."""
-    of = len(SEEDS)
+    of = SEEDS
     worded = [ordered(got, WORDED, n)[0] for n in NS]
     yield Claim(
         "2.2",

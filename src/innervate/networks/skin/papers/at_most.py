@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate.networks.skin.papers.common import RULES, Rule, rule_panels, seeds_of
+from innervate.networks.skin.papers.common import RULES, Rule, rule_panels
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined, percent
@@ -23,7 +23,7 @@ KS = (2, 3, 5)
 K = 2  # the paper gives none; the least that tolerates one lost beacon
 PRINTED = (("Abstract", 50.0), ("IV", 40.0))
 ALL = Span(1.0, 1.0)  # share of the recoveries
-seeds = sized(seeds_of(6), seeds_of(40))  # of the recoveries of each setting
+seeds = sized(6, 40)  # of the recoveries of each setting
 
 
 def points(quick: bool) -> list[Point]:
@@ -80,8 +80,7 @@ def _within(got: Measured, where: str, limit: float, rule: Rule) -> Claim:
         where,
         f"{rule.words}: a recovery converges in at most {limit:.0f} ms (250 Hz; k is not "
         f"given, judged at k = {K})",
-        f"share within it, of {len(seeds(got.quick))} cuts of an interface cable each: "
-        + joined(words),
+        f"share within it, of {seeds(got.quick)} cuts of an interface cable each: " + joined(words),
         verdict(ALL.has(*decisive), "E29"),
         "E29: 40 ms is the mean of Eq. 4 at k = 3, 50 ms the upper end of its band at k = 2 to 3: "
         "neither is a bound; 204 cells are deeper than the 99 that Eq. 4 is about",

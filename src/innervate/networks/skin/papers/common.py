@@ -118,11 +118,11 @@ class Case:
             gap_us=self.gap_us if self.gap_us >= 0 else None,
         )  # fmt: skip
 
-    def point(self, seeds: range) -> Point:
-        """The point that measures its recoveries."""
+    def point(self, seeds: int) -> Point:
+        """The point that measures its recoveries, of so many seeds."""
         return Point.each(str(self), 0.02, seeds, recovery, self)
 
-    def periods(self, got: Measured, seeds: range, name: str) -> Any:
+    def periods(self, got: Measured, seeds: int, name: str) -> Any:
         """A time of every seed in beacon periods; NaN where it did not happen."""
         return got.floats(self.point(seeds), name) / self.period_ms
 
@@ -131,11 +131,6 @@ def recovery(case: Case, seed: int) -> dict[str, Any]:
     """Everything a recovery has, and how many loops there were."""
     result = simulate(case.plan(seed))
     return {**recoveries(result)[0], "loops": len(loop_episodes(result).cell)}
-
-
-def seeds_of(count: int) -> range:
-    """The seeds 1 .. count."""
-    return range(1, count + 1)
 
 
 def mean_of(values: Any) -> float:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from innervate.networks.skin.papers.common import planned, seeds_of
+from innervate.networks.skin.papers.common import planned
 from innervate.networks.skin.protocol.constants import DATA, PORTS
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers.experiment import Claim, Claims, Measured, Point, about, verdict
@@ -26,7 +26,7 @@ SIX_MS = about(6.0)
 
 def point(rate_hz: int, quick: bool) -> Point:
     """Runs at one rate of samples."""
-    seeds = seeds_of(1 if quick else 5)
+    seeds = range(1, 2 if quick else 6)
     key = f"delay {SETUP} data {rate_hz} Hz, beacons {BEACON_HZ} Hz, seeds 1-{seeds[-1]}"
     return Point.of(key, 0.3 * len(seeds), measure, rate_hz, seeds)
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.load import balance_factor, port_loads
 from innervate.networks.skin.analysis.rows import parent_changes
-from innervate.networks.skin.papers.common import SILENT, number, plan_of, planned, seeds_of
+from innervate.networks.skin.papers.common import SILENT, number, plan_of, planned
 from innervate.networks.skin.papers.startup import CLOCKS
 from innervate.networks.skin.papers.steps import stale_sizes
 from innervate.networks.skin.sim.simulate import simulate
@@ -67,14 +67,14 @@ def point(setup: str, rate: Rate, quick: bool, rule: str = "even") -> Point:
     said = {"even": "", "paper": ", Alg. 3 as printed"}[rule]
     what = f"balancing {setup} every {periods} periods{said}, {HZ} Hz"
     cost_s = 0.2 * (1 + periods / 800)
-    return Point.each(what, cost_s, seeds_of(1 if quick else 10), measure, setup, periods, rule)
+    return Point.each(what, cost_s, 1 if quick else 10, measure, setup, periods, rule)
 
 
 def sizes(setup: str, lock_step: bool, quick: bool) -> Point:
     """How long sizes are out of date."""
     watched = 400 if quick else 1500
     what = f"sizes {setup} {CLOCKS[lock_step]}, {HZ} Hz, {watched} periods"
-    seeds = seeds_of(1 if quick else 10)
+    seeds = 1 if quick else 10
     return Point.each(what, 0.5, seeds, stale_sizes, setup, lock_step, watched)
 
 

@@ -9,7 +9,7 @@ from innervate.networks.skin.analysis import formulas
 from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import unrouted_steps
 from innervate.networks.skin.papers import arm
-from innervate.networks.skin.papers.common import planned, seeds_of
+from innervate.networks.skin.papers.common import planned
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, about, verdict
@@ -44,7 +44,7 @@ CASES: tuple[tuple[str, str, bool, str, Any], ...] = (
 def runs(name: str, quick: bool) -> Point:
     """All runs of one case."""
     rule, cut = next(case[1:3] for case in CASES if case[0] == name)
-    seeds = seeds_of(3 if quick else 20)
+    seeds = 3 if quick else 20
     return Point.each(f"fig11 {name} {BEACON_HZ} Hz k={K}", 0.4, seeds, measure, rule, cut)
 
 

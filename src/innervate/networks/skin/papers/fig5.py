@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.recovery import recoveries
 from innervate.networks.skin.analysis.rows import parent_changes
-from innervate.networks.skin.papers.common import seeds_of, simulated
+from innervate.networks.skin.papers.common import simulated
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
@@ -68,7 +68,7 @@ ks = sized((2, 5, 8), tuple(range(2, 9)))  # the k of the sweep
 
 def runs(name: str, k: int, quick: bool) -> Point:
     """A way of reading the figure."""
-    seeds = seeds_of(4 if quick else 24)
+    seeds = 4 if quick else 24
     return Point.each(f"fig5 {name} k={k}", 0.03, seeds, measure, k, CASES[name])
 
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.rows import broken_changes
-from innervate.networks.skin.papers.common import seeds_of, simulated, tabled
+from innervate.networks.skin.papers.common import simulated, tabled
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import ONE
 from innervate.papers import drawing
@@ -81,13 +81,13 @@ def watched(case: Watched, quick: bool) -> Point:
     """Cables that are watched until they are found broken."""
     r_f, r_r, loss = case
     what = f"fig6 found {r_f} {r_r} loss={loss} in {WATCHED_S:g} s"
-    return Point.each(what, 0.04, seeds_of(10 if quick else 100), found_after, r_f, r_r, loss)
+    return Point.each(what, 0.04, 10 if quick else 100, found_after, r_f, r_r, loss)
 
 
 def swept(r_f: float, r_r: float, quick: bool) -> Point:
     """The sweep over the loss."""
     what = f"fig6 sweep {r_f} {r_r} {len(losses(quick))} losses"
-    return Point.each(what, 0.6, seeds_of(2 if quick else 5), sweep, r_f, r_r, losses(quick))
+    return Point.each(what, 0.6, 2 if quick else 5, sweep, r_f, r_r, losses(quick))
 
 
 def points(quick: bool) -> list[Point]:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.rows import parent_changes
 from innervate.networks.skin.papers import common
-from innervate.networks.skin.papers.common import RULES, Case, Rule, number, seeds_of
+from innervate.networks.skin.papers.common import RULES, Case, Rule, number
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, sized, verdict
@@ -31,7 +31,7 @@ WIDE = Case("setup-2", HZ, 3)
 INSIDE = Span(0.95, 1.0)  # share of the recoveries in the band
 SLOPE = Span(0.4, 0.6)  # periods a cell
 FIT = Span(0.8, 1.0)  # R2 of the line
-seeds = sized(seeds_of(8), seeds_of(40))  # of the recoveries of each setting
+seeds = sized(8, 40)  # of the recoveries of each setting
 
 
 def last(quick: bool) -> Point:

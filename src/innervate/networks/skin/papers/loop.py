@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from innervate.analysis.ways import NOWHERE, Numbers, follow
 from innervate.networks.skin.analysis.recovery import next_hops
 from innervate.networks.skin.analysis.rows import loop_episodes, parent_changes, parents
-from innervate.networks.skin.papers.common import RULES, Case, Rule, seeds_of
+from innervate.networks.skin.papers.common import RULES, Case, Rule
 from innervate.networks.skin.plot.history import Moment
 from innervate.networks.skin.plot.map import route_map
 from innervate.networks.skin.plot.sheet import Sheet
@@ -41,7 +41,7 @@ MAP_IN = 2.3
 def loops(rule: Rule, quick: bool) -> Point:
     """Recoveries of a rule; E25 counts twenty."""
     case = rule.case("setup-1", 250, 5)
-    return Point.each(f"loops of {case}", 0.02, seeds_of(5 if quick else 20), count, case)
+    return Point.each(f"loops of {case}", 0.02, 5 if quick else 20, count, case)
 
 
 def points(quick: bool) -> list[Point]:

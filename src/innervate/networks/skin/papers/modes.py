@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from innervate.analysis.intervals import mean_interval
 from innervate.networks.skin.papers import steady
-from innervate.networks.skin.papers.common import Case, number, seeds_of
+from innervate.networks.skin.papers.common import Case, number
 from innervate.papers.experiment import Claim, Claims, Measured, Point, Span, beyond, sized, verdict
 from innervate.papers.words import joined
 from innervate.plot import style
@@ -30,7 +30,7 @@ LATENCY_MS = 0.12  # mean of 80..160 us a hop, time on the wire included
 FROM_FLOOR_MS = Span(-2.0, 2.0)
 SOONER_MS = Span(0.1)
 GAP_US = 60  # the time a frame takes on the wire
-seeds = sized(seeds_of(6), seeds_of(100))  # of the recoveries of each setting
+seeds = sized(6, 100)  # of the recoveries of each setting
 
 
 class Mode(NamedTuple):

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.rows import unrouted_steps
 from innervate.networks.skin.papers import common
-from innervate.networks.skin.papers.common import RULES, SETUPS, Rule, seeds_of
+from innervate.networks.skin.papers.common import RULES, SETUPS, Rule
 from innervate.networks.skin.protocol.constants import PORTS
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.papers import drawing
@@ -34,7 +34,7 @@ WITHIN = Span(high=1.04)
 def point(setup: str, rule: Rule, lock_step: bool, quick: bool) -> Point:
     """Start-ups; lock-step leaves nothing to chance but latencies."""
     what = f"start-up {setup} {rule.name} m={rule.m} {HZ} Hz k={K} {CLOCKS[lock_step]}"
-    seeds = seeds_of((1 if lock_step else 2) if quick else (2 if lock_step else 20))
+    seeds = (1 if lock_step else 2) if quick else (2 if lock_step else 20)
     return Point.each(what, 0.02, seeds, measure, setup, rule, lock_step)
 
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from innervate import scenario
-from innervate.networks.skin.papers.common import SILENT, planned, seeds_of
+from innervate.networks.skin.papers.common import SILENT, planned
 from innervate.networks.skin.papers.steps import Steps
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.papers.experiment import Claim, Measured, Point, Span, beyond, verdict
@@ -42,7 +42,7 @@ def point(setup: str, variant: Variant, quick: bool) -> Point:
     """Skins that are looked at."""
     rule, updates, m = variant
     what = f"steady {setup} {rule} {updates} m={m} k={K}"
-    return Point.each(what, 0.03, seeds_of(3 if quick else 20), longer, setup, variant)
+    return Point.each(what, 0.03, 3 if quick else 20, longer, setup, variant)
 
 
 def longer(setup: str, variant: Variant, seed: int) -> list[list[int]]:
