@@ -9,7 +9,7 @@ from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER, duplicates
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
-from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
+from innervate.networks.mesh.papers.testbed import GRAPH, LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
 from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.networks.mesh.scenario.profiles import FAST, GOOD_CDB
@@ -44,7 +44,6 @@ class Scheme(NamedTuple):
     protocol: Options = ()
 
 
-GRAPH: Options = (("failover", "graph"),)
 BOTH = Scheme("routed and flooded", "crossings")
 ROUTED = Scheme("routed alone", "never")
 GRAPH_BOTH = Scheme("graph, routed and flooded", "crossings", GRAPH)

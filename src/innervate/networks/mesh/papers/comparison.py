@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from innervate.networks.mesh.analysis.messages import NEVER as LOST
 from innervate.networks.mesh.analysis.messages import messages
 from innervate.networks.mesh.papers import testbed as beds
-from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
+from innervate.networks.mesh.papers.testbed import GRAPH, HOPS, LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer
 from innervate.networks.mesh.sim.simulate import simulate
@@ -253,9 +253,7 @@ def judge(compared: Compared) -> Iterator[Claim]:
 
 
 SEARCH: Options = ()
-GRAPH: Options = (("failover", "graph"),)
 STOOD_BY: Options = (("standby", [STANDBY]),)
-HOPS: Options = (("reliable", False),)
 
 
 def _fits(given: Given) -> bool:

@@ -12,7 +12,7 @@ from innervate.networks.mesh.analysis.summary import connected, looped
 from innervate.networks.mesh.papers import losses
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import ANY_TWO, MUST, REPLACED, beyond, ours, said
-from innervate.networks.mesh.papers.testbed import LITERAL, MeshTestbed, Options
+from innervate.networks.mesh.papers.testbed import HOPS, LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, sized, verdict
@@ -51,7 +51,7 @@ RULES = (DOCUMENT, RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH)
 
 def sending(rule: Rule, dead: int, seeds: int, reliable: bool = True) -> Point:
     """The networks of a rule; not `reliable` = no second try from end to end either."""
-    again: Options = () if reliable or rule is DOCUMENT else (("reliable", False),)
+    again = () if reliable or rule is DOCUMENT else HOPS
     testbed = MeshTestbed(protocol=(*QUIET, *rule.protocol, *again), duration_s=DURATION_S)
     return testbed.point(f"{dead} dead", seeds, measure, dead)
 

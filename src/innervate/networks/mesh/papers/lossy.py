@@ -9,7 +9,7 @@ from innervate.networks.mesh.analysis.messages import DELIVERED, messages
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.papers.document import RELIABLE, beyond, ours, said
 from innervate.networks.mesh.papers.failures import DOCUMENT, GRAPH, SEARCH, Rule
-from innervate.networks.mesh.papers.testbed import MeshTestbed, seeds, send_anywhere
+from innervate.networks.mesh.papers.testbed import HOPS, MeshTestbed, seeds, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_TABLE
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.sim.simulate import simulate
@@ -31,8 +31,8 @@ EVERY_S = 2  # one message from everyone, to somebody drawn anew
 NONE = 255
 losses = sized((0, 5), (0, 1, 2, 5, 10, 20))  # shares of frames lost, in percent
 THREE = Rule("document, three transmissions", (*DOCUMENT.protocol[:-1], ("transmissions", 3)))
-PLAIN_SEARCH = Rule("search", (*SEARCH.protocol, ("reliable", False)))
-PLAIN_GRAPH = Rule("graph", (*GRAPH.protocol, ("reliable", False)))
+PLAIN_SEARCH = Rule("search", (*SEARCH.protocol, *HOPS))
+PLAIN_GRAPH = Rule("graph", (*GRAPH.protocol, *HOPS))
 RULES = (DOCUMENT, THREE, PLAIN_SEARCH, PLAIN_GRAPH)
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.summary import summarize
 from innervate.networks.mesh.papers.document import SMALL, beyond, said
 from innervate.networks.mesh.papers.lossy import NONE, row_of
-from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, Options
+from innervate.networks.mesh.papers.testbed import GATEWAY, GRAPH, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import TABLES
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.papers import drawing
@@ -44,7 +44,7 @@ RADIOS = (
 SOME = (10, 30, SMALL_MOST)
 SCHEMES: dict[str, Options] = {
     "tables": (),
-    "graph": (("failover", "graph"),),
+    "graph": GRAPH,
     "table-free": (("tables", False),),
 }
 

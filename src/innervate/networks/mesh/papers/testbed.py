@@ -21,6 +21,8 @@ seeds = sized(4, 30)  # how many, each of one network
 LITERAL: Options = (
     ("failover", "random"), ("retry", False), ("reliable", False), ("transmissions", 1),
 )  # fmt: skip
+GRAPH: Options = (("failover", "graph"),)
+HOPS: Options = (("reliable", False),)  # acks of hops alone, none from end to end
 
 
 @dataclass(frozen=True, slots=True)

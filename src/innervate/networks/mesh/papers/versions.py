@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from innervate.networks.mesh.analysis.messages import DELIVERED, counted, messages
 from innervate.networks.mesh.analysis.summary import looped
 from innervate.networks.mesh.papers.document import beyond, ours
-from innervate.networks.mesh.papers.testbed import MeshTestbed, Options, send_anywhere
+from innervate.networks.mesh.papers.testbed import HOPS, MeshTestbed, Options, send_anywhere
 from innervate.networks.mesh.protocol.constants import REPORT_ROUND, REPORT_TABLE
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
@@ -29,7 +29,7 @@ TWO: Options = (("activation", True),)
 # Alternates alone, and the document's rule with three transmissions, which takes no notice of
 # where a packet has been: a search would find its way by any table.
 ALTERNATES, RANDOM, SEARCH = (
-    (("failover", failover), ("reliable", False)) for failover in ("alternate", "random", "search")
+    (("failover", failover), *HOPS) for failover in ("alternate", "random", "search")
 )
 SCHEMES: dict[str, Options] = {
     "alternates, at once": ALTERNATES,

@@ -131,17 +131,10 @@ def _of_the_cable(result: Any) -> list[tuple[float, bool]]:
 
 
 def _broken_share(result: Any, start_s: float, end_s: float) -> float:
-    since, total = None, 0.0
-    for time_s, broken in _of_the_cable(result):
-        now = max(time_s, start_s)
-        if broken:
-            since = now
-        elif since is not None:
-            total += now - since
-            since = None
-    if since is not None:
-        total += end_s - since
-    return total / (end_s - start_s)
+    changes = [(max(time_s, start_s), broken) for time_s, broken in _of_the_cable(result)]
+    ends = [*(time_s for time_s, _ in changes), end_s][1:]
+    spans = zip(changes, ends, strict=True)
+    return sum(until - since for (since, broken), until in spans if broken) / (end_s - start_s)
 
 
 def replug() -> dict[str, list[float]]:
