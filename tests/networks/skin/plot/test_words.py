@@ -127,8 +127,10 @@ def test_a_table_of_what_every_number_of_ports_gives():
 def test_one_run_alone_has_no_interval():
     row = {"loss_cell_mean": 0.01, "loss_cell_low": 0.01, "loss_cell_high": 0.01,
            "loss_cell_runs": 1}  # fmt: skip
-    assert answer._share(row, "loss_cell") == "1.00 %"
-    assert answer._share(row | {"loss_cell_runs": 2}, "loss_cell") == "1.00 +- 0.00 %"
+    assert answer._interval(row, "loss_cell", 100, 2, " %") == "1.00 %"
+    assert (
+        answer._interval(row | {"loss_cell_runs": 2}, "loss_cell", 100, 2, " %") == "1.00 +- 0.00 %"
+    )
 
 
 @pytest.mark.parametrize(("ports", "said"), [

@@ -72,7 +72,7 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
     starts = [times[0] for times in plan.arrivals if len(times)]
     spread_us = max(starts, default=0) - min(starts, default=0)
     how = f"within {words.ms_words(spread_us / 1e3)}" if spread_us else "at once"
-    begin = f"{told.robots(offered)} started {how}" if offered > 1 else "1 robot started"
+    begin = f"{number_of(offered, 'robot')} started {how}" if offered > 1 else "1 robot started"
     if summary["duration_slots"] is None:
         return f"{begin}; no packet was delivered in {summary['duration_s']:g} s."
     took = told.time_words(summary["duration_slots"], plan.params["slot_us"])
@@ -87,7 +87,7 @@ def _disaster(result: Any, summary: Mapping[str, Any]) -> str:
 
 
 def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
-    begin = f"{told.robots(summary['stations'])} always had something to send"
+    begin = f"{number_of(summary['stations'], 'robot')} always had something to send"
     if summary["throughput"] is None:
         return f"{begin}; no packet was delivered in {result.ended_us / 1e6:g} s."
     index = summary["jain"]
@@ -98,7 +98,7 @@ def _saturated(result: Any, summary: Mapping[str, Any]) -> str:
 
 def _arrivals(result: Any, summary: Mapping[str, Any]) -> str:
     expected = summary["offered"] - summary["abandoned"]
-    begin = f"{told.robots(summary['stations'])} had {number_of(expected, 'packet')} to send"
+    begin = f"{number_of(summary['stations'], 'robot')} had {number_of(expected, 'packet')} to send"
     if not summary["delivered"]:
         return f"{begin}; none was delivered."
     share = words.share_words(summary["delivered"] / expected)
@@ -247,7 +247,7 @@ def slotted_top(result: Any, summary: Mapping[str, Any]) -> str:
         f"{model.protocol.mac}, packets of {result.plan.params['packet_slots']} slots; "
         f"seed {summary['seed']}"
     )
-    who = told.robots(summary["stations"])
+    who = number_of(summary["stations"], "robot")
     if model.traffic.kind == "disaster" and summary["delivered"] < summary["stations"]:
         count = number_of(summary["delivered"], "packet")
         head = f"{who} started at once; {count} came through in the time."

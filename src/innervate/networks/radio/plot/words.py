@@ -151,8 +151,3 @@ def off_words(summary: Mapping[str, Any]) -> list[str]:
             f"{number_of(waited, 'packet')} waited while {whose} off; delays leave them out."
         )
     return lines
-
-
-def robots(count: int) -> str:
-    """Stations as a stranger knows them: "10 robots"."""
-    return number_of(count, "robot")

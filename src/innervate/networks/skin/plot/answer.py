@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from innervate.analysis.headline import verb
 from innervate.kernel.words import number_of
 from innervate.networks.skin.plot.words import end_words
 from innervate.sweeping.tables import reasons
@@ -66,8 +67,8 @@ def _table(answer: Answer) -> list[str]:
         f"{'after a port, ms':>16}  {'one failure cuts off':>20}  enough",
     ]
     for row in answer.table.iter_rows(named=True):
-        cells = (_share(row, "loss_cell"), _span(row, "recovery_ms_cell"),
-                 _span(row, "recovery_ms_pc"))  # fmt: skip
+        cells = (_interval(row, "loss_cell", 100, 2, " %"), _interval(row, "recovery_ms_cell"),
+                 _interval(row, "recovery_ms_pc"))  # fmt: skip
         worst = row["isolated_max"]
         gone = "nobody" if worst == 0 else f"up to {number_of(worst, 'cell')}" if worst else "-"
         lines.append(
@@ -87,18 +88,15 @@ def _verdicts(answer: Answer) -> list[str]:
         none = f"{begin} none of {_tried(asked.ports)} is enough"
         if ports is not None:
             places = ", ".join(answer.where[ports])
-            lines.append(f"{begin} {_are(ports)} enough{once} for {limits}, and every single "
-                         f"failure of a cable or cell heals, on {places}.")  # fmt: skip
+            lines.append(f"{begin} {number_of(ports, 'port')} {verb(ports, 'is')} enough{once} "
+                         f"for {limits}, and every single failure of a cable or cell heals, "
+                         f"on {places}.")  # fmt: skip
         elif least is not None:
-            lines.append(f"{none}: {_are(least)} enough{once} for "
+            lines.append(f"{none}: {number_of(least, 'port')} {verb(least, 'is')} enough{once} for "
                          f"{limits}, but not every single failure heals.")  # fmt: skip
         else:
             lines.append(f"{none} for {limits}.")
     return lines
-
-
-def _are(ports: int) -> str:
-    return f"{ports} ports are" if ports > 1 else "1 port is"
 
 
 def _tried(ports: Sequence[int]) -> str:
@@ -149,15 +147,9 @@ def _what(graph: Graph, weak: Weak) -> str:
     return f"cell {graph.label(weak.node)}" if weak.node >= 0 else end_words(graph, weak.end)
 
 
-def _share(row: dict[str, Any], name: str) -> str:
-    return _interval(row, name, 100, 2, " %")
-
-
-def _span(row: dict[str, Any], name: str) -> str:
-    return _interval(row, name, 1, 1, "")
-
-
-def _interval(row: dict[str, Any], name: str, scale: float, digits: int, unit: str) -> str:
+def _interval(
+    row: dict[str, Any], name: str, scale: float = 1.0, digits: int = 1, unit: str = ""
+) -> str:
     """Mean and half the interval's width; one run alone has none."""
     if row[f"{name}_mean"] is None:
         return "-"

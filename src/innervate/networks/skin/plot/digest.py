@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.headline import verb
 from innervate.kernel.words import number_of
 from innervate.networks.skin.analysis import touch
 from innervate.networks.skin.analysis.frames import lost_at_start
@@ -265,8 +266,7 @@ class Digest:
             for reason, count in sorted(lost.items(), key=lambda item: -item[1])
         ]
         all_lost = data["lost"]
-        verb = "was" if all_lost == 1 else "were"
-        total = f"{all_lost:,} of {data['sent']:,} samples {verb} lost"
+        total = f"{all_lost:,} of {data['sent']:,} samples {verb(all_lost, 'was')} lost"
         if early := skin_words.early_words(all_lost, lost_at_start(self.result)):
             total += f", {early}"
         return charts.Bars(bars, "Where samples were lost", f"{total}.",
