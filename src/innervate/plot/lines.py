@@ -5,21 +5,18 @@ from typing import Any
 
 from innervate.analysis.summary import times_words
 from innervate.kernel.words import number_of
-from innervate.plot.words import figure_words, headline_line, ms_words, wall_words
+from innervate.plot.words import headline_line, interrupted, ms_words, simulated
 from innervate.sim.counts import Counts
 
 
 def summary_lines(run: Any) -> list[str]:
     """What a person wants to know first."""
     summary = run.summary
-    simulated = figure_words(run.result.ended_us / 1e6, 4)
-    took = f"{simulated} s simulated in {wall_words(summary['wall_s'])}"
+    took = simulated(run.result, summary)
     first = f"{summary['name']}: {number_of(summary['nodes'], 'node')}; {took}, "
     lines = [f"{first}seed {summary['seed']}", headline_line(summary["headline"])]
     lines += [f"{line}." for line in traffic_lines(summary, run.result.counts)]
-    if "interrupted_at_s" in summary:
-        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
-    return lines
+    return lines + interrupted(summary)
 
 
 def traffic_lines(summary: Mapping[str, Any], counts: Counts) -> list[str]:

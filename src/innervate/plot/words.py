@@ -1,6 +1,7 @@
 """Numbers of any run in plain words, for people."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from innervate.analysis.words import figure_words as figure_words
 from innervate.analysis.words import share_words as share_words
@@ -21,6 +22,19 @@ def ms_words(value_ms: float) -> str:
 def wall_words(wall_s: float) -> str:
     """How long something took to compute: "0.13 s", "less than 0.01 s"."""
     return f"{wall_s:.2f} s" if wall_s >= 0.01 else "less than 0.01 s"
+
+
+def simulated(result: Any, summary: Mapping[str, Any]) -> str:
+    """How much of a run was simulated, and how long that took: "2 s simulated in 0.13 s"."""
+    seconds = figure_words(result.ended_us / 1e6, 4)
+    return f"{seconds} s simulated in {wall_words(summary['wall_s'])}"
+
+
+def interrupted(summary: Mapping[str, Any]) -> list[str]:
+    """A sentence on a run that was interrupted; none on another."""
+    if "interrupted_at_s" not in summary:
+        return []
+    return [f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time."]
 
 
 def stood_words(value_ms: float) -> str:

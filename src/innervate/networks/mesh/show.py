@@ -19,8 +19,5 @@ def summary_lines(run: Run) -> list[str]:
 
 def _first(run: Run) -> str:
     summary = run.mesh
-    simulated = words.figure_words(run.result.ended_us / 1e6, 4)
-    return (
-        f"{mesh_words.opening(summary)}; {simulated} s simulated in "
-        f"{words.wall_words(summary['wall_s'])}, seed {summary['seed']}"
-    )
+    took = words.simulated(run.result, summary)
+    return f"{mesh_words.opening(summary)}; {took}, seed {summary['seed']}"

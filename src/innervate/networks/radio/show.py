@@ -31,12 +31,10 @@ def _summary(run: Run) -> RadioSummary | SlottedSummary:
 
 def _first(run: Run) -> str:
     summary, plan = _summary(run), run.plan
-    simulated = words.figure_words(run.result.ended_us / 1e6, 4)
     return (
         f"{summary['name']}: {number_of(plan.stations, 'station')} on one channel, "
         f"{summary['protocol']}, packets of at most {plan.params['packet_slots']} slots; "
-        f"{simulated} s simulated in {words.wall_words(summary['wall_s'])}, "
-        f"seed {summary['seed']}"
+        f"{words.simulated(run.result, summary)}, seed {summary['seed']}"
     )
 
 
@@ -59,9 +57,7 @@ def result_lines(run: Run) -> list[str]:
         f"{number_of(summary['collisions'], 'collision')}; "
         f"{number_of(summary['lost_silently'], 'packet')} lost without the sender knowing."
     )
-    if "interrupted_at_s" in summary:
-        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
-    return lines
+    return lines + words.interrupted(summary)
 
 
 def _delivered(run: Run) -> str:

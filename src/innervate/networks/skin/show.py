@@ -47,9 +47,7 @@ def event_lines(run: Run) -> list[str]:
     lines = [skin_words.headline(plan.graph, *pair) for pair in pairs[:EVENTS_MAX]]
     if len(pairs) > EVENTS_MAX:
         lines.append(f"... and {number_of(len(pairs) - EVENTS_MAX, 'more event')}.")
-    if "interrupted_at_s" in summary:
-        lines.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
-    return lines
+    return lines + words.interrupted(summary)
 
 
 def state_lines(summary: SkinSummary) -> list[str]:

@@ -7,7 +7,7 @@ from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import all_crossings
 from innervate.networks.mesh.analysis.network import takeovers
 from innervate.networks.mesh.protocol import constants as c
-from innervate.plot.words import figure_words, ms_words, share_words
+from innervate.plot.words import figure_words, interrupted, ms_words, share_words
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 
 PACKETS = {
@@ -89,7 +89,7 @@ def opening(summary: Mapping[str, Any]) -> str:
 
 def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     """What happened, for somebody who knows nothing of it; alarms first, they matter most."""
-    found = [
+    return [
         *_alarms(summary["alarms"]),
         *_undecided(sum(crossing.open for crossing in all_crossings(result))),
         *_messages(summary),
@@ -97,10 +97,8 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
         *_discovery(summary["discovery"], summary["nodes"], result.plan.params["mode"]),
         *_gateways(result.plan, summary),
         _trouble(summary),
+        *interrupted(summary),
     ]
-    if "interrupted_at_s" in summary:
-        found.append(f"Interrupted at {summary['interrupted_at_s']:.3f} s of simulated time.")
-    return found
 
 
 def _alarms(alarms: Mapping[str, Any]) -> list[str]:
