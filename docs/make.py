@@ -219,11 +219,12 @@ def draw() -> None:
 def draw_radio() -> None:
     """The radio page's picture: a disaster of four stations, from the collision to the end."""
     import innervate
-    from innervate.networks.radio.plot import timeline as radio_timeline
+    from innervate.networks.radio.plot import timeline
+    from innervate.networks.radio.plot.scene import scene
     from innervate.plot import theme
 
     done = innervate.run("radio-disaster", overrides={"stations": 4, "packet_slots": 12})
-    radio_timeline.timeline(done.result).save(RADIO_PICTURE, theme.drawing_style())
+    timeline.draw(scene(done.result)).save(RADIO_PICTURE, theme.drawing_style())
 
 
 def draw_mesh() -> None:

@@ -55,6 +55,10 @@ def runs():
     return {name: run(n, plain=n < 50, scenario=told, **more) for name, (n, more) in CASES.items()}
 
 
+def timeline(*given):
+    return radio_timeline.draw(radio_scene.scene(*given))
+
+
 def kinds(tree):
     return [part for node in tree.iter() for part in (node.get("class") or "").split()]
 
@@ -66,7 +70,7 @@ def test_every_run_has_a_report(runs, name, parse):
     shown = read(page.page("x", radio_report.body(result, summary)) + "<svg ></svg>")
     assert '<Team> & "ball"' in shown
     assert "No packet was lost silently." in shown
-    parse(radio_timeline.timeline(result))
+    parse(timeline(result))
 
 
 def test_the_first_sentence_says_what_happened(runs):
@@ -96,7 +100,7 @@ def test_packets_lost_silently_are_said_first(runs):
 
 
 def test_lanes_show_what_stations_hear(runs, parse, texts):
-    drawing = radio_timeline.timeline(runs["four"])
+    drawing = timeline(runs["four"])
     shown = texts(drawing)
     assert [shown.count(f"station {i}") for i in range(4)] == [1, 1, 1, 1]
     assert shown.count("CD") == shown.count("VOC") == 4
@@ -111,7 +115,7 @@ def test_lanes_show_what_stations_hear(runs, parse, texts):
 
 
 def test_many_stations_have_boxes_alone(runs, parse, texts):
-    drawing = radio_timeline.timeline(runs["hundred"])
+    drawing = timeline(runs["hundred"])
     assert "CD" not in texts(drawing)
     assert "ones" not in kinds(parse(drawing))
     assert drawing.height < 1100
@@ -124,7 +128,7 @@ def test_states_differ_in_more_than_colour(runs):
     assert len({(frame.height, "outlined" in frame.kind) for frame in frames}) == 4
     shown = radio_scene.scene(runs["four"])
     assert sum(box.collided for box in shown.boxes) == 4
-    assert radio_timeline.timeline(runs["four"]).render().count('class="struck"') == 2
+    assert timeline(runs["four"]).render().count('class="struck"') == 2
 
 
 def test_the_window_is_the_first_resolution(runs):
@@ -147,11 +151,11 @@ def test_the_window_is_the_first_resolution(runs):
 
 
 def test_any_window_can_be_drawn(runs, texts, parse):
-    drawing = radio_timeline.timeline(runs["saturated"], 100_000, 160_000)
+    drawing = timeline(runs["saturated"], 100_000, 160_000)
     assert {"100", "160"} <= set(texts(drawing))
-    parse(radio_timeline.timeline(runs["saturated"], -5_000, 10**9))
+    parse(timeline(runs["saturated"], -5_000, 10**9))
     with pytest.raises(ValueError, match="must end after it begins"):
-        radio_timeline.timeline(runs["saturated"], 5, 5)
+        timeline(runs["saturated"], 5, 5)
 
 
 def test_too_many_transmissions_are_cut(runs, monkeypatch):
@@ -184,11 +188,11 @@ def overlaps(drawing, parse):
 
 @pytest.mark.parametrize("name", CASES)
 def test_labels_do_not_overlap(runs, name, parse):
-    assert overlaps(radio_timeline.timeline(runs[name]), parse) == []
+    assert overlaps(timeline(runs[name]), parse) == []
 
 
 def test_who_is_off_is_shown(runs, parse, texts):
-    drawing = radio_timeline.timeline(runs["faults"], 0, 250_000)
+    drawing = timeline(runs["faults"], 0, 250_000)
     assert "off" in texts(drawing)
     assert kinds(parse(drawing)).count("off") >= 2
     body = radio_report.body(runs["faults"], radio.summarize(runs["faults"]))
@@ -206,7 +210,7 @@ def test_who_is_off_is_shown(runs, parse, texts):
     ],
 )
 def test_the_legend_says_why_robots_are_off(runs, texts, from_us, to_us, said):
-    found = texts(radio_timeline.timeline(runs["faults"], from_us, to_us))
+    found = texts(timeline(runs["faults"], from_us, to_us))
     assert [text for text in found if "switched off" in text or "in the team" in text] == said
 
 

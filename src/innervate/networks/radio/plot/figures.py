@@ -10,13 +10,14 @@ from innervate.networks.radio.analysis import airtime
 from innervate.networks.radio.analysis import summary as radio
 from innervate.networks.radio.plot import charts
 from innervate.networks.radio.plot import timeline as radio_timeline
+from innervate.networks.radio.plot.scene import scene
 from innervate.plot import paint
 from innervate.plot.figures import chart
 
 
 def timeline(run: Any, from_us: int | None = None, to_us: int | None = None) -> Figure:
     """Who sends when; by default the first collision and its resolution."""
-    return paint.figure(radio_timeline.timeline(run.result, from_us, to_us))
+    return paint.figure(radio_timeline.draw(scene(run.result, from_us, to_us)))
 
 
 def delay(run: Any) -> Figure:

@@ -161,7 +161,7 @@ def _figures(result: Any, summary: Mapping[str, Any]) -> list[tuple[str, str]]:
 
 def on_air(result: Any) -> str:
     """The first collision or transmissions, a lane for each station; "" without any."""
-    shown = radio_scene.scene(result, *radio_scene.resolution(result))
+    shown = radio_scene.scene(result)
     return _wide(radio_timeline.draw(shown), "", "") if shown.boxes else ""
 
 
@@ -178,7 +178,8 @@ def _timelines(result: Any) -> str:
     parts = [_wide(radio_timeline.draw(shown), head, text)]
     begin = radio_scene.beginning(result, whole)
     if begin is not None:
-        parts.append(_wide(radio_timeline.timeline(result, *begin), "The beginning, enlarged", ""))
+        enlarged = radio_timeline.draw(radio_scene.scene(result, *begin))
+        parts.append(_wide(enlarged, "The beginning, enlarged", ""))
     listing = details("The same, event by event", _listing(result, shown))
     return section("On the air", "".join(parts) + listing)
 

@@ -4,9 +4,7 @@ One lane a station, as in Fig. 1 of the paper: boxes for frames, below them CD a
 station hears them, grey where its radio cannot listen. With many stations boxes alone.
 """
 
-from typing import Any
-
-from innervate.networks.radio.plot.scene import DONE, FAILED, NOTICED, Box, Note, Scene, scene
+from innervate.networks.radio.plot.scene import DONE, FAILED, NOTICED, Box, Note, Scene
 from innervate.networks.radio.plot.words import FrameWords
 from innervate.plot import svg
 from innervate.plot.charts import LETTER, ticks
@@ -20,13 +18,6 @@ TIPS_MAX = 600
 LEAST_PX = 1.3
 CROSS_PX = 3.0
 ROW_PX = 22.0
-
-
-def timeline(
-    result: Any, from_us: int | None = None, to_us: int | None = None, origin_us: int | None = None
-) -> svg.Drawing:
-    """A run between two moments, or its first resolution; see scene()."""
-    return draw(scene(result, from_us, to_us, origin_us))
 
 
 def draw(shown: Scene) -> svg.Drawing:
