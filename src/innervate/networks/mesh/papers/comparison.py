@@ -8,7 +8,7 @@ from innervate.networks.mesh.analysis.messages import NEVER as LOST
 from innervate.networks.mesh.analysis.messages import messages
 from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.testbed import GRAPH, HOPS, LITERAL, MeshTestbed, Options
-from innervate.networks.mesh.protocol.constants import END_TO_END, MONITOR, PRIORITY
+from innervate.networks.mesh.protocol.constants import MONITOR, PRIORITY
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import in_field, jobs
@@ -97,7 +97,7 @@ def planned(protocol: Options, more: Options, given: Given, seed: int) -> tuple[
     made = world(given, seed)
     plan = plan_of(given, seed, protocol, more)
     assert plan.radio.rssi_cdb == made.rssi_cdb
-    flags = END_TO_END if plan.params["reliable"] else 0
+    flags = beds.flags(plan)
     plan.faults = [MeshFault(at, action, node, 0, 0, i)
                    for i, (at, action, node) in enumerate(made.faults)]  # fmt: skip
     plan.offers = [_offer(one, flags) for one in made.sent]

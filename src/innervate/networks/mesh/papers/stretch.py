@@ -91,11 +91,6 @@ def mean(got: Measured, reading: str, degree: int) -> float:
     return float(np.mean(got[point(reading, degree, got.quick)]["stretch"]))
 
 
-def broken(got: Measured, reading: str, degree: int) -> int:
-    """Pairs that the tables do not connect, in all networks."""
-    return int(sum(got[point(reading, degree, got.quick)]["broken"]))
-
-
 def shares(got: Measured, reading: str, degree: int) -> Any:
     """Of all entries with a next hop, the share of each kind of alternate."""
     total = np.sum(got[point(reading, degree, got.quick)]["kinds"], axis=0)
@@ -109,7 +104,8 @@ def draw(got: Measured) -> Figure:
     for i, reading in enumerate(READINGS):
         y = [mean(got, reading, degree) for degree in some]
         left.plot(some, y, label=reading, **style.look(i))
-        apart = [k for k, degree in enumerate(some) if broken(got, reading, degree)]
+        runs = [got[point(reading, degree, got.quick)] for degree in some]
+        apart = [k for k, one in enumerate(runs) if any(one["broken"])]
         left.plot(some, y, markevery=apart, **style.look(i) | drawing.HOLLOW)
     left.axhline(1, color=style.INK, lw=0.6)
     left.set(xlabel="mean degree", ylabel="hops / shortest way", xticks=some,

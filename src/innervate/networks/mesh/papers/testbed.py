@@ -103,7 +103,7 @@ def send_rounds(
     """
     to, gap_us = correspondents(plan.seed, nodes), every_us * 3 // (4 * len(nodes))
     plan.offers += [
-        Offer(since_us + k * every_us + i * gap_us, node, to[node], _flags(plan), BYTES, k)
+        Offer(since_us + k * every_us + i * gap_us, node, to[node], flags(plan), BYTES, k)
         for k in range(rounds)
         for i, node in enumerate(to)
     ]
@@ -118,9 +118,10 @@ def send_anywhere(plan: MeshPlan, from_s: int, until_s: int, every_s: int) -> No
             dest = draw.draw(plan.nodes - 1)
             dest += dest >= node
             at = since * 1_000_000 + draw.draw(every_s * 1_000_000)
-            plan.offers.append(Offer(at, node, dest, _flags(plan), BYTES, 0))
+            plan.offers.append(Offer(at, node, dest, flags(plan), BYTES, 0))
     plan.offers.sort(key=lambda offer: offer.at_us)
 
 
-def _flags(plan: MeshPlan) -> int:
+def flags(plan: MeshPlan) -> int:
+    """Of a message: whether it is acknowledged from end to end."""
     return END_TO_END if plan.params["reliable"] else 0

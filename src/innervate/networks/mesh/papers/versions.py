@@ -72,10 +72,15 @@ def _waits(result: Any) -> float:
     return round(float(np.mean(used - since)) / 1e6, 3)
 
 
+def values(got: Measured, scheme: str, name: str) -> list[list[float]]:
+    """A number of every network, at each speed."""
+    return [got[point(scheme, speed, got.quick)][name] for speed in speeds(got.quick)]
+
+
 def shares(got: Measured, scheme: str, name: str) -> list[float]:
     """Of the messages sent at each speed, the share that `came` or `looped`."""
-    runs = [got[point(scheme, speed, got.quick)] for speed in speeds(got.quick)]
-    return [sum(one[name]) / sum(one["sent"]) for one in runs]
+    both = zip(values(got, scheme, name), values(got, scheme, "sent"), strict=True)
+    return [sum(some) / sum(sent) for some, sent in both]
 
 
 def draw(got: Measured) -> Figure:
@@ -105,15 +110,15 @@ def judge(got: Measured) -> Claims:
             f"{at}: {percent(a, 2)} against {percent(b, 2)}"
             for at, a, b in zip(places, once, twice, strict=True)
         )
-        soon, late = (waits(got, scheme) for scheme in both)
+        waits = [np.mean(values(got, scheme, "waits_s")) for scheme in both]
         yield ours(
             "1.1",
             "tables that are used as they come deliver no less (0.001) than if all change "
             f"together, {words}; the document says nothing of that",
             "delivered, at once against in two phases: " + joined(pairs),
             verdict(better, "A10"),
-            f"A10: a table is in use {soon:.1f} s after its round began, in two phases {late:.1f} s"
-            "; which part of the difference that makes is not known",
+            f"A10: a table is in use {waits[0]:.1f} s after its round began, in two phases "
+            f"{waits[1]:.1f} s; which part of the difference that makes is not known",
         )
     first, second, other, late = (max(shares(got, name, "looped")) for name in list(SCHEMES)[:4])
     yield ours(
@@ -132,9 +137,3 @@ def judge(got: Measured) -> Claims:
         verdict(min(best) >= 0.99),
         "" if min(best) >= 0.99 else "not known why; who was out of reach was not looked at",
     )
-
-
-def waits(got: Measured, scheme: str) -> float:
-    """Seconds from a round to its tables in use, mean over all runs."""
-    runs = [got[point(scheme, speed, got.quick)]["waits_s"] for speed in speeds(got.quick)]
-    return float(np.mean(runs))
