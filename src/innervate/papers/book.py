@@ -7,7 +7,7 @@ is missing: after an interrupt, for other figures, or when the sources have chan
 import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -216,8 +216,11 @@ class _Book:
             running = {pool.submit(self._run, point): point for point in missing.values()}
             try:
                 self._finish(waiting, needs)
-                while running:
-                    self._collect(running)
+                for future in as_completed(running):
+                    future.result()
+                    self._done += 1
+                    self._spent += running[future].cost_s
+                    self._say(running[future].key)
                     self._finish(waiting, needs)
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
@@ -225,15 +228,6 @@ class _Book:
 
     def _run(self, point: Point) -> None:
         self.store.put(point.key, point.work())
-
-    def _collect(self, running: dict[Future[None], Point]) -> None:
-        done, _ = wait(running, return_when=FIRST_COMPLETED)
-        for future in done:
-            point = running.pop(future)
-            future.result()
-            self._done += 1
-            self._spent += point.cost_s
-            self._say(point.key)
 
     def _finish(self, waiting: list[Experiment], needs: dict[str, Any]) -> None:
         """Draw and judge those that have everything."""
