@@ -132,13 +132,15 @@ def test_so_many_charts_are_shown():
 
 @pytest.mark.parametrize(("bars", "named"), [(1, True), (24, True), (25, False)])
 def test_so_many_bars_are_drawn_one_by_one(bars, named):
-    shown = charts.bar_chart([Bar(f"b{k}", k + 1.0, "") for k in range(bars)], "bars")
+    shown = charts.Bars([Bar(f"b{k}", k + 1.0, "") for k in range(bars)], "bars").drawing
     assert (">b0<" in shown.render()) == named
 
 
 def test_the_fair_share_is_drawn_at_its_place():
     """Longer than all bars, it sets the scale."""
-    rendered = charts.bar_chart([Bar("a", 1.0, ""), Bar("b", 2.0, "")], "bars", 4.0).render()
+    rendered = charts.Bars(
+        [Bar("a", 1.0, ""), Bar("b", 2.0, "")], "bars", even=4.0
+    ).drawing.render()
     wide = [float(one) for one in re.findall(r'class="bar" d="M[\d.]+,[\d.]+h([\d.]+)', rendered)]
     left = 14 + charts.LETTER
     full = charts.WIDTH - left - 14

@@ -99,26 +99,26 @@ def test_an_even_level_is_dashed_where_it_is(parse):
 
 def test_bars(texts):
     bars = [Bar("port 0", 67, "67 cells", "p0"), Bar("port 1", 0, "0 cells", "p1")]
-    words = texts(charts.bar_chart(bars, "loads", even=33.5))
+    words = texts(charts.Bars(bars, "loads", even=33.5).drawing)
     assert words == ["port 0", "67 cells", "port 1", "0 cells", "even share: 33.5"]
 
 
 def test_bars_of_zeros_have_no_length(parse):
-    drawing = parse(charts.bar_chart([Bar("a", 0, "0"), Bar("b", 0, "0")], "zeros"))
+    drawing = parse(charts.Bars([Bar("a", 0, "0"), Bar("b", 0, "0")], "zeros").drawing)
     bars = [n.get("d") for n in drawing.iter() if n.get("class") == "bar"]
     assert [bar.partition("h")[2] for bar in bars] == ["0v18h0z", "0v18h0z"]
 
 
 def test_bars_beside_words_that_leave_no_room_are_still_60_wide(parse):
     bars = [Bar("n" * 150, 4, "w" * 150), Bar("n", 1, "w")]
-    drawn = [n.get("d") for n in parse(charts.bar_chart(bars, "long")).iter()
+    drawn = [n.get("d") for n in parse(charts.Bars(bars, "long").drawing).iter()
              if n.get("class") == "bar"]  # fmt: skip
     assert [re.search(r"h([0-9.]+)v18", d)[1] for d in drawn] == ["60", "15"]
 
 
 def test_many_bars_become_a_profile(texts):
     bars = [Bar(f"port {i}", i, f"{i} cells") for i in range(200)]
-    words = texts(charts.bar_chart(bars, "loads", even=99.5))
+    words = texts(charts.Bars(bars, "loads", even=99.5).drawing)
     assert "200 of them, the largest first" in words
     assert "port 7" not in words
 
@@ -126,7 +126,7 @@ def test_many_bars_become_a_profile(texts):
 @pytest.mark.parametrize("values", [[5, 5, 5], [0, 0, 0]])
 def test_flat_profiles(parse, values):
     bars = [Bar(str(i), v, str(v)) for i, v in enumerate(values * 10)]
-    drawing = parse(charts.bar_chart(bars, "flat", even=float(values[0])))
+    drawing = parse(charts.Bars(bars, "flat", even=float(values[0])).drawing)
     (line,) = (n for n in drawing.iter() if n.get("class") == "series")
     (level,) = {point.split(",")[1] for point in line.get("d")[1:].split("L")}
     (even,) = (n.get("y1") for n in drawing.iter() if n.get("class") == "even")

@@ -27,7 +27,7 @@ def test_ticks_are_where_they_were_asked_for_but_for_a_last_digit():
 
 def test_many_bars_are_an_outline_from_the_largest_on(parse):
     bars = [Bar(str(i), value, "") for i, value in enumerate([3.0, 9.0, 1.0] * 9)]
-    drawing = charts.bar_chart(bars, "many")
+    drawing = charts.Bars(bars, "many").drawing
     (line,) = [node.get("d") for node in parse(drawing).iter() if node.get("class") == "series"]
     heights = [float(y) for y in re.findall(r",([\d.]+)", line)]
     assert heights == sorted(heights)

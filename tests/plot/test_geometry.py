@@ -45,7 +45,7 @@ def rectangles(drawing, parse):
 
 
 def test_bars_stand_where_their_values_say(parse):
-    drawing = charts.bar_chart([Bar("ab", 10, "x"), Bar("c", 5, "yy")], "loads")
+    drawing = charts.Bars([Bar("ab", 10, "x"), Bar("c", 5, "yy")], "loads").drawing
     assert (drawing.width, drawing.height) == (440, 62)
     assert rectangles(drawing, parse) == [
         "M28.4,6h383.2v18h-383.2z", "M28.4,32h191.6v18h-191.6z",
@@ -59,19 +59,19 @@ def test_bars_stand_where_their_values_say(parse):
 
 
 def test_the_fair_share_is_a_line_across_all_bars(parse):
-    drawing = charts.bar_chart([Bar("ab", 10, "x"), Bar("c", 5, "yy")], "loads", even=7.5)
+    drawing = charts.Bars([Bar("ab", 10, "x"), Bar("c", 5, "yy")], "loads", even=7.5).drawing
     assert drawing.height == 62 + 15
     (even,) = shapes(drawing, parse, "even", "x1", "y1", "x2", "y2")
     assert even == (315.8, 15, 315.8, 71)
     assert [one[:8] for one in rectangles(drawing, parse)] == ["M28.4,21", "M28.4,47"]
     # It may be more than every bar.
-    (over,) = shapes(charts.bar_chart([Bar("ab", 5, "xx")], "x", even=10), parse, "even", "x1")
+    (over,) = shapes(charts.Bars([Bar("ab", 5, "xx")], "x", even=10).drawing, parse, "even", "x1")
     assert over == (411.6,)
 
 
 @pytest.mark.parametrize(("count", "is_profile"), [(24, False), (25, True)])
 def test_so_many_bars_have_names(count, is_profile, texts):
-    words = texts(charts.bar_chart([Bar("a", 1, "b")] * count, "x"))
+    words = texts(charts.Bars([Bar("a", 1, "b")] * count, "x").drawing)
     assert ("25 of them, the largest first" in words) == is_profile
     assert ("a" in words) != is_profile
 

@@ -49,9 +49,10 @@ def test_a_distribution_ends_at_all_of_the_greatest(many):
 
 def test_an_outline_of_bars_is_in_order_of_length(monkeypatch):
     drawn = []
-    monkeypatch.setattr(charts, "step_chart", lambda steps: drawn.append(steps) or "drawn")
+    drawing = property(lambda steps: drawn.append(steps) or "drawn")
+    monkeypatch.setattr(charts.Steps, "drawing", drawing)
     bars = [Bar("", float(k % 7), "") for k in range(25)]
-    assert charts.bar_chart(bars, "bars", 9.0) == "drawn"
+    assert charts.Bars(bars, "bars", even=9.0).drawing == "drawn"
     (steps,) = drawn
     assert steps.values.tolist() == sorted((bar.value for bar in bars), reverse=True)
     assert (steps.x.high, steps.y.high, steps.even) == (25.0, 9.0 * 1.05, 9.0)

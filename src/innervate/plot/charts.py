@@ -67,8 +67,34 @@ class Steps:
 
     @property
     def drawing(self) -> svg.Drawing:
-        """It as it stands on a page."""
-        return step_chart(self)
+        """It as it stands on a page, the names of its marked moments in rows above it.
+
+        Names for which there is no room are numbers there, and told below.
+        """
+        marks, below = _fitting(self.marks, self.x)
+        rows = _rows(marks, self.x)
+        top = 10 + LABEL_ROW * (1 + max((row for row, _ in rows), default=-1))
+        high = top + self.height
+        drawing = svg.Drawing(WIDTH, high + LABEL_ROW * len(below), self.label or self.head)
+        plot = _Plot(drawing, self.x, self.y, top, high - BOTTOM)
+        plot.frame()
+        points = _steps(self.times, self.values, self.x, plot)
+        base = plot.down(self.y.low)
+        ends = [(points[0][0], base), *points, (points[-1][0], base)]
+        drawing.path(svg.polyline(ends) + "z", "area")
+        drawing.path(svg.polyline(points), "series")
+        if self.even is not None:
+            level = plot.down(self.even)
+            drawing.line((LEFT, level), (WIDTH - RIGHT, level), "even")
+        for mark, (row, anchor) in zip(marks, rows, strict=True):
+            across = plot.across(mark.at)
+            level = 12 + LABEL_ROW * row
+            drawing.line((across, level - 9), (across, base), "mark")
+            gap = 4 if anchor == "start" else -4
+            drawing.text((across + gap, level), mark.label, "", anchor)
+        for i, line in enumerate(below):
+            drawing.text((0.0, high + LABEL_ROW * (i + 0.75)), line, "small")
+        return drawing
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +119,36 @@ class Bars:
 
     @property
     def drawing(self) -> svg.Drawing:
-        """It as it stands on a page."""
-        return bar_chart(self.bars, self.label or self.head, self.even)
+        """It as it stands on a page, from left to right."""
+        if len(self.bars) > BARS_MAX:
+            return self._profile()
+        left = 14 + LETTER * max(len(bar.name) for bar in self.bars)
+        right = 14 + LETTER * max(len(bar.words) for bar in self.bars)
+        most = max([bar.value for bar in self.bars] + [self.even or 0.0]) or 1.0
+        scale = max(WIDTH - left - right, 60.0) / most
+        head = LABEL_ROW + 4 if self.even is not None else 4.0
+        drawing = svg.Drawing(WIDTH, head + 26 * len(self.bars) + 6, self.label or self.head)
+        for i, bar in enumerate(self.bars):
+            top = head + 26 * i
+            drawing.text((left - 8, top + 15), bar.name, "", "end")
+            drawing.rect((left, top + 2), (bar.value * scale, 18), bar.kind)
+            drawing.text((left + most * scale + 8, top + 15), bar.words)
+        drawing.line((left, head - 2), (left, head + 26 * len(self.bars) - 2), "axis")
+        if self.even is not None:
+            across = left + self.even * scale
+            drawing.line((across, head - 4), (across, head + 26 * len(self.bars)), "even")
+            words = f"even share: {self.even:.4g}"
+            anchor = "middle" if left < across - LETTER * len(words) / 2 else "start"
+            drawing.text((min(across, WIDTH - LETTER * len(words) / 2), 13), words, "small", anchor)
+        return drawing
+
+    def _profile(self) -> svg.Drawing:
+        """Too many bars to name: their values in order, as one outline."""
+        values = np.array(sorted((bar.value for bar in self.bars), reverse=True))
+        x = Axis(0.0, float(len(values)), f"{len(values)} of them, the largest first")
+        y = Axis(0.0, float(max(values[0], self.even or 0.0)) * 1.05 or 1.0)
+        head = self.label or self.head
+        return Steps(np.arange(len(values)), values, x, y, head, even=self.even).drawing
 
 
 def marked(events: Iterable[tuple[int, str]], most: int) -> list[Mark]:
@@ -130,37 +184,6 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
     first = math.ceil(low / step - 1e-9)
     last = math.floor(high / step + 1e-9)
     return [round(i * step, 10) + 0.0 for i in range(first, last + 1)]
-
-
-def step_chart(shown: Steps) -> svg.Drawing:
-    """A step function, the names of its marked moments in rows above it.
-
-    Names for which there is no room are numbers there, and told below.
-    """
-    marks, below = _fitting(shown.marks, shown.x)
-    rows = _rows(marks, shown.x)
-    top = 10 + LABEL_ROW * (1 + max((row for row, _ in rows), default=-1))
-    high = top + shown.height
-    drawing = svg.Drawing(WIDTH, high + LABEL_ROW * len(below), shown.label or shown.head)
-    plot = _Plot(drawing, shown.x, shown.y, top, high - BOTTOM)
-    plot.frame()
-    points = _steps(shown.times, shown.values, shown.x, plot)
-    base = plot.down(shown.y.low)
-    ends = [(points[0][0], base), *points, (points[-1][0], base)]
-    drawing.path(svg.polyline(ends) + "z", "area")
-    drawing.path(svg.polyline(points), "series")
-    if shown.even is not None:
-        level = plot.down(shown.even)
-        drawing.line((LEFT, level), (WIDTH - RIGHT, level), "even")
-    for mark, (row, anchor) in zip(marks, rows, strict=True):
-        across = plot.across(mark.at)
-        level = 12 + LABEL_ROW * row
-        drawing.line((across, level - 9), (across, base), "mark")
-        gap = 4 if anchor == "start" else -4
-        drawing.text((across + gap, level), mark.label, "", anchor)
-    for i, line in enumerate(below):
-        drawing.text((0.0, high + LABEL_ROW * (i + 0.75)), line, "small")
-    return drawing
 
 
 def _fitting(marks: Sequence[Mark], x: Axis) -> tuple[Sequence[Mark], list[str]]:
@@ -271,36 +294,3 @@ def _rows(marks: Sequence[Mark], x: Axis) -> list[tuple[int, str]]:
         taken[row].append(span)
         found[index] = (row, anchor)
     return [found[i] for i in range(len(marks))]
-
-
-def bar_chart(bars: Sequence[Bar], label: str, even: float | None = None) -> svg.Drawing:
-    """Bars from left to right; `even` is marked as the fair share."""
-    if len(bars) > BARS_MAX:
-        return _profile(bars, label, even)
-    left = 14 + LETTER * max(len(bar.name) for bar in bars)
-    right = 14 + LETTER * max(len(bar.words) for bar in bars)
-    most = max([bar.value for bar in bars] + [even or 0.0]) or 1.0
-    scale = max(WIDTH - left - right, 60.0) / most
-    head = LABEL_ROW + 4 if even is not None else 4.0
-    drawing = svg.Drawing(WIDTH, head + 26 * len(bars) + 6, label)
-    for i, bar in enumerate(bars):
-        top = head + 26 * i
-        drawing.text((left - 8, top + 15), bar.name, "", "end")
-        drawing.rect((left, top + 2), (bar.value * scale, 18), bar.kind)
-        drawing.text((left + most * scale + 8, top + 15), bar.words)
-    drawing.line((left, head - 2), (left, head + 26 * len(bars) - 2), "axis")
-    if even is not None:
-        across = left + even * scale
-        drawing.line((across, head - 4), (across, head + 26 * len(bars)), "even")
-        words = f"even share: {even:.4g}"
-        anchor = "middle" if left < across - LETTER * len(words) / 2 else "start"
-        drawing.text((min(across, WIDTH - LETTER * len(words) / 2), 13), words, "small", anchor)
-    return drawing
-
-
-def _profile(bars: Sequence[Bar], label: str, even: float | None) -> svg.Drawing:
-    """Too many bars to name: their values in order, as one outline."""
-    values = np.array(sorted((bar.value for bar in bars), reverse=True))
-    x = Axis(0.0, float(len(values)), f"{len(values)} of them, the largest first")
-    y = Axis(0.0, float(max(values[0], even or 0.0)) * 1.05 or 1.0)
-    return step_chart(Steps(np.arange(len(values)), values, x, y, label, even=even))
