@@ -11,7 +11,7 @@ from innervate.networks.mesh.papers.document import ours
 from innervate.networks.mesh.papers.testbed import MeshTestbed
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import CLASSES
-from innervate.papers.experiment import Claims, Measured, Point, verdict
+from innervate.papers.experiment import Claims, Measured, Point, sized, verdict
 from innervate.plot import style
 
 TITLE = "What was asked for"
@@ -54,7 +54,7 @@ def rounds(quick: bool) -> Point:
 
 def sent(rule: failures.Rule, quick: bool) -> Point:
     """Networks in which messages are sent."""
-    return failures.sending(rule, DEAD, 4 if quick else 100)
+    return failures.point(rule, DEAD, quick, end=True, seeds=sized(4, 100))
 
 
 def points(quick: bool) -> list[Point]:

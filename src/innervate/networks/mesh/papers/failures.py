@@ -1,5 +1,6 @@
 """Section 2.2: nodes die, and their neighbours replace them; every rule of replacing."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,11 +50,13 @@ RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH = (
 RULES = (DOCUMENT, RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH)
 
 
-def sending(rule: Rule, dead: int, seeds: int, reliable: bool = True) -> Point:
-    """The networks of a rule; not `reliable` = no second try from end to end either."""
-    again = () if reliable or rule is DOCUMENT else HOPS
+def point(
+    rule: Rule, dead: int, quick: bool, end: bool = False, seeds: Callable[[bool], int] = beds.seeds
+) -> Point:
+    """The networks of a rule, without a second try from end to end, or with it (`end`)."""
+    again = () if end or rule is DOCUMENT else HOPS
     testbed = MeshTestbed(protocol=(*QUIET, *rule.protocol, *again), duration_s=DURATION_S)
-    return testbed.point(f"{dead} dead", seeds, measure, dead)
+    return testbed.point(f"{dead} dead", seeds(quick), measure, dead)
 
 
 def measure(of: MeshTestbed, dead: int, seed: int) -> dict[str, Any]:
@@ -84,11 +87,6 @@ def share(runs: dict[str, Any], which: str) -> tuple[int, int]:
 
 ORIGIN = Rule("random, not the origin", (("failover", "random"), ("avoid", "origin")))
 NAMES = {"document": "the document to the letter"}
-
-
-def point(rule: Rule, dead: int, quick: bool, end: bool = False) -> Point:
-    """The runs of a rule, without a second try from end to end, or with it."""
-    return sending(rule, dead, beds.seeds(quick), reliable=end)
 
 
 def points(quick: bool) -> list[Point]:

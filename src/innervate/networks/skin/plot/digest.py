@@ -83,10 +83,6 @@ class Digest:
         hurt = [i for i in self.incidents if i.recovery["cut_cells"]]
         return max(hurt, key=lambda i: i.recovery["cut_cells"], default=None)
 
-    def headlines(self) -> list[str]:
-        """One sentence for each event."""
-        return [self.headline(incident) for incident in self.incidents]
-
     def headline(self, incident: Incident) -> str:
         """An event and what came of it."""
         who = number_of(incident.recovery["without_way"], "cell")

@@ -46,7 +46,7 @@ def top(digest: Digest) -> str:
 
 def _sentences(digest: Digest) -> list[str]:
     """The worst event first, then others in order of time."""
-    lines = digest.headlines()
+    lines = [digest.headline(incident) for incident in digest.incidents]
     if not lines:
         routed = digest.summary["start_up"]["routed_ms"]
         if routed is None:
