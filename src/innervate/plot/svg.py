@@ -1,7 +1,7 @@
 """A small writer of SVG: shapes with classes, styled by the page that holds them.
 
 Drawings carry their natural size; in a page they shrink to the width there is. Alone
-(`standalone`), they carry their style sheet themselves.
+(`save`), they carry their style sheet themselves.
 """
 
 from __future__ import annotations
