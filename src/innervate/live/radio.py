@@ -23,7 +23,7 @@ class Listener(Protocol):
 
 
 class Radio(Protocol):
-    """A half-duplex radio.
+    """A half-duplex radio. One that knows who else is on its channel says so by `others()`.
 
     Attributes:
         mode: "off", "listening" or "sending"; while it sends and turns round it is deaf.
