@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -69,9 +70,10 @@ class State:
 
     def hears_beyond(self) -> Any:
         """Per place whether it hears somebody who does not run here."""
-        hearing = {place for place, _ in self.paths_beyond()}
+        hearing = {place for place, _ in self.paths_beyond}
         return np.array([place in hearing for place in self.map.places], np.bool_)
 
+    @cached_property
     def paths_beyond(self) -> set[tuple[Place, int]]:
         """Paths on which somebody is heard, by cables to nobody who runs here.
 
