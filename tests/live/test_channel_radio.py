@@ -63,7 +63,6 @@ class Medium:
         told, self.listener.told = self.listener.told, []
         return [(kind, when - now, *more) for kind, when, *more in told]
 
-
     async def tell_all(self, data):
         """What the radio passes on of a message as it is."""
         self.socket.sendto(data, self.where)

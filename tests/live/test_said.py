@@ -197,9 +197,8 @@ def test_a_group_whose_interface_is_gone_is_said_and_when_it_is_back(node):
 
     asyncio.run(look())
     assert machine.said == [
-        "n3: udp 239.77.0.1:4700: not in the group on interface 10.0.2.1: No such device; "
-        "trying again",
-        "n3: udp 239.77.0.1:4700: there again",
+        "n3: udp 239.77.0.1:4700 on 10.0.2.1: not in the group: No such device; trying again",
+        "n3: udp 239.77.0.1:4700 on 10.0.2.1: there again",
     ]
 
 
