@@ -1,12 +1,11 @@
 """What running nodes say of themselves, as `innervate live status` prints it."""
 
-import re
 from pathlib import Path
 from typing import Any
 
+from innervate.live.addresses import without_interface
 from innervate.network import known
 
-ZONE = re.compile("%[^]]*")  # our name for an interface, in an address of IPv6
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
 
 
@@ -71,7 +70,7 @@ def lines(told: dict[str, Any]) -> list[str]:
                        if count and what.startswith(LOSSES))  # fmt: skip
         is_up = "  BROKEN" if path["broken"] else "" if path["up"] else "  CUT HERE"
         far = path.get("far", path["name"])  # where a name leads
-        leads = "" if far == ZONE.sub("", path["name"]) else f" ({far.removeprefix('udp ')})"
+        leads = "" if far == without_interface(path["name"]) else f" ({far.removeprefix('udp ')})"
         found.append(f"  port {name}: {path['name']}{leads}, heard {heard}{lost}{is_up}")
     counts = ", ".join(f"{what} {count}" for what, count in told["counters"].items())
     return [*found, f"  {counts}"]

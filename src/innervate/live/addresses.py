@@ -1,6 +1,7 @@
 """Addresses of UDP as the system has them, as files write them, and names that stand for some."""
 
 import asyncio
+import re
 import socket
 from contextlib import suppress
 from threading import Thread
@@ -27,14 +28,18 @@ def known(peer: Peer) -> Address | None:
 
 
 def text(address: Address) -> str:
-    """An address as files write it; of an interface both ends have names of their own."""
-    host = address[0].partition("%")[0]
-    return f"[{host}]:{address[1]}" if ":" in host else f"{host}:{address[1]}"
+    """An address as both ends call it, each of which has a name of its own for an interface."""
+    return without_interface(as_written(address[:2]))
 
 
 def as_written(peer: Peer) -> str:
     """An address or a name with its port, and its interface, as a file has it."""
     return f"[{peer[0]}]:{peer[1]}" if ":" in peer[0] else f"{peer[0]}:{peer[1]}"
+
+
+def without_interface(name: str) -> str:
+    """What an address or a path is called, without our name for the interface."""
+    return re.sub(r"%[^]]*", "", name)
 
 
 async def look_up(host: str, port: int, family: int) -> list[Address]:
