@@ -9,9 +9,10 @@ import pytest
 from innervate.live import main
 from innervate.live.build import open_keys
 from innervate.live.machine import Machine, on
+from innervate.live.multicast import MulticastLink
 from innervate.live.nodefile import load
 from innervate.live.serial import SerialLink
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.udp import UdpLink
 
 KEY = bytes(range(32))
 FILE = """\

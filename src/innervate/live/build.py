@@ -93,7 +93,7 @@ def _link(table: Any, where: str, port: int) -> Link:
             raise LiveError(f"{where}.peers: {as_written(twice)} stands there twice")
         return UdpLink(bind, peers, port)
     if isinstance(table, MulticastTable):
-        from innervate.live.udp import MulticastLink
+        from innervate.live.multicast import MulticastLink
 
         own = _interface(table.interface, f"{where}.interface")
         group = _ipv4(table.group, f"{where}.group")

@@ -111,8 +111,8 @@ def attach(sock: socket.socket, option: int, steps: bytes) -> None:
     sock.setsockopt(socket.SOL_SOCKET, option, filled)
 
 
-def share(first: socket.socket, others: Sequence[socket.socket], peers: Iterable[Address]) -> None:
-    """Have several sockets take turns at one address, so that each peer's datagrams come to one.
+def share(first: socket.socket, others: Sequence[socket.socket]) -> None:
+    """Have several sockets share an address; `keep_apart` says which datagrams come to which.
 
     The first is bound, and was before anybody could share its address with it; the others are not.
 
@@ -123,11 +123,15 @@ def share(first: socket.socket, others: Sequence[socket.socket], peers: Iterable
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
     for sock in others:
         sock.bind(first.getsockname())
+
+
+def keep_apart(socks: Sequence[socket.socket], peers: Iterable[Address]) -> None:
+    """Each peer's datagrams come to one of the sockets, in turn; an OSError if that cannot be."""
     steps: list[Step] = []
     for i, peer in enumerate(peers):
         port_at = NETWORK + SOURCES[family_of(peer[0])][1]
-        steps += _if_from(peer, port_at, [(RETURN, 0, 0, i % (1 + len(others)))])
-    attach(first, SO_ATTACH_REUSEPORT_CBPF, packed([*steps, TAKE]))
+        steps += _if_from(peer, port_at, [(RETURN, 0, 0, i % len(socks))])
+    attach(socks[0], SO_ATTACH_REUSEPORT_CBPF, packed([*steps, TAKE]))
 
 
 def unread(sock: socket.socket) -> int:

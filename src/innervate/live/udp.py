@@ -1,11 +1,9 @@
-"""UDP: to neighbours by address or name, and to a multicast group."""
+"""UDP to neighbours, by address or name."""
 
 from __future__ import annotations
 
 import asyncio
-import errno
 import socket
-import struct
 import sys
 from collections.abc import Mapping
 from contextlib import closing, suppress
@@ -15,16 +13,22 @@ from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import FORGOTTEN_MAX, Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import TAKE, Doors, Ranges, of_peer, only_from, packed, share, unread
+from innervate.live.only_from import (
+    Doors,
+    Ranges,
+    keep_apart,
+    of_peer,
+    only_from,
+    share,
+    unread,
+)
 
 DATAGRAM_MAX = 2048
 BATCH = 64  # datagrams read at once, before timers and other neighbours have their turn
 SOCKETS = 32  # of a link at most
 REOPEN_S = 0.5
-RENEW_S = 1.0
 FIRST_S = 2.0  # a node's start waits so long for its neighbours' names
 LOOK_S = 5.0  # names of whom nothing was heard for so long are looked up, so often
-IP_MULTICAST_ALL = 49  # Linux: what came by an interface is for its members alone
 
 
 class UdpPath(Path):
@@ -161,29 +165,41 @@ class UdpLink(Link):
                 await self._look_up([path for path in named if path in silent])
 
     async def _look_up(self, named: list[UdpPath]) -> None:
-        """Ask where names lead; who led somewhere before stays there if nobody knows."""
+        """Ask where names lead: nothing was heard there, so it may be the next address."""
         asked = (machine().addresses(*path.peer, self.family) for path in named)
         found = await asyncio.gather(*asked, return_exceptions=True)
-        moved = False
+        is_elsewhere = False
         with suppress(OSError):
-            moved = await self._find_own()
+            is_elsewhere = await self._find_own()
         for path, told in zip(named, found, strict=True):
-            taken = {one.address for one in self.paths if one is not path}
             if isinstance(told, BaseException):
-                why, free = getattr(told, "strerror", None) or str(told), []
+                self._lead(path, [], getattr(told, "strerror", None) or str(told))
             else:
-                why = "leads to another neighbour's address"
-                free = [address for address in told if address not in taken]
-            if free and path.address not in free:
-                path.lead_to(free[0])
-                path.again = f"leads to {text(free[0])}"
-                moved = True
-            elif path.address is None:
-                path.trouble = f"{path.name}: {why}; trying again"
-        if moved and not self._closed:
-            self._by_address = {path.address: path for path in self.paths if path.address}
+                self._lead(path, told, "leads to another neighbour's address")
+        if self._closed:
+            return
+        self._by_address = {path.address: path for path in self.paths if path.address}
+        if is_elsewhere:
             self._drop()
             self._reopen()
+        elif self.socket is not None:
+            self.guard()
+            with suppress(OSError):
+                keep_apart(self._sockets(), self._by_address)
+
+    def _lead(self, path: UdpPath, found: list[Address], why: str) -> None:
+        """Have a path lead to the address behind its present one, of those that are nobody else's.
+
+        `why` says why there is none; then it stays as it is.
+        """
+        taken = {one.address for one in self.paths if one is not path}
+        free = [address for address in found if address not in taken]
+        at = free.index(path.address) + 1 if path.address in free else 0
+        if free and free[at % len(free)] != path.address:
+            path.lead_to(free[at % len(free)])
+            path.trouble, path.again = "", f"leads to {path.far.removeprefix('udp ')}"
+        elif path.address is None:
+            path.trouble = f"{path.name}: {why}; trying again"
 
     def _open(self) -> None:
         sock = self._make()
@@ -222,7 +238,8 @@ class UdpLink(Link):
                 others.append(machine().socket(self.family, socket.SOCK_DGRAM))
                 self._prepare(others[-1])
             if others:
-                share(first, others, self._by_address)
+                share(first, others)
+                keep_apart((first, *others), self._by_address)
         except OSError:
             for sock in others:
                 sock.close()
@@ -304,83 +321,3 @@ class UdpLink(Link):
             self._open()
         except OSError as error:
             self._lost(error)
-
-
-class MulticastLink(UdpLink):
-    """A group on one interface: everybody in it hears everything, as on a radio channel.
-
-    Args:
-        group: address and port of the group.
-        interface: own address on the interface.
-        port: port number of the path.
-    """
-
-    def __init__(self, group: Peer, interface: str, port: int = 0) -> None:
-        super().__init__((interface, 0), [group], port)
-        self.paths[0].name += f" on {interface}"
-        self.group = group
-        self.interface = interface
-        self.where = f"{group[0]}:{group[1]} on interface {interface}"
-        self._group: UdpPath = self.paths[0]
-        self._group.is_group = True
-        self._group.filter = packed([TAKE])
-
-    def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
-        """Instructions that let in what is for members, whatever their addresses."""
-        return packed(doors.steps())
-
-    def guard(self, *socks: socket.socket) -> None:
-        """Have the system let in what is for us, or all if that is too much to say."""
-        for sock in socks or self._sockets():
-            only_from(sock, self._group.filter)
-
-    def _make(self) -> socket.socket:
-        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
-        try:
-            sock.setblocking(False)
-            sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            if sys.platform == "linux":
-                sock.setsockopt(socket.IPPROTO_IP, IP_MULTICAST_ALL, 0)
-            self.guard(sock)
-            sock.bind(self.group)
-            self._join(sock)
-            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("B", 1))
-            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
-        except BaseException:
-            sock.close()
-            raise
-        return sock
-
-    async def open(self, receive: Receiver) -> None:
-        """Join the group; a wrong address is the user's mistake."""
-        await super().open(receive)
-        self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
-
-    def _renew(self) -> None:
-        """A membership goes with its interface, and nobody is told: join anew now and then."""
-        if self._closed:
-            return
-        self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
-        if self.socket is None:
-            return
-        group, why = self._group, ""
-        try:
-            self._join(self.socket)
-        except OSError as error:
-            if error.errno != errno.EADDRINUSE:  # that says: it is a member
-                why = error.strerror or "error"
-        if why:
-            group.trouble = f"{group.name}: not in the group: {why}; trying again"
-        elif not group.up:
-            group.trouble = ""
-        group.up = not why
-
-    def _join(self, sock: socket.socket) -> None:
-        own = socket.inet_aton(self.interface)
-        sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, own)
-        member = socket.inet_aton(self.group[0]) + own
-        sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
-
-    def _origin(self, address: Address) -> UdpPath | None:
-        """Whoever sends to the group is in it; our own frames come back, too: protocols know."""
-        return self._group
