@@ -97,11 +97,16 @@ def test_a_neighbour_that_is_heard_is_not_looked_up_and_one_that_is_not_is_where
         for _ in range(3):
             await passes(udp.LOOK_S)
             turns.append(gone.address[0])
+        gone.heard_at = udp.clock_us()  # it is there, and says little
+        for seconds in (udp.MUTE_US / 1e6 - 1, udp.LOOK_S - 1):
+            await passes(seconds)
+            turns.append(gone.address[0])
         link.close()
         return asked, kept, trouble, turns, near.address
 
     found = with_names(test, near=["127.0.0.1"], gone=["127.0.0.2"])
     turns = ["127.0.0.3", "127.0.0.2", "127.0.0.3"]  # of which the other neighbour's is none
+    turns += ["127.0.0.3", "127.0.0.2"]
     assert found == ({"gone"}, ("127.0.0.2", 9), "", turns, ("127.0.0.1", 9))
 
 

@@ -66,6 +66,8 @@ async def look_up(host: str, port: int, family: int) -> list[Address]:
             found = [(str(one[4][0]).partition("%")[0], *one[4][1:]) for one in told]
         except OSError as error:
             found = error
+        except UnicodeError as error:
+            found = OSError(str(error))
         with suppress(RuntimeError):  # the loop is closed: nobody asks any more
             loop.call_soon_threadsafe(settle, found)
 

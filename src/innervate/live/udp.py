@@ -29,6 +29,7 @@ SOCKETS = 32  # of a link at most
 REOPEN_S = 0.5
 FIRST_S = 2.0  # a node's start waits so long for its neighbours' names
 LOOK_S = 5.0  # names of whom nothing was heard for so long are looked up, so often
+MUTE_US = 60_000_000  # who was heard at an address may be silent for so long and be there still
 
 
 class UdpPath(Path):
@@ -44,7 +45,7 @@ class UdpPath(Path):
 
     def lead_to(self, address: Address | None) -> None:
         """What the neighbour's name stands for now."""
-        self.address, link = address, self.link
+        self.address, self.led_at, link = address, clock_us(), self.link
         here, far = text(link.bind), text(address) if address else ""
         self.own = f"udp {here}"
         self.far = f"udp {far}" if far and known(self.peer) is None else ""
@@ -165,7 +166,7 @@ class UdpLink(Link):
                 await self._look_up([path for path in named if path in silent])
 
     async def _look_up(self, named: list[UdpPath]) -> None:
-        """Ask where names lead: nothing was heard there, so it may be the next address."""
+        """Ask where names lead; to what they do not lead any more nobody listens."""
         asked = (machine().addresses(*path.peer, self.family) for path in named)
         found = await asyncio.gather(*asked, return_exceptions=True)
         is_elsewhere = False
@@ -180,6 +181,8 @@ class UdpLink(Link):
             return
         self._by_address = {path.address: path for path in self.paths if path.address}
         if is_elsewhere:
+            if self._again is not None:
+                self._again.cancel()
             self._drop()
             self._reopen()
         elif self.socket is not None:
@@ -188,13 +191,15 @@ class UdpLink(Link):
                 keep_apart(self._sockets(), self._by_address)
 
     def _lead(self, path: UdpPath, found: list[Address], why: str) -> None:
-        """Have a path lead to the address behind its present one, of those that are nobody else's.
+        """Have a path lead to one of the addresses found, of those that are nobody else's.
 
-        `why` says why there is none; then it stays as it is.
+        It stays where it is if its neighbour may be there, else it is the next one's turn; `why`
+        says why there is none.
         """
         taken = {one.address for one in self.paths if one is not path}
         free = [address for address in found if address not in taken]
-        at = free.index(path.address) + 1 if path.address in free else 0
+        is_mute = path.heard_at < max(path.led_at, clock_us() - MUTE_US)
+        at = free.index(path.address) + is_mute if path.address in free else 0
         if free and free[at % len(free)] != path.address:
             path.lead_to(free[at % len(free)])
             path.trouble, path.again = "", f"leads to {path.far.removeprefix('udp ')}"
