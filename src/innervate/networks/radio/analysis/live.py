@@ -47,13 +47,6 @@ def of_stations(
     abandoned = sum(int(told[i].get("queued", 0)) for i in off if i in told)
     queued = {i: int(one.get("queued", 0)) for i, one in told.items() if i not in off}
     timeout_ms = timeout_us(params, stations) / 1e3
-    here = {one.get("number") for one in told.values()}
-    others = any(
-        bool(set(told[i]["others"]) - here)
-        if "others" in told[i]
-        else stations == 1 and any(path["heard_s"] is not None for path in told[i].get("paths", ()))
-        for i in queued
-    )
     return RadioFacts(
         stations=stations,
         off=off,
@@ -65,5 +58,13 @@ def of_stations(
         waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > timeout_ms else (),
         still_ms=still_ms,
         timeout_ms=timeout_ms,
-        others=others,
+        others=any(_hears_others(told, i, stations == 1) for i in queued),
     )
+
+
+def _hears_others(told: Mapping[int, Mapping[str, Any]], i: int, is_alone: bool) -> bool:
+    """True if stations that run elsewhere are on the channel, as station i knows."""
+    if "others" in told[i]:
+        return not {one.get("number") for one in told.values()}.issuperset(told[i]["others"])
+    paths = told[i].get("paths", ())
+    return is_alone and any(path["heard_s"] is not None for path in paths)
