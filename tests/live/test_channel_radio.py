@@ -16,6 +16,7 @@ from innervate.live.channel_radio import (
     read_heard,
 )
 from innervate.live.engine import clock_us
+from innervate.live.radio import Aerial
 from tests.live import time_by_hand
 
 STATION = 7
@@ -179,3 +180,16 @@ async def test_who_else_is_on_the_channel_is_known_while_it_says_so(medium):
     assert medium.radio.others() == [1, 1023]
     await asyncio.sleep(LEASE_US / 1e6)
     assert medium.radio.others() == []
+
+
+@on_air
+async def test_a_path_is_up_while_the_channel_answers(medium):
+    medium.said()
+    path = Aerial(medium.radio, "medium here")
+    assert (path.up, path.trouble) == (True, "")  # it has just been asked
+    await asyncio.sleep(LEASE_US / 1e6)
+    assert (path.up, path.trouble) == (False, "medium here: no answer; trying again")
+    medium.said()
+    await medium.tell(b"C")
+    assert (path.up, path.trouble) == (True, "")
+    assert Aerial(object(), "a modem that cannot know").up

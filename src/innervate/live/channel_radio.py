@@ -45,7 +45,7 @@ class MediumRadio:
         self.mode = "off"
         self.plugged = True
         self._there: tuple[int, ...] = ()
-        self._told_at = 0  # us
+        self._heard_at = -LEASE_US  # the channel said anything, us
         self._socket: socket.socket | None = None
         self._listener: Listener | None = None
         self._again: asyncio.TimerHandle | None = None
@@ -65,7 +65,7 @@ class MediumRadio:
             sock.close()
             host, port = self.where
             raise LiveError(f"no way to {host}:{port}: {error.strerror}") from None
-        self._socket = sock
+        self._socket, self._heard_at = sock, clock_us()  # it has as long to answer
         asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
         self.mode = "listening"
         self._join()
@@ -85,10 +85,13 @@ class MediumRadio:
         with suppress(OSError):  # no channel there: it is lost
             self._socket.send(SEND.pack(b"T", self.number, at, slots) + data)
 
+    def is_there(self) -> bool:
+        """True while the channel answers this station."""
+        return clock_us() - self._heard_at < LEASE_US
+
     def others(self) -> list[int]:
         """Who else is on the channel with an aerial that is plugged in, as it says."""
-        is_new = clock_us() - self._told_at < LEASE_US
-        return [one for one in self._there if one != self.number] if is_new else []
+        return [one for one in self._there if one != self.number] if self.is_there() else []
 
     def plug(self, plugged: bool) -> None:
         """Have the channel leave this station out, or take it in again."""
@@ -113,9 +116,9 @@ class MediumRadio:
             data = self._socket.recv(DATAGRAM_MAX)
         except OSError:
             return
+        self._heard_at = clock_us()
         if data[:1] == WHO:
             self._there = struct.unpack_from(f">{len(data) // 2}H", data, 1)
-            self._told_at = clock_us()
             return
         heard = read_heard(data)
         if heard is None or self._listener is None:
