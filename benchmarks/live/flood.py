@@ -9,7 +9,7 @@ recording with one byte changed, and what begins like them. --as listener: the s
 this run, so that the first bytes are right. --as caller: two of three are first messages of a
 handshake, whose mark is wrong. --as bystander: from the address of a fourth node that has no part
 in the messages, by somebody who listens to it. --group: into the multicast group of three nodes, of
-which the first sends to the last.
+which the first sends to the last; with --as listener what its members say, recorded in this run.
 
 Exit code 1 if a message was lost, a node wrote an error or answered, or p99 is 5 ms.
 """
@@ -127,8 +127,9 @@ def run(side, args, folder, log):
     shape = group or ("star" if args.whom == "bystander" else "line")
     count, far = (4, 2) if shape == "star" else (3, 0)
     commands = ours(Path(folder), count, side == "sealed", None, args.engine, shape)
-    far, near = ports = (0, 0) if group else (port_of(commands[far]), port_of(commands[1]))
-    host, port = group.split(":") if group else (HOST, near)
+    host, port = group.split(":") if group else (HOST, port_of(commands[1]))
+    far = port if group else port_of(commands[far])  # members send from the group's port
+    ports = int(far), int(port)
     words = [built(folder), host, port, args.rate, args.seconds, args.seed]
     if args.whom == "neighbour":
         with running(commands, log) as line:

@@ -93,6 +93,7 @@ def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
     with up(SKIN, short, monkeypatch, "--pty"), serving("live") as address:
         page = look(address)
         expect(page.locator("#unconnected output")).to_have_text("0")
+        expect(page.locator("#legend")).to_contain_text("by nodes that do not run here")
         click(page, "c0 - pc.0")
         expect(page.locator("#selected-facts")).to_have_text("link, cut")
         expect(page.locator("#unconnected output")).to_have_text("6")

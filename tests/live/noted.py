@@ -1,7 +1,7 @@
 """A medium that notes what it tells whom, in place of a socket."""
 
 from innervate.live.channel import Medium
-from innervate.live.channel_radio import JOIN, SEND, read_heard
+from innervate.live.channel_radio import JOIN, SEND, WHO, read_heard
 from innervate.live.engine import clock_us
 
 HERE, THERE = ("127.0.0.1", 9), ("127.0.0.1", 10)
@@ -15,6 +15,8 @@ class Noted:
         self.medium._socket = self
 
     def sendto(self, data, where):
+        if data[:1] == WHO:
+            return
         what, at, cd, voc, frame = read_heard(data)
         self.told.append(
             (what.decode(), at - self.began, cd, voc, where[1], *filter(None, [frame]))

@@ -7,7 +7,7 @@ import pytest
 
 from innervate.live import channel
 from innervate.live.channel import DELAY_US, LEASE_US, SLOTS_MAX, STATIONS, Medium
-from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
+from innervate.live.channel_radio import JOIN, PLUG, SEND, WHO, read_heard
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from tests.live import time_by_hand
@@ -60,6 +60,8 @@ class Team:
                 data = self.sockets[number].recv(999)
             except BlockingIOError:
                 return found
+            if data[:1] == WHO:
+                continue
             what, at, *carrier, frame = read_heard(data)
             found.append((what.decode(), at - self.began, frame or tuple(carrier)))
 
@@ -289,6 +291,20 @@ def test_a_stations_place_is_its_own_for_a_while(after_us, moved):
         assert team.heard(1) == ([("L", 1_000_000 + after_us, NOBODY)] if moved else [])
 
     play()
+
+
+@with_team(4)
+async def test_who_joins_again_is_told_who_is_there_with_an_aerial(team):
+    def told():
+        team.take(0, JOIN.pack(b"J", 0))
+        return team.sockets[0].recv(99)
+
+    await team.until(1_000_000)
+    team.take(1, JOIN.pack(b"J", 1))
+    team.take(2, PLUG.pack(b"P", 2, 0))
+    assert told() == WHO + b"\0\0\0\1\0\3"
+    await team.until(LEASE_US)
+    assert told() == WHO + b"\0\0\0\1"  # the others have not joined for so long
 
 
 @with_team(2)

@@ -5,8 +5,18 @@ import socket
 
 import pytest
 
-from innervate.live.channel_radio import HEARD, HEARD_US, JOIN, PLUG, SEND, MediumRadio, read_heard
+from innervate.live.channel_radio import (
+    HEARD,
+    HEARD_US,
+    JOIN,
+    LEASE_US,
+    PLUG,
+    SEND,
+    MediumRadio,
+    read_heard,
+)
 from innervate.live.engine import clock_us
+from innervate.live.radio import Aerial
 from tests.live import time_by_hand
 
 STATION = 7
@@ -53,6 +63,12 @@ class Medium:
         await asyncio.sleep(0.001)
         told, self.listener.told = self.listener.told, []
         return [(kind, when - now, *more) for kind, when, *more in told]
+
+    async def tell_all(self, data):
+        """What the radio passes on of a message as it is."""
+        self.socket.sendto(data, self.where)
+        await asyncio.sleep(0.001)
+        return self.listener.told
 
 
 def on_air(test):
@@ -154,3 +170,26 @@ def test_what_no_medium_says_is_nothing(data):
 def test_what_a_medium_says_is_read(what, cd, voc):
     data = HEARD.pack(what, 2**40, cd, voc) + b"frame"
     assert read_heard(data) == (what, 2**40, bool(cd), bool(voc), b"frame")
+
+
+@on_air
+async def test_who_else_is_on_the_channel_is_known_while_it_says_so(medium):
+    medium.said()
+    assert medium.radio.others() == []
+    assert await medium.tell_all(b"W\0\1\0\7\3\xff") == []
+    assert medium.radio.others() == [1, 1023]
+    await asyncio.sleep(LEASE_US / 1e6)
+    assert medium.radio.others() == []
+
+
+@on_air
+async def test_a_path_is_up_while_the_channel_answers(medium):
+    medium.said()
+    path = Aerial(medium.radio, "medium here")
+    assert (path.up, path.trouble) == (True, "")  # it has just been asked
+    await asyncio.sleep(LEASE_US / 1e6)
+    assert (path.up, path.trouble) == (False, "medium here: no answer; trying again")
+    medium.said()
+    await medium.tell(b"C")
+    assert (path.up, path.trouble) == (True, "")
+    assert Aerial(object(), "a modem that cannot know").up

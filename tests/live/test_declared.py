@@ -247,3 +247,10 @@ def test_a_link_of_a_field_is_found_whichever_end_is_named_first():
     fault.other = 0
     with pytest.raises(LiveError, match=r"event\.4: n0 and n2 do not hear each other"):
         made.cable_of(fault)
+
+
+@pytest.mark.parametrize(("etx", "hellos"), [(0, 3), (1, 4)])
+def test_a_network_says_after_what_silence_a_path_is_broken(etx, hellos):
+    params = {**fields.DEFAULTS, "etx": etx}
+    stack = DeclaredStack(networks()["babel"], 1, params, 1, [0])
+    assert stack.silent_us == hellos * params["hello_us"]

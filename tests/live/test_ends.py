@@ -3,9 +3,10 @@
 import asyncio
 import errno
 
-from innervate.live import udp
+from innervate.live import multicast, udp
 from innervate.live.machine import Machine
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.multicast import MulticastLink
+from innervate.live.udp import UdpLink
 from tests.live import time_by_hand
 from tests.live.test_udp import free_port
 
@@ -56,7 +57,7 @@ def test_a_group_whose_interface_is_away_is_joined_again_when_it_is_back():
         make, link._make = link._make, nowhere
         link._lost(OSError(errno.ENODEV, "No such device"))
         assert not link.paths[0].up
-        await asyncio.sleep(2.2 * udp.RENEW_S)
+        await asyncio.sleep(2.2 * multicast.RENEW_S)
         link.paths[0].send(b"lost")
         assert (wrong, link.socket, link.paths[0].up) == ([], None, False)
         link._make = make

@@ -122,11 +122,14 @@ def test_a_node_that_leaked_is_put_out_and_the_others_go_on():
         before = two[0].sealer._contacts[0].all_sessions()
         made = identities.revoke(AUTHORITY, 1, frozenset({103}))
         heard = []
-        three[0].sealer.said = lambda matter, text: heard.append((matter, text))
+        for ends in (one, two, three):
+            ends[0].sealer.said = lambda matter, text: heard.append((matter, text))
         assert one[0].sealer.revoke(made.data)  # one is told, and tells the next
         await settle()
         # Who is put out is told, too, and those behind it, as long as it does what it should.
-        assert heard == [("revoked", "this node's identity is put out, list 1")]
+        assert heard == [("revoked by list 1", text) for text in (
+            "put out: certificate 103, list 1", "put out: certificate 103 of node 3, list 1",
+            "this node's identity is put out, list 1")]  # fmt: skip
         for ends in (one, two, three, four):
             assert ends[0].sealer.ring.revoked == made
             assert identities.read_revoked(public_authority(), ends[0].sealer.state.revoked)

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from innervate.live import only_from as filters
 from innervate.live.errors import LiveError
+from innervate.live.multicast import MulticastLink
 from innervate.live.only_from import Doors, of_peer, only_from, packed, unread
 from innervate.live.receipts import DELIVERED
-from innervate.live.udp import MulticastLink, UdpLink, UdpPath
+from innervate.live.udp import UdpLink, UdpPath
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.wire import seal

@@ -7,7 +7,8 @@ import pytest
 from innervate.live.channel import Medium
 from innervate.live.channel_radio import MediumRadio
 from innervate.live.machine import Machine, on
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.multicast import MulticastLink
+from innervate.live.udp import UdpLink
 
 HERE = "127.0.0.1"
 

@@ -317,7 +317,7 @@ def test_of_many_nodes_that_start_at_once_the_first_has_as_much_longer(
         monkeypatch.setattr(up, "time", SimpleNamespace(monotonic=loop.time))
         monkeypatch.setattr(up.status, "answers", lambda _: loop.time() - began >= answers_s)
         with suppress(LiveError):
-            await network._ready("n0")
+            await network._ready(["n0"])
         return loop.time() - began
 
     assert time_by_hand.run(main()) == pytest.approx(waited_s, abs=0.1)

@@ -9,9 +9,10 @@ import pytest
 from innervate.live import main
 from innervate.live.build import open_keys
 from innervate.live.machine import Machine, on
+from innervate.live.multicast import MulticastLink
 from innervate.live.nodefile import load
 from innervate.live.serial import SerialLink
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.udp import UdpLink
 
 KEY = bytes(range(32))
 FILE = """\
@@ -197,9 +198,8 @@ def test_a_group_whose_interface_is_gone_is_said_and_when_it_is_back(node):
 
     asyncio.run(look())
     assert machine.said == [
-        "n3: udp 239.77.0.1:4700: not in the group on interface 10.0.2.1: No such device; "
-        "trying again",
-        "n3: udp 239.77.0.1:4700: there again",
+        "n3: udp 239.77.0.1:4700 on 10.0.2.1: not in the group: No such device; trying again",
+        "n3: udp 239.77.0.1:4700 on 10.0.2.1: there again",
     ]
 
 

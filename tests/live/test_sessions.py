@@ -45,7 +45,7 @@ def test_who_began_a_session_has_it_made_anew_first(age_us, counter, began, worn
     [
         ("", "a:1", True), ("a:1", "", True), ("a:1", "a:1", True), ("a:1", "b:1", False),
         ("0.0.0.0:1", "b:1", True), ("a:1", "0.0.0.0:1", True), ("0.0.0.0:1", "b:2", False),
-        ("a:1", "a:2", False),
+        ("a:1", "a:2", False), ("[::]:1", "[fd::1]:1", True), ("[fd::1]:1", "[::]:2", False),
     ],
 )  # fmt: skip
 def test_ends_are_the_same_if_both_names_can_be_right(claimed, known, same):

@@ -13,9 +13,10 @@ from innervate.live.channel import Medium
 from innervate.live.channel_radio import JOIN, PLUG, SEND, read_heard
 from innervate.live.engine import clock_us
 from innervate.live.keys import Sealer, ring_of
+from innervate.live.multicast import MulticastLink
 from innervate.live.receipts import DELIVERED
 from innervate.live.state import State
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.udp import UdpLink
 from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters

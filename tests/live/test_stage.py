@@ -52,8 +52,8 @@ class Noted(Processes):
         self.started.append(name)
         self.processes[name] = Process()
 
-    async def _ready(self, name):
-        self.ready.append(name)
+    async def _ready(self, names):
+        self.ready += names
 
 
 @pytest.fixture
@@ -210,7 +210,7 @@ def test_who_does_not_come_up_says_why(tmp_path, log, says):
     network.processes["n0"] = Process(ended=True)
     (tmp_path / "n0.log").write_text(log)
     with pytest.raises(LiveError, match=f"^{says}$"):
-        asyncio.run(network._ready("n0"))
+        asyncio.run(network._ready(["n0"]))
 
 
 def test_at_the_end_all_are_told_to_end_and_who_does_not_is_killed(noted, monkeypatch):

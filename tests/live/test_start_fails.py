@@ -4,11 +4,13 @@ import asyncio
 import errno
 import gc
 import socket
+import time
 import warnings
+from types import SimpleNamespace
 
 import pytest
 
-from innervate.live import status
+from innervate.live import status, up
 from innervate.live.build import build
 from innervate.live.channel_radio import MediumRadio
 from innervate.live.errors import LiveError
@@ -17,6 +19,8 @@ from innervate.live.nodefile import load
 from innervate.networks.radio.live.node import RadioNode
 from innervate.networks.radio.live.parameters import RADIO
 from innervate.networks.radio.live.stack import StationStack
+from innervate.scenario import load as load_scenario
+from innervate.scenario import plan
 from tests.live.test_udp import free_port
 
 KINDS = {
@@ -161,3 +165,18 @@ def test_a_status_socket_that_cannot_listen_is_removed(tmp_path, monkeypatch):
 
     asyncio.run(main())
     assert list(tmp_path.iterdir()) == []
+
+
+def test_live_up_says_for_whom_it_waits_and_gives_up_on_all_at_once(tmp_path, monkeypatch, capsys):
+    for name, value in (("START_S", 0.4), ("START_EACH_S", 0.1), ("SAY_S", 0.2)):
+        monkeypatch.setattr(up, name, value)
+    network = up.Processes(plan(load_scenario("line")), tmp_path, "udp")
+    network.processes = dict.fromkeys(network.names, SimpleNamespace(poll=lambda: None))
+    limit_s = 0.4 + 0.1 * len(network.names)
+    began = time.monotonic()
+    whom = f"c0 and {len(network.names) - 1} more did not answer within {limit_s:g} s"
+    with pytest.raises(LiveError, match=whom):
+        asyncio.run(network._ready(network.names))
+    assert time.monotonic() - began < 2 * limit_s
+    first, *_ = capsys.readouterr().err.splitlines()
+    assert first == f"{whom.replace(f'{limit_s:g}', '0.2')}; waiting up to {limit_s:g} s"

@@ -4,14 +4,15 @@ import asyncio
 import os
 import shutil
 import socket
-from contextlib import contextmanager
+import time
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from innervate import scenario as scenarios
-from innervate.cli import app, live_status
+from innervate.cli import app, live, live_status
 from innervate.live import status
 from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
@@ -62,6 +63,42 @@ def test_a_cable_is_named_once_by_both_its_ends():
             {"name": "n1", "paths": [path("udp b:1", "udp a:1"), path("", "serial x")]},
             {"name": "n2", "paths": [path("udp c:1", "udp d:1", broken=False)]}]  # fmt: skip
     assert live_status.broken(told) == ["broken: n0 port 0 - n1 port 0", "broken: n1 port 0"]
+
+
+def mesh_status():
+    """What a mesh node says that has heard nobody."""
+    return {"kind": "mesh", "name": "n0", "role": "node", "up_s": 1, "sealed": False,
+            "counters": {}, "gateway": None, "epoch": 0, "table": 0, "neighbours": [],
+            "routes": {}}  # fmt: skip
+
+
+def test_where_a_name_leads_is_shown_and_its_cable_named_once():
+    here = path("udp 10.0.0.1:1", "udp arm:2") | {"far": "udp 10.0.0.2:2"}
+    there = path("udp 10.0.0.2:2", "udp 10.0.0.1:1")
+    told = [{"name": "n0", "paths": [here]}, {"name": "n1", "paths": [there]}]
+    assert live_status.broken(told) == ["broken: n0 port 0 - n1 port 0"]
+    node = mesh_status() | {"paths": [
+        here | {"heard_s": None, "up": True, "counters": {}},
+        path("", "udp [fe80::1%eth0]:2", False)
+        | {"far": "udp [fe80::1]:2", "heard_s": None, "up": True, "counters": {}, "port": 1},
+    ]}  # fmt: skip
+    lines = live_status.lines(node)
+    assert any("udp arm:2 (10.0.0.2:2), heard" in line for line in lines)
+    assert any("udp [fe80::1%eth0]:2, heard" in line for line in lines)
+
+
+def test_nodes_that_hang_are_waited_for_together(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    monkeypatch.setattr(status, "ANSWER_S", 0.5)
+    with ExitStack() as stack:
+        for i in range(6):
+            sock = stack.enter_context(socket.socket(socket.AF_UNIX))
+            sock.bind(str(tmp_path / f"n{i}.sock"))
+            sock.listen()
+        began = time.monotonic()
+        assert live.show() == 1
+        assert time.monotonic() - began < 2
+    assert capsys.readouterr().err.count("does not answer") == 6
 
 
 def test_nodes_that_have_one_number_are_named():

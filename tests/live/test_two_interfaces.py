@@ -9,7 +9,7 @@ from innervate.live.netns import Lab
 
 BOTH = """
 import asyncio, sys
-from innervate.live.udp import MulticastLink
+from innervate.live.multicast import MulticastLink
 
 async def main():
     links = [MulticastLink(("239.77.12.7", 4700), at, port) for port, at in enumerate(sys.argv[1:])]

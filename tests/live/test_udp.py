@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from innervate.live import udp
+from innervate.live import multicast, udp
 from innervate.live.errors import LiveError
 from innervate.live.machine import Machine
+from innervate.live.multicast import MulticastLink
 from innervate.live.only_from import of_peer, only_from, unread
 from innervate.live.receipts import DELIVERED
-from innervate.live.udp import MulticastLink, UdpLink
+from innervate.live.udp import UdpLink
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
@@ -311,12 +312,12 @@ def test_a_member_joins_anew_now_and_then_and_is_down_while_it_cannot(code, up, 
         link = MulticastLink(("239.77.12.4", free_port()), "127.0.0.1")
         await link.open(print)
         assert (link.paths[0].up, len(joined)) == (True, 1)
-        await passes(2.5 * udp.RENEW_S)
+        await passes(2.5 * multicast.RENEW_S)
         assert (link.paths[0].up, len(joined)) == (up, 3)
-        await passes(udp.RENEW_S)
+        await passes(multicast.RENEW_S)
         assert (link.paths[0].up, len(joined)) == (True, 4)
         link.close()
-        await passes(5 * udp.RENEW_S)
+        await passes(5 * multicast.RENEW_S)
         return len(joined)
 
     assert time_by_hand.run(main()) == 4

@@ -63,7 +63,7 @@ def said(line: str) -> tuple[int, str, str]:
 @contextlib.contextmanager
 def nodes() -> Iterator[None]:
     """Nodes by name, if a file `nodes.json` lies here: what they answer to what they are asked."""
-    was = status.ask, status.find, status.sockets
+    was = status.ask, status.find, status.sockets, status.ASKED
 
     def told() -> Any:
         return json.loads(Path("nodes.json").read_text(encoding="utf-8"))
@@ -75,12 +75,12 @@ def nodes() -> Iterator[None]:
             raise LiveError(f"{path.name}: no node answers here")
         yield from answers[request["do"]]
 
-    status.ask, status.find = ask, Path
+    status.ask, status.find, status.ASKED = ask, Path, 1  # one after the other
     status.sockets = lambda: [Path(name) for name in told()]
     try:
         yield
     finally:
-        status.ask, status.find, status.sockets = was
+        status.ask, status.find, status.sockets, status.ASKED = was
 
 
 def masked(text: str, folder: str) -> str:

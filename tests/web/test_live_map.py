@@ -8,8 +8,9 @@ from innervate.web.live_map import Link, Map, Place
 
 
 def said(*ends, number=None):
-    """What a node says of its paths; an end is (own, far)."""
-    paths = [{"port": port, "name": far, "own": own} for port, (own, far) in enumerate(ends)]
+    """What a node says of its paths; an end is (own, far), or besides where a name leads."""
+    paths = [{"port": port, "name": far, "own": own} | ({"far": leads[0]} if leads else {})
+             for port, (own, far, *leads) in enumerate(ends)]  # fmt: skip
     return {"paths": paths, **({} if number is None else {"number": number})}
 
 
@@ -28,6 +29,8 @@ def links(*told, before=None):
         (("udp a:1", "udp c:2"), ("udp b:2", "udp a:1"), False),
         (("udp 0.0.0.0:1", "udp b:2"), ("udp b:2", "udp a:3"), False),
         (("", "udp b:2"), ("udp b:2", ""), False),
+        (("udp [::]:1", "udp [fd::2]:2"), ("udp [fd::2]:2", "udp [fd::1]:1"), True),
+        (("udp a:1", "udp arm:2", "udp b:2"), ("udp b:2", "udp a:1"), True),  # a name leads there
         (("serial x to y", "serial y to x"), ("serial y to x", "serial x to y"), True),
     ],
 )

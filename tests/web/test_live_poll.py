@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from innervate.live.status import FULL
 from innervate.web import live_poll
 from innervate.web.live_poll import AGAIN_S, LINE_MAX, Poller, _Line
 
@@ -160,3 +161,15 @@ def test_who_answers_in_time_who_is_slow_and_who_is_gone(tmp_path):
         assert poller.is_gone(0)
         poller.close()
         assert [one.sock for one in poller._lines] == [None] * 3
+
+
+def test_who_turns_us_away_has_told_nothing_and_is_not_gone(tmp_path):
+    """A node that hung for a minute finds more callers than it lets in: us, all the while."""
+    with closing(Node(tmp_path / "a")) as a, closing(Node(tmp_path / "b")) as b:
+        poller = Poller([a.path, b.path])
+        with answering(a=(a, FULL), b=(b, b'{"b": 1}\n')):
+            assert poller.ask_all({}) == {1: {"b": 1}}
+        assert not poller.is_gone(0)
+        with answering(a=(a, b'{"a": 1}\n'), b=(b, b'{"b": 2}\n')):
+            assert poller.ask_all({}) == {0: {"a": 1}, 1: {"b": 2}}
+        poller.close()

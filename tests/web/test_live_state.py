@@ -119,6 +119,25 @@ def test_who_answers_for_the_first_time_does_so_again_only_later(monkeypatch, tm
     ]  # fmt: skip
 
 
+def test_a_cable_on_which_nothing_comes_joins_nobody_though_nobody_was_told_that_it_is_cut():
+    def node(number, *paths):
+        return {"number": number, "paths": [
+            {"own": own, "name": far, "port": at, "up": True, "broken": is_broken}
+            for at, (own, far, is_broken) in enumerate(paths)]}  # fmt: skip
+
+    def judged(first, second):
+        told = {
+            0: node(0, ("udp a:1", "udp b:1", first), ("udp a:2", "udp b:2", second)),
+            1: node(1, ("udp b:1", "udp a:1", False), ("udp b:2", "udp a:2", second)),
+        }
+        state = State(Map(told), told)
+        assert state.link_up.tolist() == [1, 1]  # nobody cut it
+        return state.headline()
+
+    assert judged(False, True).level == "ok"  # the other one is left
+    assert judged(True, True)[:2] == ("degraded", "No links join 1 of 2 nodes with the others.")
+
+
 def test_nodes_that_others_elsewhere_may_join_are_not_told_to_be_apart():
     """A chain a - b - elsewhere - c."""
     told = {at: {"kind": "own", "counters": {}, **one} for at, one in enumerate((

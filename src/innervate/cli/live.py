@@ -86,12 +86,12 @@ def show(*nodes: str, as_json: Json = False) -> int:
         where = f"no node runs here (folder {status.where()})"
         raise errors.UserError(f"{where}; start one with: innervate live node FILE")
     told, silent = [], []
-    for path in sockets:
-        try:
-            told.append(status.ask_one(path, {"do": "status"}))
-        except LiveError:
-            if nodes:
-                raise
+    for path, answer in zip(sockets, status.ask_all(sockets, {"do": "status"}), strict=True):
+        if not isinstance(answer, LiveError):
+            told.append(answer)
+        elif nodes:
+            raise answer
+        else:
             silent.append(path)
     if as_json:
         print(json.dumps(told if len(told) != 1 or not nodes else told[0]))

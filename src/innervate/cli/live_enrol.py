@@ -54,12 +54,13 @@ def revoke(where: Path, /, *numbers: int, as_json: Json = False) -> int:
     else:
         data = read_list(where)
     told, silent = [], []
-    for socket in status.sockets():
-        try:
-            answer = status.ask_one(socket, {"do": "revoke", "list": data.hex()})
+    sockets = status.sockets()
+    answers = status.ask_all(sockets, {"do": "revoke", "list": data.hex()})
+    for socket, answer in zip(sockets, answers, strict=True):
+        if isinstance(answer, LiveError):
+            silent.append(str(answer))
+        else:
             told.append({"node": socket.stem, **answer})
-        except LiveError as error:
-            silent.append(str(error))
     if as_json:
         print(json.dumps({"told": told, "not": silent}))
     else:

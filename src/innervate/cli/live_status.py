@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from innervate.live.addresses import without_interface
 from innervate.network import known
 
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
@@ -31,7 +32,8 @@ def broken(told: list[dict[str, Any]]) -> list[str]:
     for one in told:
         for path in one["paths"]:
             if path["broken"]:
-                ends = frozenset((path["own"] or f"{one['name']} {path['name']}", path["name"]))
+                far = path.get("far", path["name"])
+                ends = frozenset((path["own"] or f"{one['name']} {path['name']}", far))
                 found.setdefault(ends, []).append(f"{one['name']} port {path['port']}")
     return [f"broken: {' - '.join(ends)}" for ends in found.values()]
 
@@ -67,6 +69,8 @@ def lines(told: dict[str, Any]) -> list[str]:
         lost = "".join(f", {what} {count}" for what, count in path["counters"].items()
                        if count and what.startswith(LOSSES))  # fmt: skip
         is_up = "  BROKEN" if path["broken"] else "" if path["up"] else "  CUT HERE"
-        found.append(f"  port {name}: {path['name']}, heard {heard}{lost}{is_up}")
+        far = path.get("far", path["name"])  # where a name leads
+        leads = "" if far == without_interface(path["name"]) else f" ({far.removeprefix('udp ')})"
+        found.append(f"  port {name}: {path['name']}{leads}, heard {heard}{lost}{is_up}")
     counts = ", ".join(f"{what} {count}" for what, count in told["counters"].items())
     return [*found, f"  {counts}"]

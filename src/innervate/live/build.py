@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ipaddress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from innervate.live import private
+from innervate.live.addresses import ANY, Peer, as_written, family_of
 from innervate.live.errors import LiveError
 from innervate.live.links import Link
 from innervate.live.node import LiveNode
@@ -19,6 +20,7 @@ from innervate.live.nodefile import (
     SerialTable,
     UdpTable,
     address,
+    udp_address,
 )
 from innervate.live.plain import shown
 from innervate.live.state import State
@@ -29,7 +31,6 @@ if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
 
 
 BROADCAST = "255.255.255.255"
-ANYWHERE = "0.0.0.0"
 
 
 def build(loaded: Loaded, engine: str = "") -> LiveNode:
@@ -66,14 +67,15 @@ def _refuse_shared_ports(loaded: Loaded) -> None:
     taken: dict[int, tuple[str, int, str]] = {}
     for i, table in enumerate(loaded.table.link):
         if isinstance(table, UdpTable):
-            host, port, interface = *address(table.bind, ""), ""
+            host, port, interface = *udp_address(table.bind, ""), ""
         elif isinstance(table, MulticastTable):
             host, port, interface = *address(table.group, ""), table.interface
         else:
             continue
         for other, (its_host, its_port, its_interface) in taken.items():
             is_same = (host, interface) == (its_host, its_interface)
-            if port == its_port != 0 and (is_same or ANYWHERE in (host, its_host)):
+            is_any = family_of(host) == family_of(its_host) and {host, its_host} & {*ANY}
+            if port == its_port != 0 and (is_same or is_any):
                 raise LiveError(
                     f"{loaded.path}: link.{i} and link.{other} both take UDP port {port}; give "
                     "one of them another"
@@ -85,12 +87,13 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, UdpTable):
         from innervate.live.udp import UdpLink
 
-        peers = [_peer(peer, f"{where}.peers.{i}") for i, peer in enumerate(table.peers)]
+        bind = udp_address(table.bind, f"{where}.bind")
+        peers = [_peer(peer, f"{where}.peers.{i}", bind) for i, peer in enumerate(table.peers)]
         if twice := next((one for one in peers if peers.count(one) > 1), None):
-            raise LiveError(f"{where}.peers: {twice[0]}:{twice[1]} stands there twice")
-        return UdpLink(address(table.bind, f"{where}.bind"), peers, port)
+            raise LiveError(f"{where}.peers: {as_written(twice)} stands there twice")
+        return UdpLink(bind, peers, port)
     if isinstance(table, MulticastTable):
-        from innervate.live.udp import MulticastLink
+        from innervate.live.multicast import MulticastLink
 
         own = _interface(table.interface, f"{where}.interface")
         group = _ipv4(table.group, f"{where}.group")
@@ -121,20 +124,34 @@ def _interface(text: str, where: str) -> str:
         ) from None
 
 
-def _peer(text: str, where: str) -> tuple[str, int]:
-    """A neighbour's address: one machine's, at which it can be sent to and comes from."""
-    host, port = _ipv4(text, where)
-    one = ipaddress.IPv4Address(host)
+def _peer(text: str, where: str, bind: Peer) -> Peer:
+    """An address at which a neighbour can be sent to and comes from, or a name for one."""
+    host, port = udp_address(text, where)
+    try:
+        one = ipaddress.ip_address(host)
+    except ValueError:
+        return host, port or _no_peer(text, where)
     if one.is_multicast or one.is_unspecified or host == BROADCAST or not port:
+        _no_peer(text, where)
+    if family_of(host) != family_of(bind[0]):
         raise LiveError(
-            f"{where}: {text} is no address that a neighbour can have; write its own, like "
-            '"10.0.0.2:4700", and for a group a link of kind = "multicast"'
+            f"{where}: {text} cannot be reached from bind {as_written(bind)}: one is of IPv4, the "
+            "other of IPv6; give those of either a link of their own"
         )
+    if one.is_link_local and one.version == 6 and "%" not in host:
+        raise LiveError(f"{where}: {text} is on every interface; say which: [{host}%eth0]:{port}")
     return host, port
 
 
+def _no_peer(text: str, where: str) -> NoReturn:
+    raise LiveError(
+        f"{where}: {text} is no address that a neighbour can have; write its own, like "
+        '"10.0.0.2:4700", and for a group a link of kind = "multicast"'
+    )
+
+
 def _ipv4(text: str, where: str) -> tuple[str, int]:
-    """An address whose datagrams the system can tell from others: no name, and none of IPv6."""
+    """An address of a group: no name, and none of IPv6."""
     host, port = address(text, where)
     try:
         return str(ipaddress.IPv4Address(host)), port

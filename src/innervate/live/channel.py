@@ -8,10 +8,11 @@ and medium run on one machine: what happened is stamped with the clock that they
 import asyncio
 import socket
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from innervate.live.channel_radio import DATAGRAM_MAX, HEARD, JOIN, PLUG, SEND
+from innervate.live.channel_radio import DATAGRAM_MAX, HEARD, JOIN, LEASE_US, PLUG, SEND, WHO
 from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
@@ -22,7 +23,6 @@ SLOT_US = 10_000
 SLOT_US_MIN, SLOT_US_MAX = 2_000, 1_000_000  # the least is what a PC keeps
 TURNAROUND_US = 5_000
 TURNAROUND_US_MAX = 10_000_000
-LEASE_US = 2_500_000  # a station that joins no more for so long may come back at another address
 STATIONS = 1024
 SLOTS_MAX = 4095
 HEAD_BYTES = 32  # a frame may have so many more than its slots, a byte each
@@ -159,6 +159,7 @@ class Medium:
         known = self._ears.get(station)
         if known is not None and known.where == where:
             known.joined_at = now
+            self._send(where, WHO + self._who(now))
             return True
         if station >= STATIONS or (known is not None and now - known.joined_at < LEASE_US):
             return False
@@ -167,6 +168,12 @@ class Medium:
         self._ears[station] = ear = Ear(station, where, now)
         self._listens(ear, b"L", now)  # it may have sent when no channel was there
         return True
+
+    def _who(self, now: int) -> bytes:
+        """The numbers of stations that are there, as many as a message holds."""
+        found = [ear.station for ear in self._ears.values()
+                 if ear.plugged and now - ear.joined_at < LEASE_US]  # fmt: skip
+        return b"".join(one.to_bytes(2, "big") for one in found[: DATAGRAM_MAX // 2 - 1])
 
     def _makes_room(self, where: Any, now: int) -> bool:
         """An address is one station: another number there has to be gone for a while."""
@@ -268,12 +275,13 @@ class Medium:
         self._say(ear, what, at, b"")
 
     def _say(self, ear: Ear, what: bytes, at: int, data: bytes) -> None:
+        self._send(ear.where, HEARD.pack(what, at, *map(int, ear.told)) + data)
+
+    def _send(self, where: Any, data: bytes) -> None:
         if self._socket is None:  # closed while transmissions were under way
             return
-        try:
-            self._socket.sendto(HEARD.pack(what, at, *map(int, ear.told)) + data, ear.where)
-        except OSError:  # a station that is gone hears nothing
-            return
+        with suppress(OSError):  # a station that is gone hears nothing
+            self._socket.sendto(data, where)
 
 
 async def run(where: str, slot_us: int, turnaround_us: int) -> None:

@@ -12,6 +12,7 @@ from innervate.live.radio import Listener
 
 DATAGRAM_MAX = 2048
 JOIN_S = 1.0
+LEASE_US = 2_500_000  # who joins no more for so long is gone; so is a channel that says nothing
 HEARD_US = 1 << 28  # nothing is told of what was longer ago: the protocol's clock has 30 bits
 
 # Between stations and the medium: how a message begins.
@@ -22,6 +23,7 @@ PLUG = struct.Struct(">cHB")  # b"P", station, 0 or 1: whether its aerial is plu
 # was on the air, b"F" frame: when (us), cd, voc; b"F": the frame
 HEARD = struct.Struct(">cQBB")
 TOLD = (b"C", b"R", b"L", b"F")
+WHO = b"W"  # to who joins again: the numbers of all whose aerials are plugged in, two bytes each
 
 
 def read_heard(data: bytes) -> tuple[bytes, int, bool, bool, bytes] | None:
@@ -42,6 +44,8 @@ class MediumRadio:
         self.where = where
         self.mode = "off"
         self.plugged = True
+        self._there: tuple[int, ...] = ()
+        self._heard_at = -LEASE_US  # the channel said anything, us
         self._socket: socket.socket | None = None
         self._listener: Listener | None = None
         self._again: asyncio.TimerHandle | None = None
@@ -61,7 +65,7 @@ class MediumRadio:
             sock.close()
             host, port = self.where
             raise LiveError(f"no way to {host}:{port}: {error.strerror}") from None
-        self._socket = sock
+        self._socket, self._heard_at = sock, clock_us()  # it has as long to answer
         asyncio.get_running_loop().add_reader(sock.fileno(), self._readable)
         self.mode = "listening"
         self._join()
@@ -80,6 +84,14 @@ class MediumRadio:
         self.mode = "sending"
         with suppress(OSError):  # no channel there: it is lost
             self._socket.send(SEND.pack(b"T", self.number, at, slots) + data)
+
+    def is_there(self) -> bool:
+        """True while the channel answers this station."""
+        return clock_us() - self._heard_at < LEASE_US
+
+    def others(self) -> list[int]:
+        """Who else is on the channel with an aerial that is plugged in, as it says."""
+        return [one for one in self._there if one != self.number] if self.is_there() else []
 
     def plug(self, plugged: bool) -> None:
         """Have the channel leave this station out, or take it in again."""
@@ -103,6 +115,10 @@ class MediumRadio:
         try:
             data = self._socket.recv(DATAGRAM_MAX)
         except OSError:
+            return
+        self._heard_at = clock_us()
+        if data[:1] == WHO:
+            self._there = struct.unpack_from(f">{len(data) // 2}H", data, 1)
             return
         heard = read_heard(data)
         if heard is None or self._listener is None:

@@ -94,7 +94,8 @@ class DeclaredStack(CabledStack):
         self.coder = coder_of(network, number, self.params)
         self.reasons: tuple[str, ...] = self.coder.reasons
         self._rest: Iterator[int] = iter(())
-        self.silent_us = getattr(self.params, "silent_us", NEVER)
+        after_us = getattr(fields, "silent_us", lambda params: getattr(params, "silent_us", NEVER))
+        self.silent_us = after_us(self.params)
         self.item = frame()
 
     def decode(self, data: bytes) -> int:

@@ -90,7 +90,7 @@ def is_same_end(claimed: str, known: str) -> bool:
     if not claimed or not known or claimed == known:
         return True
     (host, _, port), (other, _, another) = claimed.rpartition(":"), known.rpartition(":")
-    return port == another and "0.0.0.0" in (host, other)
+    return port == another and not {host, other}.isdisjoint(("0.0.0.0", "[::]"))
 
 
 class Proven(NamedTuple):

@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
-from innervate.kernel.words import number_of
 from innervate.live.contact import REVOKED, TWIN, Contact
 from innervate.live.engine import clock_us
 from innervate.live.group import GroupContact
@@ -19,6 +18,7 @@ from innervate.wire import seal
 LIVES = 8  # starts of a node that are remembered
 TWIN_US = 1_000_000  # frames of a life that is over may still come for so long
 TELL_US = 10_000_000  # twins are told of each other so often
+CERTIFICATES = 8  # are named one by one in a line of the log
 TWINS_US = 120_000_000  # ... and forgotten when nobody noted them for so long
 
 
@@ -246,19 +246,27 @@ class Sealer:
         return True
 
     def _put_out(self, new: Revoked) -> None:
+        fresh = sorted(new.serials - self.ring.revoked.serials)
         self.ring.revoked = new
         self.state.revoked = new.data
         self.state.write()
-        count = len(new.serials)
-        are = "is" if count == 1 else "are"
-        what = f"{number_of(count, 'certificate')} {are} put out"
+        what = f"put out: {self._certificates(fresh)}"
         if self.ring.identity is not None and self.ring.identity.serial in new.serials:
             what = "this node's identity is put out"
-        self.said("revoked", f"{what}, list {new.version}")
+        self.said(f"revoked by list {new.version}", f"{what}, list {new.version}")
         for contact in self._contacts.values():
             for session in contact.all_sessions():
                 contact.tell(session, REVOKED, new.data)
             contact.put_out(lambda who: who.serial in new.serials)
+
+    def _certificates(self, serials: list[int]) -> str:
+        """Some certificates, with the numbers of those that are neighbours."""
+        there = [one for contact in self._contacts.values() for one in contact.all_sessions()]
+        near = {session.who.serial: session.who.number for session in there}
+        named = [f"certificate {serial}" + (f" of node {near[serial]}" if serial in near else "")
+                 for serial in serials[:CERTIFICATES]]  # fmt: skip
+        more = len(serials) - CERTIFICATES
+        return ", ".join(named) + (f" and {more} more" if more > 0 else "")
 
     def status(self) -> dict[str, Any]:
         """Which key handshakes begin with, which are accepted; with an identity, its own."""

@@ -15,7 +15,8 @@ class Path:
 
     Attributes:
         name: as shown to people: "udp 127.0.0.1:4701".
-        own: the near end's name, where it has one of its own; the far end's path is called so.
+        own: the near end's name, where it has one of its own; the far end's path leads there.
+        far: where the path leads, as the far end calls itself; "" = what its name says.
         ends: what captures call the near and the far end, as the other node does; "" not known.
         port: its place in the node's file, from 0; protocols with ports know it by that.
         is_group: whoever hears it, hears all that is sent on it, and there may be many.
@@ -23,6 +24,7 @@ class Path:
         cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
         loss: share of the frames that are lost as they come in, 0 to 1; as of a loose plug.
         trouble: why it carries nothing now, for its user; "" = it does, or nothing is known.
+        again: what is to be known of the end of its last trouble besides.
         heard_at: when a good frame came in last, us of the driver's clock; 0 never.
         counters: frames and bytes out and in, and why frames were not sent.
     """
@@ -31,7 +33,7 @@ class Path:
 
     def __init__(self, name: str, port: int) -> None:
         self.name = name
-        self.own = ""
+        self.own = self.far = self.again = ""
         self.ends = ("", "")
         self.port = port
         self.up = True

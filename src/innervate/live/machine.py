@@ -104,6 +104,12 @@ class Machine:
         """A socket, not yet bound."""
         return socket.socket(family, kind)
 
+    async def addresses(self, host: str, port: int, family: int) -> list[tuple[Any, ...]]:
+        """The addresses of a name, as sockets of a family have them; an OSError says why none."""
+        from innervate.live.addresses import look_up
+
+        return await look_up(host, port, family)
+
     def open_serial(self, device: str, baud: int) -> SerialPort:
         """A serial port of the machine, raw."""
         from innervate.live.serial_port import Port

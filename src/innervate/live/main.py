@@ -161,8 +161,9 @@ class Process:
         troubles = self.node.troubles()
         for name, text in troubles.items():
             self.notices.tell(name, text)
+        again = {path.name: path.again for path in self.node.paths}
         for name in self._troubles - troubles.keys():
-            self.notices.over(name, f"{name}: there again")
+            self.notices.over(name, f"{name}: {again.get(name) or 'there again'}")
         self._troubles = set(troubles)
 
     async def _sleep(self, seconds: float) -> None:

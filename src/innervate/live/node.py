@@ -337,6 +337,7 @@ def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
     return {
         "name": path.name,
         "own": path.own,
+        **({"far": path.far} if path.far else {}),
         "port": path.port,
         "up": path.up and not path.cut,
         "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),

@@ -196,6 +196,19 @@ def address(text: str, where: str) -> tuple[str, int]:
     return host, int(port)
 
 
+def udp_address(text: str, where: str) -> tuple[str, int]:
+    """The same, or an address of IPv6 from "[fe80::1%eth0]:4700", whose host has no brackets."""
+    host, _, port = text.removeprefix("[").rpartition("]:")
+    if not host:
+        return address(text, where)
+    try:
+        return str(ipaddress.IPv6Address(host)), address(f"v6:{port}", where)[1]
+    except (ValueError, LiveError):
+        raise LiveError(
+            f'{where}: "{plain.shown(text)}" is no address of IPv6; write one like "[fd00::2]:4700"'
+        ) from None
+
+
 def _is_host(host: str) -> bool:
     """True if it is an address of IPv4 or can be a name, of which the last part is no number.
 

@@ -39,6 +39,11 @@ class AirNode(LiveNode):
         self.radio.stop()
         await super().stop()
 
+    def status(self) -> dict[str, Any]:
+        """What is known here, and who else is on the channel if the radio knows it."""
+        others = getattr(self.radio, "others", None)
+        return super().status() | ({} if others is None else {"others": others()})
+
     def on_carrier(self, at: int, cd: bool, voc: bool) -> None:
         """The radio's carrier came or went."""
         assert self.engine is not None

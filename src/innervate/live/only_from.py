@@ -14,13 +14,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
+from innervate.live.addresses import Address, family_of
+
 SO_ATTACH_FILTER, SO_DETACH_FILTER = 26, 27
 SO_ATTACH_REUSEPORT_CBPF = 51
 SO_MEMINFO = 55
 DROPS = 8  # its place among SO_MEMINFO's nine numbers
 NETWORK = 0x1_0000_0000 - 0x100000  # where the IP header is found; offset 0 is the UDP header
-SOURCE = NETWORK + 12
-SOURCE_PORT = NETWORK + 20
+SOURCES = {socket.AF_INET: (NETWORK + 12, 20), socket.AF_INET6: (NETWORK + 8, 40)}  # and its bytes
 FIRST, INDEX, COUNTER = 8, 9, 13  # of a datagram: its first byte, what a sealed frame says next
 LOAD_WORD, LOAD_HALF, LOAD_BYTE = 0x20, 0x28, 0x30
 JUMP_EQUAL, JUMP_FROM, JUMP_ABOVE, RETURN = 0x15, 0x35, 0x25, 0x06
@@ -29,7 +30,6 @@ STEPS_MAX, STEP_BYTES = 4096, 8  # of a filter
 JUMP = 255  # at most so far
 
 Step = tuple[int, int, int, int]
-Peer = tuple[str, int]
 Ranges = Sequence[tuple[int, int]]
 TAKE: Step = (RETURN, 0, 0, WHOLE)
 DROP: Step = (RETURN, 0, 0, 0)
@@ -61,14 +61,28 @@ class Doors(NamedTuple):
         return [*steps, DROP]
 
 
-def of_peer(peer: Peer, doors: Doors | None = None) -> bytes:
+def _from(peer: Address, port_at: int) -> list[tuple[int, int, int]]:
+    """What a datagram of an address has where: how it is loaded, from where, its value."""
+    family = family_of(peer[0])
+    host, at = socket.inet_pton(family, peer[0]), SOURCES[family][0]
+    words = [(LOAD_WORD, at + k, int.from_bytes(host[k : k + 4])) for k in range(0, len(host), 4)]
+    return [*words, (LOAD_HALF, port_at, peer[1])]
+
+
+def _if_from(peer: Address, port_at: int, inside: list[Step]) -> list[Step]:
+    """Instructions for datagrams of an address, past which others go."""
+    steps, looked_at = [], _from(peer, port_at)
+    for left, (load, at, value) in zip(range(len(looked_at))[::-1], looked_at, strict=True):
+        steps += [(load, 0, 0, at), (JUMP_EQUAL, 0, 2 * left + len(inside), value)]
+    return [*steps, *inside]
+
+
+def of_peer(peer: Address, doors: Doors | None = None) -> bytes:
     """Instructions that look at datagrams of an address, and leave others to what follows."""
     inside = [TAKE] if doors is None else doors.steps()
-    if len(inside) > JUMP - 2:
+    if len(inside) > JUMP - 2 * (len(_from(peer, 0)) - 1):
         inside = [TAKE]
-    host, past = int.from_bytes(socket.inet_aton(peer[0]), "big"), len(inside)
-    return packed([(LOAD_WORD, 0, 0, SOURCE), (JUMP_EQUAL, 0, past + 2, host),
-                   (LOAD_HALF, 0, 0, 0), (JUMP_EQUAL, 0, past, peer[1]), *inside])  # fmt: skip
+    return packed(_if_from(peer, 0, inside))
 
 
 def packed(steps: Iterable[Step]) -> bytes:
@@ -97,8 +111,8 @@ def attach(sock: socket.socket, option: int, steps: bytes) -> None:
     sock.setsockopt(socket.SOL_SOCKET, option, filled)
 
 
-def share(first: socket.socket, others: Sequence[socket.socket], peers: Iterable[Peer]) -> None:
-    """Have several sockets take turns at one address, so that each peer's datagrams come to one.
+def share(first: socket.socket, others: Sequence[socket.socket]) -> None:
+    """Have several sockets share an address; `keep_apart` says which datagrams come to which.
 
     The first is bound, and was before anybody could share its address with it; the others are not.
 
@@ -109,13 +123,15 @@ def share(first: socket.socket, others: Sequence[socket.socket], peers: Iterable
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
     for sock in others:
         sock.bind(first.getsockname())
+
+
+def keep_apart(socks: Sequence[socket.socket], peers: Iterable[Address]) -> None:
+    """Each peer's datagrams come to one of the sockets, in turn; an OSError if that cannot be."""
     steps: list[Step] = []
-    for i, (host, port) in enumerate(peers):
-        steps += [(LOAD_WORD, 0, 0, SOURCE),
-                  (JUMP_EQUAL, 0, 3, int.from_bytes(socket.inet_aton(host), "big")),
-                  (LOAD_HALF, 0, 0, SOURCE_PORT), (JUMP_EQUAL, 0, 1, port),
-                  (RETURN, 0, 0, i % (1 + len(others)))]  # fmt: skip
-    attach(first, SO_ATTACH_REUSEPORT_CBPF, packed([*steps, TAKE]))
+    for i, peer in enumerate(peers):
+        port_at = NETWORK + SOURCES[family_of(peer[0])][1]
+        steps += _if_from(peer, port_at, [(RETURN, 0, 0, i % len(socks))])
+    attach(socks[0], SO_ATTACH_REUSEPORT_CBPF, packed([*steps, TAKE]))
 
 
 def unread(sock: socket.socket) -> int:

@@ -25,6 +25,9 @@ class Listener(Protocol):
 class Radio(Protocol):
     """A half-duplex radio.
 
+    One that knows who else is on its channel says so by `others()`, and whether it has one by
+    `is_there()`.
+
     Attributes:
         mode: "off", "listening" or "sending"; while it sends and turns round it is deaf.
     """
@@ -45,12 +48,30 @@ class Radio(Protocol):
 
 
 class Aerial(Path):
-    """The one path of a station; cut, it neither hears nor is heard."""
+    """The one path of a station, up while its channel is there; cut, it neither hears nor sends."""
 
     def __init__(self, radio: Radio, name: str) -> None:
         self._radio = radio
         self._is_cut = False
         super().__init__(name, 0)
+
+    @property
+    def up(self) -> bool:
+        """False while the radio knows that there is no channel."""
+        return bool(getattr(self._radio, "is_there", lambda: True)())
+
+    @up.setter
+    def up(self, up: bool) -> None:
+        """Only the radio knows whether there is a channel."""
+
+    @property
+    def trouble(self) -> str:
+        """That there is no channel, as far as the radio knows."""
+        return "" if self.up else f"{self.name}: no answer; trying again"
+
+    @trouble.setter
+    def trouble(self, trouble: str) -> None:
+        """What the radio knows is said, and nothing else."""
 
     @property
     def cut(self) -> bool:

@@ -21,6 +21,7 @@ from innervate.live.machine import is_left as is_left
 
 LOOK_S = 1.0  # between two looks whether a caller has gone
 WHOLE_S = 30.0  # a request is whole so long after it began, a caller's first after they came
+ASKED = 64  # nodes are asked at once
 LINE_MAX = 163_840  # a request to send 64 KiB, in hexadecimal digits
 AT_ONCE = ("status", "revoke")  # a node that is well answers so
 UP = "up."  # in a user's own folder, and a number: links to where each `live up` has its nodes
@@ -300,6 +301,20 @@ def ask_one(path: Path, request: dict[str, Any]) -> dict[str, Any]:
     for answer in ask(path, request):
         return answer
     raise LiveError(f"{path}: the node went away; is it still running?")
+
+
+def ask_all(paths: list[Path], request: dict[str, Any]) -> list[dict[str, Any] | LiveError]:
+    """The first answer of each, or why there is none; all are asked at once."""
+    from concurrent.futures import ThreadPoolExecutor  # a node has no use for it
+
+    def answer_of(path: Path) -> dict[str, Any] | LiveError:
+        try:
+            return ask_one(path, request)
+        except LiveError as error:
+            return error
+
+    with ThreadPoolExecutor(ASKED) as asking:
+        return list(asking.map(answer_of, paths))
 
 
 def find(name: str) -> Path:

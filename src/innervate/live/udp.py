@@ -1,44 +1,58 @@
-"""UDP: to neighbours by address, and to a multicast group."""
+"""UDP to neighbours, by address or name."""
 
 from __future__ import annotations
 
 import asyncio
-import errno
 import socket
-import struct
 import sys
 from collections.abc import Mapping
 from contextlib import closing, suppress
 
+from innervate.live.addresses import ANY, Address, Peer, as_written, family_of, known, text
+from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import FORGOTTEN_MAX, Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import TAKE, Doors, Ranges, of_peer, only_from, packed, share, unread
-
-Address = tuple[str, int]
+from innervate.live.only_from import (
+    Doors,
+    Ranges,
+    keep_apart,
+    of_peer,
+    only_from,
+    share,
+    unread,
+)
 
 DATAGRAM_MAX = 2048
 BATCH = 64  # datagrams read at once, before timers and other neighbours have their turn
 SOCKETS = 32  # of a link at most
 REOPEN_S = 0.5
-RENEW_S = 1.0
-IP_MULTICAST_ALL = 49  # Linux: what came by an interface is for its members alone
-ANY = "0.0.0.0:"
+FIRST_S = 2.0  # a node's start waits so long for its neighbours' names
+LOOK_S = 5.0  # names of whom nothing was heard for so long are looked up, so often
+MUTE_US = 60_000_000  # who was heard at an address may be silent for so long and be there still
 
 
 class UdpPath(Path):
-    """A neighbour's address, or a group's."""
+    """A neighbour's address, or a group's; None until its name has led to one."""
 
-    def __init__(self, link: UdpLink, address: Address, port: int) -> None:
-        super().__init__(f"udp {address[0]}:{address[1]}", port)
-        here = f"{link.bind[0]}:{link.bind[1]}"
-        self.own = f"udp {here}"
-        if link.bind[1]:
-            self.ends = (here, f"{address[0]}:{address[1]}")
-        self.link = link
-        self.address = address
+    reached_from = ""  # our address to it, when that was looked at last
+
+    def __init__(self, link: UdpLink, peer: Peer, port: int) -> None:
+        super().__init__(f"udp {as_written(peer)}", port)
+        self.link, self.peer = link, peer
         self.doors: Doors | None = None
-        self.filter = of_peer(address)
+        self.lead_to(known(peer))
+
+    def lead_to(self, address: Address | None) -> None:
+        """What the neighbour's name stands for now."""
+        self.address, self.led_at, link = address, clock_us(), self.link
+        here, far = text(link.bind), text(address) if address else ""
+        self.own = f"udp {here}"
+        self.far = f"udp {far}" if far and known(self.peer) is None else ""
+        self.ends = (here, far) if link.bind[1] and far else ("", "")
+        plain = of_peer(address) if address else b""
+        self.filter = link.filter_of(self, self.doors) if self.doors else plain
+        self.up = address is not None
 
     def let_in(self, anybody: Ranges, known: Mapping[int, int]) -> None:
         """Have the system drop the rest, if it can."""
@@ -51,18 +65,18 @@ class UdpPath(Path):
     def bound_ends(self) -> tuple[str, str]:
         """Both addresses; ours on any interface is the one from which the neighbour is reached."""
         own, far = self.ends
-        if own.startswith(ANY):
-            sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
+        if own and self.address and self.link.bind[0] in ANY:
+            sock = machine().socket(self.link.family, socket.SOCK_DGRAM)
             with suppress(OSError), closing(sock):
                 sock.connect(self.address)
-                own = f"{sock.getsockname()[0]}:{self.link.bind[1]}"
+                own = text((sock.getsockname()[0], self.link.bind[1]))
         return own, far
 
     def send(self, data: bytes) -> None:
         """Send a datagram to the path's address; what has no room is counted and lost."""
         sock = self.link.socket
-        if sock is None:
-            self.counters["unsent: closed"] += 1
+        if sock is None or self.address is None:
+            self.counters[f"unsent: {'closed' if self.address else 'no address'}"] += 1
             return
         try:
             sock.sendto(data, self.address)
@@ -73,22 +87,31 @@ class UdpPath(Path):
             self.counters[f"unsent: {why}"] += 1
             self.trouble = f"{self.name}: cannot be sent to: {why}; trying again"
         else:
-            self.trouble = ""
+            if self.trouble:
+                self._is_back()
             self.sent(data)
+
+    def _is_back(self) -> None:
+        """It can be sent to again; from another address of ours it may not hear us."""
+        self.trouble, own = "", self.bound_ends()[0]
+        self.again = f"there again, reached from {own}" * (own != self.reached_from)
+        self.reached_from = own
 
 
 class UdpLink(Link):
     """One address for any number of neighbours; each has room of its own for what it sends.
 
     Args:
-        bind: own address; ("0.0.0.0", port) takes frames on every interface.
-        peers: the neighbours' addresses; others are not listened to.
+        bind: own address; ("0.0.0.0", port) or ("::", port) takes frames on every interface. Its
+            family is that of all neighbours; a name is one of IPv4.
+        peers: the neighbours' addresses, or names that are looked up; others are not listened to.
         first_port: port number of the first peer.
     """
 
-    def __init__(self, bind: Address, peers: list[Address], first_port: int = 0) -> None:
-        self.bind = bind
-        self.where = f"{bind[0]}:{bind[1]}"
+    def __init__(self, bind: Peer, peers: list[Peer], first_port: int = 0) -> None:
+        self.bind: Address = known(bind) or bind
+        self._named, self.family = bind, family_of(bind[0])
+        self.where = as_written(bind)
         self.socket: socket.socket | None = None  # sends; hears, too
         self._others: list[socket.socket] = []
         self.paths: list[UdpPath] = [
@@ -96,7 +119,8 @@ class UdpLink(Link):
         ]
         self.strangers = 0
         self._unread = 0
-        self._by_address = {path.address: path for path in self.paths}
+        self._by_address = {path.address: path for path in self.paths if path.address}
+        self._asking: asyncio.Task[None] | None = None
         self._receive: Receiver = lambda _path, _data: None  # until one is known
         self._closed = False
         self._again: asyncio.TimerHandle | None = None
@@ -106,10 +130,81 @@ class UdpLink(Link):
         self._receive = receive
         self._closed = False
         try:
+            await self._find_own()
             self._open()
         except OSError as error:
             why = error.strerror or error
             raise LiveError(f"cannot use UDP address {self.where}: {why}") from None
+        named = [path for path in self.paths if known(path.peer) is None]
+        if named or known(self._named) is None:
+            first = asyncio.ensure_future(self._look_up(named))
+            await asyncio.wait({first}, timeout=FIRST_S)
+            self._asking = asyncio.ensure_future(self._go_on_looking(first, named))
+
+    async def _find_own(self) -> bool:
+        """What the name of our own address leads to; True = elsewhere than before.
+
+        Raises:
+            OSError: there is none.
+        """
+        if known(self._named) is not None:
+            return False
+        before, found = self.bind, await machine().addresses(*self._named, self.family)
+        if before not in found:
+            self.bind = found[0]
+            for path in self.paths:
+                path.lead_to(path.address)
+        return self.bind != before
+
+    async def _go_on_looking(self, first: asyncio.Future[None], named: list[UdpPath]) -> None:
+        """Names that led nowhere, and those of neighbours who may have moved."""
+        await first
+        while True:
+            await asyncio.sleep(LOOK_S)
+            since = clock_us() - round(LOOK_S * 1e6)
+            if silent := [path for path in self.paths if path.heard_at < since]:
+                await self._look_up([path for path in named if path in silent])
+
+    async def _look_up(self, named: list[UdpPath]) -> None:
+        """Ask where names lead; to what they do not lead any more nobody listens."""
+        asked = (machine().addresses(*path.peer, self.family) for path in named)
+        found = await asyncio.gather(*asked, return_exceptions=True)
+        is_elsewhere = False
+        with suppress(OSError):
+            is_elsewhere = await self._find_own()
+        for path, told in zip(named, found, strict=True):
+            if isinstance(told, BaseException):
+                self._lead(path, [], getattr(told, "strerror", None) or str(told))
+            else:
+                self._lead(path, told, "leads to another neighbour's address")
+        if self._closed:
+            return
+        self._by_address = {path.address: path for path in self.paths if path.address}
+        if is_elsewhere:
+            if self._again is not None:
+                self._again.cancel()
+            self._drop()
+            self._reopen()
+        elif self.socket is not None:
+            self.guard()
+            with suppress(OSError):
+                keep_apart(self._sockets(), self._by_address)
+
+    def _lead(self, path: UdpPath, found: list[Address], why: str) -> None:
+        """Have a path lead to one of the addresses found, of those that are nobody else's.
+
+        It stays where it is if its neighbour may be there, else it is the next one's turn; `why`
+        says why there is none.
+        """
+        taken = {one.address for one in self.paths if one is not path}
+        free = [address for address in found if address not in taken]
+        is_mute = path.heard_at < max(path.led_at, clock_us() - MUTE_US)
+        at = free.index(path.address) + is_mute if path.address in free else 0
+        if free and free[at % len(free)] != path.address:
+            path.lead_to(free[at % len(free)])
+            path.trouble, path.again = "", f"leads to {path.far.removeprefix('udp ')}"
+        elif path.address is None:
+            path.trouble = f"{path.name}: {why}; trying again"
 
     def _open(self) -> None:
         sock = self._make()
@@ -118,18 +213,25 @@ class UdpLink(Link):
         for one in (sock, *self._others):
             asyncio.get_running_loop().add_reader(one.fileno(), self._readable, one)
         for path in self.paths:
-            path.up, path.trouble = True, ""
+            if path.address:
+                path.up, path.trouble, path.reached_from = True, "", path.bound_ends()[0]
 
     def _make(self) -> socket.socket:
-        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock = machine().socket(self.family, socket.SOCK_DGRAM)
         try:
-            sock.setblocking(False)
-            self.guard(sock)
+            self._prepare(sock)
             sock.bind(self.bind)
         except BaseException:
             sock.close()
             raise
         return sock
+
+    def _prepare(self, sock: socket.socket) -> None:
+        """Before it is bound: it never waits, and hears what is for us."""
+        sock.setblocking(False)
+        if self.family == socket.AF_INET6:  # the same port of IPv4 is another link's
+            sock.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+        self.guard(sock)
 
     def _more(self, first: socket.socket) -> list[socket.socket]:
         """Sockets for all neighbours but the first, if the system can keep them apart."""
@@ -138,11 +240,11 @@ class UdpLink(Link):
             return others
         try:
             for _ in self.paths[1:SOCKETS]:
-                others.append(machine().socket(socket.AF_INET, socket.SOCK_DGRAM))
-                others[-1].setblocking(False)
-                self.guard(others[-1])
+                others.append(machine().socket(self.family, socket.SOCK_DGRAM))
+                self._prepare(others[-1])
             if others:
-                share(first, others, self._by_address)
+                share(first, others)
+                keep_apart((first, *others), self._by_address)
         except OSError:
             for sock in others:
                 sock.close()
@@ -151,7 +253,7 @@ class UdpLink(Link):
 
     def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
         """Instructions that let in what is for a path."""
-        return of_peer(path.address, doors)
+        return of_peer(path.address, doors) if path.address else b""
 
     def guard(self, *socks: socket.socket) -> None:
         """Have the system let in what is for our paths; at the least what bears their addresses."""
@@ -176,8 +278,9 @@ class UdpLink(Link):
     def close(self) -> None:
         """Close the socket, and do not open it again."""
         self._closed = True
-        if self._again is not None:
-            self._again.cancel()
+        for waiting in (self._again, self._asking):
+            if waiting is not None:
+                waiting.cancel()
         self._drop()
 
     def _drop(self) -> None:
@@ -223,83 +326,3 @@ class UdpLink(Link):
             self._open()
         except OSError as error:
             self._lost(error)
-
-
-class MulticastLink(UdpLink):
-    """A group on one interface: everybody in it hears everything, as on a radio channel.
-
-    Args:
-        group: address and port of the group.
-        interface: own address on the interface.
-        port: port number of the path.
-    """
-
-    def __init__(self, group: Address, interface: str, port: int = 0) -> None:
-        super().__init__((interface, 0), [group], port)
-        self.group = group
-        self.interface = interface
-        self.where = f"{group[0]}:{group[1]} on interface {interface}"
-        self._group: UdpPath = self.paths[0]
-        self._group.is_group = True
-        self._group.filter = packed([TAKE])
-
-    def filter_of(self, path: UdpPath, doors: Doors) -> bytes:
-        """Instructions that let in what is for members, whatever their addresses."""
-        return packed(doors.steps())
-
-    def guard(self, *socks: socket.socket) -> None:
-        """Have the system let in what is for us, or all if that is too much to say."""
-        for sock in socks or self._sockets():
-            only_from(sock, self._group.filter)
-
-    def _make(self) -> socket.socket:
-        sock = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
-        try:
-            sock.setblocking(False)
-            sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            if sys.platform == "linux":
-                sock.setsockopt(socket.IPPROTO_IP, IP_MULTICAST_ALL, 0)
-            self.guard(sock)
-            sock.bind(self.group)
-            self._join(sock)
-            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("B", 1))
-            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
-        except BaseException:
-            sock.close()
-            raise
-        return sock
-
-    async def open(self, receive: Receiver) -> None:
-        """Join the group; a wrong address is the user's mistake."""
-        await super().open(receive)
-        self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
-
-    def _renew(self) -> None:
-        """A membership goes with its interface, and nobody is told: join anew now and then."""
-        if self._closed:
-            return
-        self._again = asyncio.get_running_loop().call_later(RENEW_S, self._renew)
-        if self.socket is None:
-            return
-        group, why = self._group, ""
-        try:
-            self._join(self.socket)
-        except OSError as error:
-            if error.errno != errno.EADDRINUSE:  # that says: it is a member
-                why = error.strerror or "error"
-        if why:
-            where = f"not in the group on interface {self.interface}"
-            group.trouble = f"{group.name}: {where}: {why}; trying again"
-        elif not group.up:
-            group.trouble = ""
-        group.up = not why
-
-    def _join(self, sock: socket.socket) -> None:
-        own = socket.inet_aton(self.interface)
-        sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, own)
-        member = socket.inet_aton(self.group[0]) + own
-        sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
-
-    def _origin(self, address: Address) -> UdpPath | None:
-        """Whoever sends to the group is in it; our own frames come back, too: protocols know."""
-        return self._group

@@ -21,6 +21,7 @@ from innervate.network import networks
 NodeTables = tuple[Table, dict[str, Table], list[Table]]
 START_S = 30.0
 START_EACH_S = 2.0  # besides, of each node: all start at once, beside whatever else there is to do
+SAY_S = 10.0  # between two lines on nodes that are waited for
 STOP_S = 5.0
 
 
@@ -109,12 +110,10 @@ class Processes:
         for number, name in enumerate(self.names):
             self._tables[name] = self._file(number, paths[number])
             self.write_file(name)
-        for name in self.names:
-            if name not in self.absent:
-                self.start_node(name)
-        for name in self.names:
-            if name not in self.absent:
-                await self._ready(name)
+        there = [name for name in self.names if name not in self.absent]
+        for name in there:
+            self.start_node(name)
+        await self._ready(there)
 
     async def _start_medium(self) -> None:
         """The channel that the nodes share, a process of its own."""
@@ -148,7 +147,7 @@ class Processes:
         if name in self.processes and self.processes[name].poll() is None:
             return
         self.start_node(name)
-        await self._ready(name)
+        await self._ready([name])
         number = self.names.index(name)
         for cable, (what, loss) in self._hurt.items():
             if number in self.links[cable]:
@@ -194,15 +193,23 @@ class Processes:
         if self.lab is not None:
             self.lab.down()
 
-    async def _ready(self, name: str) -> None:
+    async def _ready(self, names: list[str]) -> None:
+        """Wait until all of them answer, and say now and then for whom."""
         limit_s = START_S + START_EACH_S * len(self.names)
-        until = time.monotonic() + limit_s
-        while not status.answers(self.socket(name)):
-            if self.processes[name].poll() is not None:
-                log = (self.folder / f"{name}.log").read_text().strip().splitlines()
-                raise LiveError(f"{name} ended: {log[-1] if log else 'no message'}")
-            if time.monotonic() > until:
-                raise LiveError(f"{name} does not answer after {limit_s:g} s")
+        began, said_s, waiting = time.monotonic(), 0.0, list(names)
+        while waiting := [name for name in waiting if not status.answers(self.socket(name))]:
+            for name in waiting:
+                if self.processes[name].poll() is not None:
+                    log = (self.folder / f"{name}.log").read_text().strip().splitlines()
+                    raise LiveError(f"{name} ended: {log[-1] if log else 'no message'}")
+            took_s, more = time.monotonic() - began, len(waiting) - 1
+            first = waiting[0] + f" and {more} more" * bool(more)
+            if took_s > limit_s:
+                raise LiveError(f"{first} did not answer within {limit_s:g} s")
+            if took_s > said_s + SAY_S:
+                said_s += SAY_S
+                said = f"{first} did not answer within {said_s:g} s; waiting up to {limit_s:g} s"
+                print(said, file=sys.stderr, flush=True)
             await asyncio.sleep(0.02)
 
     def _paths(self) -> list[dict[int, Table]]:

@@ -315,6 +315,11 @@ class Live(Source):
     def _ask(self, node: int, request: dict[str, Any]) -> dict[str, Any] | None:
         return self._poller.ask({node: request}).get(node)
 
+    def _is_done(self, node: int, request: dict[str, Any]) -> bool:
+        """True if a node says that it has done what it was asked."""
+        answer = self._ask(node, request)
+        return answer is not None and "error" not in answer
+
     def do(self, command: Command) -> dict[str, Any] | None:
         """Have drivers drop what comes over a link, or over all paths of a node; or take it again.
 
@@ -343,7 +348,7 @@ class Live(Source):
         paths = [int(path["port"]) for path in self._told[place.node]["paths"]]
         for path in [place.port] if place.port >= 0 else paths:
             request = {"do": "restore" if back else "cut", "port": path}
-            if not self._poller.ask({place.node: request}):
+            if not self._is_done(place.node, request):
                 raise Refused(f"{label} could not be told; does it still run?")
         (self._off.discard if back else self._off.add)(place)
         self._ask_for(place, *(link for link in self._map.links if place in (link.a, link.b)))
@@ -371,7 +376,7 @@ class Live(Source):
                 if self._is_shared(place, path):
                     raise Refused(f"{self._label(place)} hears others on the same path, too")
                 request = {"do": "restore" if heal else "cut", "port": path}
-                told += len(self._poller.ask({place.node: request}))
+                told += self._is_done(place.node, request)
         if not told:
             raise Refused("neither end could be told; do they still run?")
         self._ask_for(link)

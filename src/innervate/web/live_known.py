@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from innervate.live import status
+from innervate.live.addresses import without_interface
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import Loaded, SerialTable, UdpTable, load
 from innervate.web.live_map import Status
@@ -81,7 +82,8 @@ def unheard(node: Loaded) -> Status:
 def _ends(link: object) -> list[tuple[str, str]]:
     """The two ends of each path of a link, as its status calls them."""
     if isinstance(link, UdpTable):
-        return [(f"udp {link.bind}", f"udp {peer}") for peer in link.peers]
+        own = f"udp {without_interface(link.bind)}"
+        return [(own, f"udp {without_interface(peer)}") for peer in link.peers]
     if isinstance(link, SerialTable) and link.far:
         name = f"serial {link.device} to {link.far}"
         return [(f"serial {link.far} to {link.device}", name)]

@@ -76,7 +76,7 @@ class Map:
         ends: dict[tuple[str, str], list[tuple[str, str, int, int]]] = {}
         for i, one in told.items():
             for path in one.get("paths", ()):
-                own, far = str(path.get("own", "")), str(path["name"])
+                own, far = str(path.get("own", "")), str(path.get("far", path["name"]))
                 if own:
                     key = (_port(own), _port(far))
                     ends.setdefault(key, []).append((own, far, i, int(path["port"])))
@@ -109,4 +109,5 @@ def _port(address: str) -> str:
 
 def _fits(own: str, far: str) -> bool:
     """True if `far` can be what the other end calls `own`: the same, or any address of here."""
-    return own == far or (own.split(" ")[-1].startswith("0.0.0.0:") and _port(own) == _port(far))
+    is_any = own.split(" ")[-1].startswith(("0.0.0.0:", "[::]:"))
+    return own == far or (is_any and _port(own) == _port(far))

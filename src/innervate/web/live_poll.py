@@ -108,8 +108,12 @@ class Poller:
         return found
 
     def ask_all(self, request: Answer) -> dict[int, Answer]:
-        """The answers of all nodes to one request."""
-        return self.ask(dict.fromkeys(range(len(self._lines)), request))
+        """The answers of all nodes to one request; who turns us away is hung up on."""
+        found = self.ask(dict.fromkeys(range(len(self._lines)), request))
+        for index in [index for index, answer in found.items() if "error" in answer]:
+            del found[index]
+            self._lines[index].drop()
+        return found
 
     def is_gone(self, index: int) -> bool:
         """True if nobody is at a node's socket; False: it answers, or is only slow."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -53,14 +54,14 @@ class State:
         """Find everybody's way; (who has none, who of those could have one, who at all could).
 
         Of nodes that do not say what their ways are, those have one whom links that are up join
-        with the first one that answers.
+        with the first one that answers, and on which something comes where it has to.
         """
         on = np.flatnonzero(self.node_up)
         if not self.map.links or not len(on):
             return 0, 0, len(on)
         first = np.zeros(len(self.node_up), np.bool_)
         first[on[0]] = True
-        live, beyond = self.live(), self.hears_beyond()
+        live, beyond = self.live(self._is_heard), self.hears_beyond()
         joined = reach(live, first)
         if (joined & beyond).any():  # others, of whom nothing is known here, can join them
             joined = reach(live, first | beyond)
@@ -69,9 +70,10 @@ class State:
 
     def hears_beyond(self) -> Any:
         """Per place whether it hears somebody who does not run here."""
-        hearing = {place for place, _ in self.paths_beyond()}
+        hearing = {place for place, _ in self.paths_beyond}
         return np.array([place in hearing for place in self.map.places], np.bool_)
 
+    @cached_property
     def paths_beyond(self) -> set[tuple[Place, int]]:
         """Paths on which somebody is heard, by cables to nobody who runs here.
 
@@ -161,14 +163,22 @@ class State:
         up = {path["port"]: path["up"] for path in self.word(place, "paths", ())}
         return not paths or any(up.get(path, True) for path in paths)
 
-    def live(self) -> Any:
-        """A matrix of flags: who is joined to whom by a link that is up."""
+    def _is_heard(self, link: Link) -> bool:
+        """At both ends something comes, as often as their protocol says."""
+        ends = ((link.a, link.paths_a), (link.b, link.paths_b))
+        return all(
+            not path.get("broken") or path["port"] not in paths
+            for place, paths in ends
+            for path in self.word(place, "paths", ())
+        )
+
+    def live(self, counts: Callable[[Link], bool] = lambda _: True) -> Any:
+        """A matrix of flags: who is joined to whom by a link that is up, of those that count."""
         count, number = len(self.map.places), self.map.number
         found = np.zeros((count, count), np.bool_)
         for link, up in zip(self.map.links, self.link_up.tolist(), strict=True):
             a, b = number[link.a], number[link.b]
-            found[a, b] |= bool(up)
-            found[b, a] |= bool(up)
+            found[a, b] = found[b, a] = found[a, b] or (up and counts(link))
         return found
 
     def fields(self) -> dict[str, Any]:

@@ -124,6 +124,8 @@ export class SkinView {
     if (this.network.scene.source !== "live") {
       found.push(flightSample("beacon", "beacon"), flightSample("data", "sample to the PC"));
       if (this.network.can.has("command")) found.push(flightSample("command", "command down"));
+    } else if (this.colour === "port" || this.colour === "depth") {
+      found.push([cell("d7"), "by nodes that do not run here"]);
     }
     found.push(cutSample);
     return found;

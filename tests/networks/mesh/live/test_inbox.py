@@ -7,10 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.networks.mesh.live.inbox import HAD, HAD_US, Inbox
+from innervate.networks.mesh.live.inbox import HAD_US, Inbox
 from innervate.networks.mesh.live.pieces import IDLE_US, REFUSAL, Piece
 from innervate.networks.mesh.payloads import PIECE_AHEAD, PIECE_STRUCT
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
+from innervate.networks.mesh.protocol.duplicates import ANEW
 from tests.live import time_by_hand
 
 
@@ -121,7 +122,7 @@ def test_what_came_before_is_a_copy_whatever_the_router_says():
         come(b"text", seq=11)
         await asyncio.sleep(0.002)
         come(b"text", seq=11)
-        for seq in range(100, 100 + HAD - 1):
+        for seq in range(100, 100 + ANEW - 1):
             come(b"", seq)
         come(b"text", seq=11)  # it is the oldest of those that are known
         come(b"", seq=9000)

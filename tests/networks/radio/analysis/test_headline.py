@@ -251,6 +251,20 @@ def test_running_stations():
     assert headline(of_stations(idle, 5, (), 0.0, PARAMS)).level == OK
 
 
+def test_stations_here_that_are_not_alone_and_one_whose_team_elsewhere_died():
+    def told(*others):
+        return {0: {**station(1, 1), "number": 3, "others": list(others)}}
+
+    assert headline(of_stations(told(7), 2, (1,), 0.0, PARAMS), absent="silent").level == DEGRADED
+    assert headline(of_stations(told(7), 1, (), 0.0, PARAMS)).level == OK
+    told_once = told() | {1: {**station(0, 0), "number": 7, "others": [3]}}
+    assert headline(of_stations(told_once, 2, (1,), 0.0, PARAMS)).level == DOWN  # 7 is cut off here
+    heard = {"paths": [{"heard_s": 90.0}]}
+    died = headline(of_stations({0: told()[0] | heard}, 1, (), 0.0, PARAMS))
+    assert died[:2] == (DOWN, "Robot 0 is alone: nobody can receive its packets; the packet was "
+                              "delivered.")  # fmt: skip
+
+
 def test_running_stations_that_stand_still():
     told = {0: station(4, 3, 1), 1: station(2, 2)}
     limit_ms = timeout_us(PARAMS, 2) / 1e3

@@ -73,6 +73,14 @@ PARAMS = (
     ("request_us", 0, 100, 2_000_000, "us", "until a request is sent again, doubled each time"),
     ("gc_us", 0, 1_000, 400_000_000, "us", "until a feasibility distance is forgotten"),
 )
+
+
+def silent_us(params):
+    """After what silence a link is down [A.2.1, A.2.2], and a Hello's time more, us."""
+    missing = params.up_of if params.etx else params.up_of - params.up_least + 1
+    return (missing + 1) * params.hello_us
+
+
 # Appendix B with Hellos every 4 ms instead of 4 s, everything else in proportion.
 DEFAULTS = {
     "hello_us": 4_000,

@@ -11,8 +11,8 @@ from innervate.live.streams import Arrivals
 from innervate.networks.mesh.live.order import BEFORE_BYTES, BOOTS, NEW_AHEAD, Message, Orderly
 from innervate.networks.mesh.live.pieces import NEW, NO_TURN, REFUSAL, Piece, Pieces, read_piece
 from innervate.networks.mesh.protocol.constants import ALL, ORDERED
+from innervate.networks.mesh.protocol.duplicates import ANEW
 
-HAD = 320  # packets of a sender that are known again, as many as the router's window has
 HAD_US = 30_000_000  # a packet is tried for 26 s at most
 
 
@@ -79,7 +79,7 @@ class Inbox:
             return True
         had.pop(seq, None)
         had[seq] = what, now
-        if len(had) > HAD:
+        if len(had) > ANEW:
             del had[next(iter(had))]
         return False
 

@@ -63,7 +63,7 @@ def headline(facts: RadioFacts, label: Callable[[int], str] = str, absent: str =
     """The state of a team; of stations that are missing it says `absent`: "off", "silent"."""
     if not facts.answering:
         return Headline(NO_DATA, "No robot answers.", tuple(range(facts.stations)))
-    down, nodes = _down(facts, label)
+    down, nodes = _down(facts, label, absent)
     worse, more = _degraded(facts, label, absent, told=bool(down))
     if not (down or worse or facts.offered) and facts.ended:
         return Headline(NO_DATA, "No packet was offered.")
@@ -75,12 +75,15 @@ def headline(facts: RadioFacts, label: Callable[[int], str] = str, absent: str =
     return Headline(level, sentence(said), tuple(sorted({*nodes, *more})))
 
 
-def _down(facts: RadioFacts, label: Callable[[int], str]) -> tuple[list[str], tuple[int, ...]]:
+def _down(
+    facts: RadioFacts, label: Callable[[int], str], absent: str
+) -> tuple[list[str], tuple[int, ...]]:
     """Why nothing gets through; who is concerned."""
     gone = {*facts.off, *facts.away}
     on = [station for station in range(facts.stations) if station not in gone]
     if not on:
-        return ["no robot is on"], tuple(range(facts.stations))
+        where = " the channel" if absent == "silent" else ""  # they answer, and may be without it
+        return [f"no robot is on{where}"], tuple(range(facts.stations))
     if len(on) == 1 and not facts.others:
         return [f"robot {label(on[0])} is alone: nobody can receive its packets"], (on[0],)
     if facts.pending and facts.still_ms > facts.timeout_ms:

@@ -36,8 +36,8 @@ def of_stations(
     """The facts of running stations, from what they say of themselves.
 
     `told`: by index what those say that answer, as `innervate live status --json` shows it; `off`:
-    who does not, or is off the channel; `still_ms`: see Still. Where one of them alone has heard
-    somebody, there are stations that run elsewhere.
+    who does not, or is off the channel; `still_ms`: see Still. Stations that run elsewhere are
+    those that the channel names; where it names none, the only one here has heard somebody.
     """
     count = {name: 0 for name in ("packets accepted", "packets delivered")}
     for one in told.values():
@@ -47,9 +47,6 @@ def of_stations(
     abandoned = sum(int(told[i].get("queued", 0)) for i in off if i in told)
     queued = {i: int(one.get("queued", 0)) for i, one in told.items() if i not in off}
     timeout_ms = timeout_us(params, stations) / 1e3
-    heard = any(
-        path.get("heard_s") is not None for i in queued for path in told[i].get("paths", ())
-    )
     return RadioFacts(
         stations=stations,
         off=off,
@@ -61,5 +58,13 @@ def of_stations(
         waiting=tuple(i for i in sorted(queued) if queued[i]) if still_ms > timeout_ms else (),
         still_ms=still_ms,
         timeout_ms=timeout_ms,
-        others=heard and stations == 1,
+        others=any(_hears_others(told, i, stations == 1) for i in queued),
     )
+
+
+def _hears_others(told: Mapping[int, Mapping[str, Any]], i: int, is_alone: bool) -> bool:
+    """True if stations that run elsewhere are on the channel, as station i knows."""
+    if "others" in told[i]:
+        return not {one.get("number") for one in told.values()}.issuperset(told[i]["others"])
+    paths = told[i].get("paths", ())
+    return is_alone and any(path["heard_s"] is not None for path in paths)

@@ -92,7 +92,7 @@ class SkinState(State):
 
     def _parents(self) -> tuple[Numbers, Any]:
         """Per place of a skin the one that its cell sends to, and if that does not run here."""
-        number, beyond = self.map.number, self.paths_beyond()
+        number, beyond = self.map.number, self.paths_beyond
         found = np.full(len(self.map.places), NOWHERE, np.int64)
         leaves = np.zeros(len(self.map.places), np.bool_)
         across = {}
