@@ -7,7 +7,7 @@ from typing import TypedDict, Unpack
 
 from innervate.network import Network, NetworkError, networks, use
 from innervate.running.showing import Bar
-from innervate.verify.cases import Case
+from innervate.verify.cases import Case, notice_of
 
 
 class Wanted(TypedDict, total=False):
@@ -75,7 +75,7 @@ def explore(network: str | os.PathLike[str] | Network, **wanted: Unpack[Wanted])
     if not isinstance(network, Network):
         network = named(network)
     options = SimpleNamespace(**(USUAL | wanted))
-    with Bar(network.verify.notice(options) or "exploring") as bar:
+    with Bar(notice_of(network, options) or "exploring") as bar:
         return [one(bar.explored) for one in network.verify.explorations(network, options)]
 
 

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from innervate.kernel.words import number_of
+from innervate.prove.mutants import Mutant
 from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
 
@@ -79,6 +80,28 @@ class Case:
 
 
 Explore = Callable[[Tell], Case]
+
+
+def notice_of(network: Any, options: Any) -> str:
+    """What to say before the first exploration of a network; "" = nothing takes long."""
+    return str(network.verify.notice(options)) if hasattr(network.verify, "notice") else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Catch:
+    """What an explorer found of a mutant, which it runs uncompiled on copies of the protocol.
+
+    Attributes:
+        mutant: that was hunted.
+        by: what it breaks; "" = nothing was found.
+        where: it was found.
+        states: how many were looked at, or runs.
+    """
+
+    mutant: Mutant
+    by: str
+    where: str
+    states: int
 
 
 def verdict(done: list[Case], is_cut: bool = False) -> str:

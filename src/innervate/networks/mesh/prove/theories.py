@@ -15,10 +15,11 @@ from innervate.networks.mesh.protocol.duplicates import ANEW, BITS, FLOODED
 from innervate.networks.mesh.protocol.fields import FORWARDED, WINDOW_WORDS
 from innervate.networks.mesh.prove import hops
 from innervate.prove.errors import ProveError
+from innervate.prove.mutants import Mutant
 from innervate.prove.records import Record, Store
 from innervate.prove.steps import Goal, Stage, Step, own_goals
 from innervate.prove.terms import Term
-from innervate.prove.theory import Fault, Theory, is_in, source
+from innervate.prove.theory import Theory, is_in, source
 
 ENTRY = "innervate.networks.mesh.protocol.node"
 ORIGINS = 2
@@ -35,7 +36,7 @@ ASSUMED = (
 )
 KEPT = (f"Reach: the {FORWARDED} packets that were noted last.",)
 MUTANTS = tuple(
-    Fault(*texts)
+    Mutant(*texts)
     for texts in (
         ("a packet that was delivered is delivered again",
          "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n"),
@@ -63,9 +64,6 @@ MUTANTS = tuple(
          "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
     )
 )  # fmt: skip
-
-
-EXPLORERS = False  # of the explorer's mutants none but those above concern these caches
 
 
 def theories(_network: Any, change: Change | None = None) -> list[Theory]:

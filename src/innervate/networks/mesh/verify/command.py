@@ -22,11 +22,6 @@ __all__ = ["MUTANTS", "hunt"]
 NAME_WIDE = 12  # characters of the column of names, at least
 
 
-def notice(options: Any) -> str:
-    """What to say before the first: nothing is compiled."""
-    return ""
-
-
 def wanted_of(options: Any) -> cases.MeshWanted:
     """What the options of the command line ask for."""
     common.only("mesh", options, "rule", "graph", "budget", "walks")

@@ -9,7 +9,8 @@ from innervate.networks.mesh.verify import story as mesh_story
 from innervate.networks.mesh.verify.cases import ASKED, QUICK, SHORT, text_of
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import Nets
-from innervate.verify.mutants import Catch, Mutant, copies
+from innervate.prove.mutants import Mutant
+from innervate.verify.cases import Catch
 
 STATES = 5_000
 
@@ -70,7 +71,7 @@ def models() -> Iterator[MeshModel]:
 
 def hunt(mutant: Mutant) -> Catch:
     """Try a mutant on all models until something is broken."""
-    (entry,) = copies(mutant, "innervate.networks.mesh.protocol.node")
+    (entry,) = mutant.copies("innervate.networks.mesh.protocol.node")
     states = 0
     for model in models():
         what = "gateways" if model.beats else "an alarm" if model.robot >= 0 else "messages"

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from innervate.networks.radio.verify import grid as grid
 from innervate.networks.radio.verify import tree as tree
-from innervate.verify.mutants import Catch, Mutant, copies
+from innervate.prove.mutants import Mutant
+from innervate.verify.cases import Catch
 
 RUNS = 120
 
@@ -34,7 +35,7 @@ def trees() -> Iterator[tree.Tree]:
 
 def hunt(mutant: Mutant) -> Catch:
     """Try a mutant on all trees until something is broken."""
-    (entry,) = copies(mutant, "innervate.networks.radio.protocol.practical")
+    (entry,) = mutant.copies("innervate.networks.radio.protocol.practical")
     runs = 0
     for one in trees():
         found = tree.search(one, entry, RUNS, lambda grown: bool(grown.broken))

@@ -1,11 +1,11 @@
 """Mistakes that a proof must refute, beside those of the explorer's that concern an invariant."""
 
-from innervate.prove.theory import Fault
+from innervate.prove.mutants import Mutant
 
 EXPLORERS = True  # all of the explorer's mutants are refuted, too
 
-FAULTS = tuple(
-    Fault(*texts)
+MUTANTS = tuple(
+    Mutant(*texts)
     for texts in (
         ("who has a route does not ask the rule when it hears",
          "not (is_usable(cell, params, port) and is_allowed(cell, params, port))",

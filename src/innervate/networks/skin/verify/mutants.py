@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 from innervate.networks.skin.verify import assumptions, fair, graphs, story
 from innervate.networks.skin.verify import system as system
+from innervate.prove.mutants import Mutant
 from innervate.verify import explore
-from innervate.verify.mutants import Catch, Mutant, copies
+from innervate.verify.cases import Catch
 
 PROTOCOL = "innervate.networks.skin.protocol"
 
@@ -68,7 +69,7 @@ MUTANTS = tuple(
 
 def copy_of(mutant: Mutant) -> system.System:
     """The skin's system on a copy of the protocol with the mistake in it."""
-    cell, sink = copies(mutant, f"{PROTOCOL}.cell", f"{PROTOCOL}.sink")
+    cell, sink = mutant.copies(f"{PROTOCOL}.cell", f"{PROTOCOL}.sink")
     return system.system_of(cell, sink)
 
 
