@@ -56,9 +56,13 @@ class Machine(Expressions):
         # for every (function, line, taken) of an `if`, where it is taken so
         self.ways: dict[tuple[str, int, bool], list[Term]] = {}
 
-    def run(self, name: str, args: list[Any], store: Store, under: Term) -> tuple[Store, Any]:
-        """Call a function by its joined name; the values afterwards, and what it returned."""
-        return self.call(self.functions[name], args, store, under)
+    def run(self, name: str, args: list[Any], store: Store) -> tuple[Store, Any]:
+        """Call a function by its joined name; the values afterwards, and what it returned.
+
+        Whole numbers among its arguments are known ones.
+        """
+        given = [self.terms.number(arg) if isinstance(arg, int) else arg for arg in args]
+        return self.call(self.functions[name], given, store, self.terms.true)
 
     def call(
         self, function: Function, args: list[Any], store: Store, under: Term

@@ -19,9 +19,9 @@ from innervate.prove.records import (
     Record,
     State,
     Store,
-    each_of,
     either,
     merged,
+    of_each,
 )
 from innervate.prove.terms import Term, Terms
 
@@ -121,11 +121,7 @@ class Expressions:
         owner = self.value(node.value, state, call)
         if owner is self.out and node.attr == "frame":
             return FRAMES
-        found: Any = None
-        for where, record in each_of(self.terms, owner, self.terms.true):
-            one = self.field(record, node, state, call)
-            found = one if found is None else either(self.terms, where, one, found)
-        return found
+        return of_each(self.terms, owner, lambda record: self.field(record, node, state, call))
 
     def field(self, record: Any, node: ast.Attribute, state: State, call: Call) -> Any:
         """A field of one record."""
@@ -143,25 +139,23 @@ class Expressions:
         """An element of an array, or a record of a table."""
         owner = self.value(node.value, state, call)
         if owner is FRAMES:
-            found: Any = None
-            index = self.value(node.slice, state, call)
-            for where, action in each_of(self.terms, index, self.terms.true):
-                if not isinstance(action, Action):
-                    what = "is none of a frame that was just sent or delivered"
-                    raise ProveError(f"{self.place(node, call)}: {ast.unparse(node)} {what}")
-                found = action.frame if found is None else either(
-                    self.terms, where, action.frame, found)  # fmt: skip
-            return found
+            actions = self.value(node.slice, state, call)
+            return of_each(self.terms, actions, lambda one: self.frame_of(one, node, call))
         index = self.integer(node.slice, state, call)
         if isinstance(owner, tuple):
             if index.value is None or not 0 <= index.value < len(owner):
                 raise ProveError(f"{self.place(node, call)}: which record is not known")
             return owner[index.value]
-        found = None
-        for where, array in each_of(self.terms, owner, self.terms.true):
-            one = self.element(array, index, node, state, call)
-            found = one if found is None else either(self.terms, where, one, found)
-        return found
+        return of_each(
+            self.terms, owner, lambda array: self.element(array, index, node, state, call)
+        )
+
+    def frame_of(self, action: Any, node: ast.Subscript, call: Call) -> Record:
+        """The frame of an action."""
+        if not isinstance(action, Action):
+            what = "is none of a frame that was just sent or delivered"
+            raise ProveError(f"{self.place(node, call)}: {ast.unparse(node)} {what}")
+        return action.frame
 
     def element(self, array: Array, index: Term, node: ast.AST, state: State, call: Call) -> Term:
         """An element of one array."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -176,6 +176,15 @@ def _partly(terms: Terms, if_: Term, a: Any, b: Any) -> Any:
     values = [x.value for x in (one, other) if x.value is not None]
     value = either(terms, if_, *values) if len(values) == 2 else values[0]
     return value if where is terms.true else Partly(where, value)
+
+
+def of_each(terms: Terms, ref: Any, read: Callable[[Any], Any]) -> Any:
+    """What is read of all that a reference may stand for, each where it does."""
+    found: Any = None
+    for where, one in each_of(terms, ref, terms.true):
+        value = read(one)
+        found = value if found is None else either(terms, where, value, found)
+    return found
 
 
 def each_of(terms: Terms, ref: Any, under: Term) -> Iterator[tuple[Term, Any]]:

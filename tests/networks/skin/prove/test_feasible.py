@@ -12,7 +12,7 @@ from innervate.prove.mutants import Mutant
 from innervate.prove.theory import prove
 
 SKIN = networks()["skin"]
-# Of the explorer's; those of FAULTS are in tests/networks/skin/verify/test_assumptions.py, and all
+# Of the explorer's; those of MUTANTS are in tests/networks/skin/verify/test_assumptions.py, and all
 # are tried in `make full`.
 QUICK = (
     "penalties grow beyond 2",

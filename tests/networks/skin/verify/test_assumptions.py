@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from innervate.networks.skin.protocol.constants import RULE_FEASIBLE
-from innervate.networks.skin.prove.faults import FAULTS
+from innervate.networks.skin.prove.faults import MUTANTS
 from innervate.networks.skin.prove.neighbours import ANY_RULE
 from innervate.networks.skin.prove.theories import resting
 from innervate.networks.skin.verify import assumptions, cases, graphs, mutants
@@ -47,13 +47,13 @@ def test_mistakes_that_could_hide_behind_it_are_found(name):
 
 # Five were planted by an independent check: a reduced search that trusts the rule ends with nothing
 # broken. The others are in the paths that reductions cut, too.
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda one: one.name)
+@pytest.mark.parametrize("fault", MUTANTS, ids=lambda one: one.name)
 def test_what_the_reductions_would_hide_is_refuted_first(fault):
     assert assumptions.refuted("feasible", (fault.old, fault.new)).startswith("refuted: "), fault
 
 
 def test_there_are_the_five_and_at_least_ten_more():
-    assert len({(fault.old, fault.new) for fault in FAULTS}) >= 15
+    assert len({(fault.old, fault.new) for fault in MUTANTS}) >= 15
 
 
 def test_under_other_rules_what_is_forgotten_decides_nothing_either():

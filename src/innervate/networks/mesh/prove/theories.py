@@ -10,7 +10,6 @@ from typing import Any
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.dialect.source import Change
 from innervate.networks.mesh.protocol import fields
-from innervate.networks.mesh.protocol.constants import PARITY
 from innervate.networks.mesh.protocol.duplicates import ANEW, BITS, FLOODED
 from innervate.networks.mesh.protocol.fields import FORWARDED, WINDOW_WORDS
 from innervate.networks.mesh.prove import hops
@@ -133,15 +132,14 @@ class Window:
 
     def accept(self, origin: int, seq: Term) -> tuple[Store, Term]:
         """The values after a packet of some origin, and whether it is delivered."""
-        args = [self.node, self.params, self.t.number(origin), seq, self.first]
-        after, result = self.stage.machine.run("accept", args, self.stage.store, self.t.true)
+        args = [self.node, self.params, origin, seq, self.first]
+        after, result = self.stage.machine.run("accept", args, self.stage.store)
         return after, self.t.as_truth(result)
 
     def step(self, name: str, after: Store, facts: list[Term], goals: list[Goal]) -> Step:
         """What was run as a step; fields stay in range and indices in arrays, too."""
-        machine, stage = self.stage.machine, self.stage
-        step = Step(name, machine, stage.records, stage.store, after, facts, singly=True)
-        step.goals = [*own_goals(step, ("node",), 0, 0), *goals]
+        step = self.stage.step(name, after, facts, [])
+        step.singly, step.goals = True, [*own_goals(step, ("node",), 0, 0), *goals]
         return step
 
     def state(self) -> list[Term]:
@@ -198,12 +196,10 @@ def _other(known: dict[str, Any]) -> Step:
 def _cache(known: dict[str, Any]) -> tuple[Stage, Record, Record, Term]:
     """A node's cache of packets that were passed on, a frame, and the frame's kind there."""
     stage = Stage(known, fields.FRAME, 8)
-    t = stage.terms
     kept = [field for field in fields.packets(ORIGINS)
             if field[0].startswith(("done_", "skip_"))]  # fmt: skip
     node, frame = stage.record("node", kept), stage.record("frame", fields.FRAME)
-    parity = t.shr(t.bits_and(stage.store[frame, "flags", None], t.number(PARITY)), t.number(1))
-    return stage, node, frame, t.bits_or(stage.store[frame, "kind", None], parity)
+    return stage, node, frame, hops.cached_kind(stage, frame)
 
 
 def _is_it(stage: Stage, node: Record, frame: Record, store: Store, k: int) -> Term:

@@ -163,10 +163,10 @@ def _choice(known: dict[str, Any], rule: int, how: str) -> Step:
     bare = _bare(known, rule)
     t, mirror, before = bare.t, Mirror(bare.t, ORDERS[how]), bare.stage.store
     first = First(known, t, True)
-    given = [bare.cell, bare.params, t.number(0)]
-    after, _ = first.run(CHOICE, [*given, first.out], before, t.true)
+    given = [bare.cell, bare.params, 0]
+    after, _ = first.run(CHOICE, [*given, first.out], before)
     second = Second(first, mirror)
-    image, _ = second.run(CHOICE, [*given, second.out], mirror.of_store(before), t.true)
+    image, _ = second.run(CHOICE, [*given, second.out], mirror.of_store(before))
     bare.machines = [first, second]
     others = [t.same(before[key], after[key]) for key, _, _ in bare.cell.places()
               if key[1] not in (*CHOSEN, *NOT_DRAWN)]  # fmt: skip
