@@ -11,7 +11,7 @@ from msgspec import Meta
 
 from innervate.network import networks
 from innervate.scenario import cables
-from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TABLE
+from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TARGETS
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
@@ -130,7 +130,7 @@ def check(source: Source, model: CablesScenario) -> None:
 
 
 def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> None:
-    on_cable = event.action in ACTIONS and TABLE[ACTIONS.index(event.action)].target == "cable"
+    on_cable = TARGETS.get(event.action) == "cable"
     wanted, other = ("link", "node") if on_cable else ("node", "link")
     if getattr(event, wanted) is None:
         example = '"n0-n1"' if on_cable else "0"

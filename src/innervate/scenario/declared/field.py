@@ -23,7 +23,6 @@ from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
 
 NODES_MAX = 254
-ONE = 32_768
 RSSI50_CDB = -9_500  # half of the frames are received at -95 dBm
 GOOD_CDB = 300  # a good link is so much louder: 95 % are received
 LEAST = 0.01  # who receives less than that of a node's frames is out of its reach
@@ -279,23 +278,17 @@ def _placed(model: FieldScenario, points: list[tuple[int, int]]) -> Heard:
     gains = placement.gains(points, faded, exponent_c)
     rssi = [placement.UNHEARD if i % (count + 1) == 0 else max(at_1m + one, placement.UNHEARD + 1)
             for i, one in enumerate(gains)]  # fmt: skip
-    return Heard(rssi, [_chance(one - RSSI50_CDB) for one in rssi])
-
-
-def _chance(over_cdb: int) -> int:
-    steps = min(max((over_cdb + 5) // 10, -120), 120)  # of 0.1 dB: the same on any machine
-    chance = 1 / (1 + math.exp(-steps / 10))
-    return round(ONE * chance) if chance >= LEAST else 0
+    chances = (placement.reception_q15(one - RSSI50_CDB) for one in rssi)
+    return Heard(rssi, [one if one >= LEAST * placement.ONE_Q15 else 0 for one in chances])
 
 
 def _linked(model: FieldScenario) -> Heard:
     count = model.nodes
     rssi, prob = [placement.UNHEARD] * (count * count), [0] * (count * count)
     for link in model.link:
-        share = min(max(link.quality, 1e-4), 1 - 1e-4)
         for a, b in (link.nodes, link.nodes[::-1]):
-            rssi[a * count + b] = RSSI50_CDB + round(100 * math.log(share / (1 - share)))
-            prob[a * count + b] = round(link.quality * ONE)
+            rssi[a * count + b] = RSSI50_CDB + placement.quality_cdb(link.quality)
+            prob[a * count + b] = round(link.quality * placement.ONE_Q15)
     return Heard(rssi, prob)
 
 
