@@ -111,10 +111,11 @@ class State:
     names: dict[str, Any]  # its local names
     store: Store  # values of all records
     path: Term  # which of the function's paths
+    call: Call  # of the function
 
     def fork(self, path: Term) -> State:
         """The same, to go on with by itself."""
-        return State(dict(self.names), dict(self.store), path)
+        return State(dict(self.names), dict(self.store), path, self.call)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +155,7 @@ def merged(terms: Terms, if_: Term, a: State, b: State, path: Term) -> State:
         one, its = names.get(name), others.get(name)
         if one is not its:
             names[name] = either(terms, if_, one, its)
-    return State(names, store, path)
+    return State(names, store, path, a.call)
 
 
 def either(terms: Terms, if_: Term, a: Any, b: Any) -> Any:

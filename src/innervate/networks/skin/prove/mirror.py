@@ -25,7 +25,7 @@ from innervate.networks.skin.prove.reductions import (
     same_state,
 )
 from innervate.prove.execute import Machine
-from innervate.prove.records import Call, Demand, Outbox, Record, State, Store, name_of
+from innervate.prove.records import Demand, Outbox, Record, State, Store, name_of
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
@@ -102,11 +102,11 @@ class Second(Machine):
         self.demands.append(Demand(MADE, under, alike, CHOICE))
         return {**store, **self.mirror.of_store(found)}, t.number(0)
 
-    def draw(self, many: Term, state: State, call: Call) -> Term:
+    def draw(self, many: Term, state: State) -> Term:
         """The number that is tried, if it is among so many."""
         if self.number is None:
-            return super().draw(many, state, call)
-        under = self.terms.all(call.under, state.path)
+            return super().draw(many, state)
+        under = self.here(state)
         self.can_be.append(self.terms.implies(under, self.terms.less(self.number, many)))
         return self.number
 
