@@ -8,7 +8,7 @@ from innervate.networks.skin.protocol.constants import RULE_FEASIBLE
 from innervate.networks.skin.prove.faults import MUTANTS
 from innervate.networks.skin.prove.neighbours import ANY_RULE
 from innervate.networks.skin.prove.theories import resting
-from innervate.networks.skin.verify import assumptions, cases, graphs, mutants
+from innervate.networks.skin.verify import assumptions, command, graphs, mutants
 from innervate.networks.skin.verify.system import RULES, UPDATES, Budget, SkinModel
 from innervate.prove.theory import prove
 from innervate.verify.errors import VerifyError
@@ -71,11 +71,11 @@ def test_nor_where_the_pc_restarts_under_strict():
 
 def test_a_reduced_search_does_not_start_without_them(monkeypatch):
     monkeypatch.setattr(assumptions, "broken", lambda _: "a route is taken")
-    wanted = cases.Wanted(live=False, states=50, plain=True)
+    wanted = command.Wanted(live=False, states=50, plain=True)
     with pytest.raises(VerifyError, match="a route is taken; --no-reduce"):
-        cases.run(model("feasible", "periodic"), wanted, lambda *_: False)
+        command.run(model("feasible", "periodic"), wanted, lambda *_: False)
     whole = model("feasible", "periodic").changed(lean=False)
-    assert cases.run(whole, wanted, lambda *_: False).tally.ended == "limit"
+    assert command.run(whole, wanted, lambda *_: False).tally.ended == "limit"
 
 
 # Each lemma about what is forgotten, and a mistake that it refutes.

@@ -6,8 +6,7 @@ from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as mesh_story
-from innervate.networks.mesh.verify.cases import ASKED, QUICK, SHORT, text_of
-from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify.model import ASKED, QUICK, SHORT, MeshBudget, MeshModel, text_of
 from innervate.networks.mesh.verify.net import Nets
 from innervate.prove.mutants import Mutant
 from innervate.verify.cases import Catch
