@@ -22,3 +22,8 @@ class Mutant:
         """
         made: list[ModuleType] = changed_copy([(self.old, self.new)], *names)
         return made
+
+
+def planted(*texts: tuple[str, str, str]) -> tuple[Mutant, ...]:
+    """Mistakes by their names and texts, old and new."""
+    return tuple(Mutant(*text) for text in texts)

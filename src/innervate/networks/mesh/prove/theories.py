@@ -14,7 +14,7 @@ from innervate.networks.mesh.protocol.duplicates import ANEW, BITS, FLOODED
 from innervate.networks.mesh.protocol.fields import FORWARDED, WINDOW_WORDS
 from innervate.networks.mesh.prove import hops
 from innervate.prove.errors import ProveError
-from innervate.prove.mutants import Mutant
+from innervate.prove.mutants import planted
 from innervate.prove.records import Record, Store
 from innervate.prove.steps import Goal, Stage, Step, own_goals
 from innervate.prove.terms import Term
@@ -34,34 +34,29 @@ ASSUMED = (
     "A packet that is still on its way is less than 2^15 numbers behind.",
 )
 KEPT = (f"Reach: the {FORWARDED} packets that were noted last.",)
-MUTANTS = tuple(
-    Mutant(*texts)
-    for texts in (
-        ("a packet that was delivered is delivered again",
-         "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n"),
-        ("what is behind the newest is new",
-         "    if node.window[word] & bit:\n        return 0\n", ""),
-        ("the window begins anew with every packet",
-         "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
-        ("what is behind is not noted",
-         "    node.window[word] = node.window[word] | bit\n", ""),
-        ("the packet that was newest is not in the window",
-         "            if old == -1:\n", "            if old == -2:\n"),
-        ("the window moves a place too far",
-         "old = at * BITS + b - ahead\n", "old = at * BITS + b - ahead - 1\n"),
-        ("a packet that was passed on is passed on again",
-         "        if node.done_kind[k] == kind:\n            return 1\n        node.done_kind",
-         "        node.done_kind"),
-        ("every packet is noted in the same place", "(k + 1) % FORWARDED", "k % FORWARDED"),
-        ("who had the packet is asked again",
-         "    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):\n",
-         "    if who == NONE or is_suspect(node, params, who):\n"),
-        ("who failed for a packet is asked again",
-         "            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):\n",
-         "            if who == NONE:\n"),
-        ("who transmits a packet is not in its path",
-         "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
-    )
+MUTANTS = planted(
+    ("a packet that was delivered is delivered again",
+     "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n"),
+    ("what is behind the newest is new", "    if node.window[word] & bit:\n        return 0\n", ""),
+    ("the window begins anew with every packet",
+     "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
+    ("what is behind is not noted", "    node.window[word] = node.window[word] | bit\n", ""),
+    ("the packet that was newest is not in the window",
+     "            if old == -1:\n", "            if old == -2:\n"),
+    ("the window moves a place too far",
+     "old = at * BITS + b - ahead\n", "old = at * BITS + b - ahead - 1\n"),
+    ("a packet that was passed on is passed on again",
+     "        if node.done_kind[k] == kind:\n            return 1\n        node.done_kind",
+     "        node.done_kind"),
+    ("every packet is noted in the same place", "(k + 1) % FORWARDED", "k % FORWARDED"),
+    ("who had the packet is asked again",
+     "    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):\n",
+     "    if who == NONE or is_suspect(node, params, who):\n"),
+    ("who failed for a packet is asked again",
+     "            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):\n",
+     "            if who == NONE:\n"),
+    ("who transmits a packet is not in its path",
+     "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
 )  # fmt: skip
 
 
