@@ -12,6 +12,7 @@ from innervate.analysis.headline import LEVELS
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.cli.options import SweepOptions
+from innervate.kernel.words import number_of
 
 if TYPE_CHECKING:
     from innervate.sweeping import Sweep, SweepPlan
@@ -65,7 +66,7 @@ def sweep(
             print(f"Drawn: {path}")
         print(f"Written: {folder / 'results.parquet'}")
     if done.others:
-        kept = f"{done.others:,} other run{'s' if done.others > 1 else ''}"
+        kept = number_of(done.others, "other run")
         errors.say(f"{folder} keeps {kept}, too, which these tables do not show; whoever asks for "
                    "them again has them at once (--out: another folder)")  # fmt: skip
     undrawn = len(drawn) < len(done.plan.plots)

@@ -16,9 +16,11 @@ from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
 
 BUDGET_MAX = 20
-# What options say of that which is explored, if they are left out.
+# What options say if they are left out: of that which is explored, and how much and how it is.
 UNSAID = {"rule": "", "updates": "all", "graph": "all", "cells": 0, "budget": "", "prompt": False,
           "starts": 0, "walks": 0}  # fmt: skip
+USUAL = UNSAID | {"liveness": True, "states": 0, "seed": None, "memory": "2G", "reduce": True,
+                  "plain": False}  # fmt: skip
 
 # Is told what is being done, how much of it is, and of how much (0 = unknown); true = stop.
 Tell = Callable[[str, int, int], bool]

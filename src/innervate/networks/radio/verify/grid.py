@@ -132,21 +132,14 @@ def base_plan(grid: Grid) -> Any:
         raise RunError(f"a grid has 2 to 4 stations and a mode of {', '.join(MODES)}")
     if min(grid.delays_us) < 1 or max(grid.delays_us) > 2 * min(grid.delays_us):
         raise RunError("the greatest delay may be at most twice the least")
-    text = f"""
-        kind = "radio"
-        name = "grid"
-        stations = {grid.stations}
-        packet_slots = {grid.packet_slots}
-        duration_s = {HORIZON_S}
-        [traffic]
-        kind = "disaster"
-        [channel]
-        tau_us = [{min(grid.delays_us)}, {max(grid.delays_us)}]
-        turnaround_us = {grid.turnaround_us}
-        [protocol]
-        mode = "{grid.mode}"
-    """
-    return scenarios.plan(scenarios.loads(text))
+    tau_us = [min(grid.delays_us), max(grid.delays_us)]
+    tables = {
+        "kind": "radio", "name": "grid", "duration_s": HORIZON_S, "stations": grid.stations,
+        "packet_slots": grid.packet_slots, "traffic": {"kind": "disaster"},
+        "channel": {"tau_us": tau_us, "turnaround_us": grid.turnaround_us},
+        "protocol": {"mode": grid.mode},
+    }  # fmt: skip
+    return scenarios.plan(scenarios.from_dict(tables))
 
 
 def plan_of(plan: Any, grid: Grid, point: Point) -> Any:
