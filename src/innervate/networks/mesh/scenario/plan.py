@@ -10,16 +10,11 @@ from innervate.topology.placement import ONE_Q15
 
 ONE: int = ONE_Q15
 CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
+MeshFault = Fault  # one event of a run: what happens in any field
 HEADER_SLOTS = 2  # what medium access protocols of radio teams put in front of a frame, bytes
 
 
 Point = tuple[float, float]
-
-
-class MeshFault(Fault):
-    """One event of a mesh run: what happens in any field."""
-
-    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
