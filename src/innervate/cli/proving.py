@@ -9,6 +9,7 @@ from innervate.cli import errors
 from innervate.cli.options import Flag, Json
 from innervate.cli.progress import Display
 from innervate.cli.verifying import hunted, named
+from innervate.kernel.stop import Stop
 from innervate.kernel.words import number_of
 from innervate.network import Network, first
 
@@ -32,7 +33,6 @@ def prove(system: str | None = None, /, *, faults: Flag = False, as_json: Json =
 
 
 def _theories(network: Network, as_json: bool) -> int:
-    from innervate.kernel.stop import Stop
     from innervate.prove.theory import prove as attempt
 
     done: list[Outcome] = []

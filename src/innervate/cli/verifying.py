@@ -15,6 +15,7 @@ from innervate.cli import errors
 from innervate.cli.options import Json, VerifyOptions
 from innervate.cli.progress import Display
 from innervate.export import files
+from innervate.kernel.stop import Stop
 from innervate.kernel.words import number_of
 from innervate.network import Network, find, first, networks, use
 
@@ -74,7 +75,6 @@ def named(system: str, knows: str = "verify explores") -> Network:
 
 
 def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
-    from innervate.kernel.stop import Stop
     from innervate.verify.cases import notice_of, verdict
 
     done: list[Case] = []
@@ -153,8 +153,6 @@ def hunted(system: str, hunts: Sequence[tuple[Mutant, Hunt]], as_json: bool, mis
         as_json: print what was found as JSON and nothing else.
         missed: what is said of one that nothing finds.
     """
-    from innervate.kernel.stop import Stop
-
     found = []
     with Stop() as stop, Display(as_json) as display:
         for number, (mutant, hunt) in enumerate(hunts):
@@ -173,7 +171,6 @@ def hunted(system: str, hunts: Sequence[tuple[Mutant, Hunt]], as_json: bool, mis
 
 def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int:
     """Run whole networks `seed`, `seed` + 1, ...; 1 with the first that breaks something."""
-    from innervate.kernel.stop import Stop
     from innervate.running import fuzz
 
     first, done, broken = 1 if seed is None else seed, 0, None

@@ -61,6 +61,11 @@ class Grid:
             len(self.offers_us) ** (self.stations - 1) * len(self.delays_us) ** pairs * choices
         )
 
+    @property
+    def words(self) -> str:
+        """What all of its points have in common."""
+        return f"{self.stations} stations, {self.mode}, turnaround {self.turnaround_us} us"
+
 
 @dataclass(frozen=True, slots=True)
 class Point:
@@ -206,11 +211,9 @@ def _after_reservation(sent: Any, data: Any) -> Any:
 
 def story(grid: Grid, point: Point) -> list[str]:
     """What happens at a point, in sentences; times from the first offer."""
-    shared = base_plan(grid)
-    plan = plan_of(shared, grid, point)
-    broken, sent = run_point(plan, point, seeds_of(grid))
-    told = sentences(grid, point, sent, plan.arrivals[0][0])
-    return [*told, f"So: {WORDS[broken]}."] if broken else told
+    plan = plan_of(base_plan(grid), grid, point)
+    _, sent = run_point(plan, point, seeds_of(grid))
+    return sentences(grid, point, sent, plan.arrivals[0][0])
 
 
 def sentences(grid: Grid, point: Point, sent: Any, begin: int) -> list[str]:
