@@ -5,6 +5,7 @@ Built in code they are the same: `CablesScenario(kind="ring", nodes=5)`.
 
 import math
 from array import array
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta
@@ -15,7 +16,7 @@ from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TARGETS
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
-from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.keys import Micros, Table, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown
 from innervate.topology import PORT_NAMES, PORTS, TopologyError, free_graph
@@ -75,39 +76,26 @@ class EventTable(Table, frozen=True, kw_only=True):
     value: int = 0
 
 
-class CablesScenario(Table, frozen=True, kw_only=True):
+class CablesScenario(shared.Declared, frozen=True, kw_only=True):
     """A network over cables.
 
     Attributes:
-        kind: the network's name.
         nodes: how many there are, "n0", "n1", ...; nodes of `cables` if those are given.
         shape: how they are cabled: from port E (1) to the next one's W (0) in a line or ring; a
             grid, whose rows are joined down (3) to up (2); a tree, up to the parent.
         cables: instead of a shape: pairs like "n0.E-n1.W", "n1-n2" (the first free ports).
-        duration_s: simulated time, s.
         drift_ppm: clocks run up to so much fast or slow.
         start_us: nodes are switched on within so long, us.
-        protocol: parameters of the protocol, by name.
-        input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
-        script: an order of events in place of the clock.
     """
 
-    kind: str
-    schema: Schema = 1
-    name: Name = "network"
-    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
-    seed: Seed = 1
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 4
     shape: Literal["line", "ring", "grid", "tree"] = "ring"
     cables: list[str] = []  # noqa: RUF012
     drift_ppm: Annotated[int, whole("ppm", 0, 1000)] = 30
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     links: Links = Links()
-    protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
-    script: shared.ScriptTable | None = None
 
 
 def check(source: Source, model: CablesScenario) -> None:
@@ -116,20 +104,15 @@ def check(source: Source, model: CablesScenario) -> None:
     Raises:
         ScenarioError: the first thing that cannot be.
     """
-    network = networks()[model.kind]
     low, high = model.links.latency_us
     if low > high:
         raise source.error(("links", "latency_us"), "links.latency_us must be [least, greatest]")
-    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     graph = _graph(source, model)
-    shared.check_script(source, model, graph)
-    shared.check_inputs(source, model, network, graph.cells)
-    for place, event in enumerate(model.event):
-        shared.check_happening(source, model, place, network, ACTIONS)
-        _check_target(source, ("event", place), event, graph)
+    target = partial(_check_target, source, graph)
+    shared.check(source, model, graph.cells, ACTIONS, target, graph)
 
 
-def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> None:
+def _check_target(source: Source, graph: Graph, key: Key, event: EventTable) -> None:
     on_cable = TARGETS.get(event.action) == "cable"
     wanted, other = ("link", "node") if on_cable else ("node", "link")
     if getattr(event, wanted) is None:
@@ -139,7 +122,6 @@ def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> 
         raise source.error((*key, other), f"{event.action} has no {other}; leave it out")
     if on_cable:
         _end_of(source, (*key, "link"), graph, str(event.link))
-    shared.check_node(source, (*key, "node"), event.node, graph.cells)
 
 
 def _end_of(source: Source, key: Key, graph: Graph, text: str) -> int:

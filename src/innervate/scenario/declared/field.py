@@ -5,6 +5,7 @@ Built in code they are the same: `FieldScenario(kind="flood", nodes=20)`.
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta
@@ -15,7 +16,7 @@ from innervate.scenario.cables import Input
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.events import opening, told
-from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.keys import Micros, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
 from innervate.topology import placement
@@ -92,11 +93,10 @@ class EventTable(Table, frozen=True, kw_only=True):
     value: int = 0
 
 
-class FieldScenario(Table, frozen=True, kw_only=True):
+class FieldScenario(shared.Declared, frozen=True, kw_only=True):
     """A network over a field: who is near enough hears.
 
     Attributes:
-        kind: the network's name.
         nodes: how many there are.
         layout: in a line, on a square grid, or anywhere in a square.
         spacing_m: between neighbours of a line or grid, m.
@@ -104,20 +104,11 @@ class FieldScenario(Table, frozen=True, kw_only=True):
         positions_m: instead of a layout: (x, y) of every node, m.
         link: instead of places: who hears whom.
         absent: nodes that are off until they are revived.
-        duration_s: simulated time, s.
         start_us: nodes are switched on within so long, us.
         air: what all nodes' radios have.
-        protocol: parameters of the protocol, by name.
-        input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
-        script: an order of events in place of the clock.
     """
 
-    kind: str
-    schema: Schema = 1
-    name: Name = "network"
-    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
-    seed: Seed = 1
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 9
     layout: Literal["line", "grid", "random"] = "grid"
     spacing_m: Annotated[float, above_0("metres", 100_000)] = 20.0
@@ -127,10 +118,7 @@ class FieldScenario(Table, frozen=True, kw_only=True):
     absent: list[int] = []  # noqa: RUF012
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     air: AirTable = AirTable()
-    protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
-    script: shared.ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,8 +167,6 @@ def check(source: Source, model: FieldScenario) -> None:
     Raises:
         ScenarioError: the first thing that cannot be.
     """
-    network = networks()[model.kind]
-    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     if model.positions_m and len(model.positions_m) != model.nodes:
         what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
         raise source.error(("positions_m",), what)
@@ -188,17 +174,10 @@ def check(source: Source, model: FieldScenario) -> None:
         raise source.error(("air", "exponent_min"), "air.exponent_min is above exponent_max")
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
-    for place, node in enumerate(model.absent):
-        shared.check_node(source, ("absent", place), node, model.nodes)
-    shared.check_script(source, model)
-    shared.check_inputs(source, model, network, model.nodes)
-    for place, event in enumerate(model.event):
-        shared.check_node(source, ("event", place, "node"), event.node, model.nodes)
-        shared.check_happening(source, model, place, network, ACTIONS)
-        _check_other(source, ("event", place), event, model.nodes)
+    shared.check(source, model, model.nodes, ACTIONS, partial(_check_other, source, model.nodes))
 
 
-def _check_other(source: Source, key: Key, event: EventTable, nodes: int) -> None:
+def _check_other(source: Source, nodes: int, key: Key, event: EventTable) -> None:
     if event.action in PAIRS and event.other is None:
         raise source.error(key, f"{event.action} needs the other node; add other = 1")
     if event.action not in PAIRS and event.other is not None:
