@@ -77,7 +77,7 @@ class EventTable(Table, frozen=True, kw_only=True):
 
 
 class CablesScenario(shared.Declared, frozen=True, kw_only=True):
-    """A network over cables.
+    """A network over cables; the keys of all media are those of `Declared`.
 
     Attributes:
         nodes: how many there are, "n0", "n1", ...; nodes of `cables` if those are given.

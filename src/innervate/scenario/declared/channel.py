@@ -55,7 +55,7 @@ class EventTable(Table, frozen=True, kw_only=True):
 
 
 class ChannelScenario(shared.Declared, frozen=True, kw_only=True):
-    """A network on a shared channel.
+    """A network on a shared channel; the keys of all media are those of `Declared`.
 
     Attributes:
         nodes: how many there are.

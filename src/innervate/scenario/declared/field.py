@@ -94,7 +94,7 @@ class EventTable(Table, frozen=True, kw_only=True):
 
 
 class FieldScenario(shared.Declared, frozen=True, kw_only=True):
-    """A network over a field: who is near enough hears.
+    """A network over a field: who is near enough hears; of the keys see `Declared`, too.
 
     Attributes:
         nodes: how many there are.

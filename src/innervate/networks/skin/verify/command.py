@@ -186,7 +186,8 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Told) -> SkinCase:
     else:
         found = _explore(model, wanted, name, tell)
     case = SkinCase(model, cables, found.tally, story=_tell(found, wanted, name, tell))
-    if wanted.live and model.rule == "feasible" and found.tally.ended in PLAYED:
+    plays = wanted.live and not wanted.walks and model.rule == "feasible"
+    if plays and found.tally.ended in PLAYED:
         case.fair = _settle(found, wanted, name, tell)
         if case.fair.ended == "broken" and model.lean:
             case.fair = _settle_whole(case.fair, found, wanted, name, tell)
