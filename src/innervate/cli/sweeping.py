@@ -40,16 +40,10 @@ def sweep(
     plan: SweepPlan = room.make_plan(file, **options.planned)
     folder = options.out or Path("sweeps") / (plain_name(plan.name) or "sweep")
     wanted = tuple(dict.fromkeys([*options.shown, *(rule.measure for rule in plan.until)]))
-    with LiveTable(plan.name, wanted or SHOWN, options.json) as table:
-        try:
-            done = room.sweep(
-                plan, out=folder, **options.how, show=options.shown,
-                follow=wanted or SHOWN, progress=table,
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            table.close()
-            errors.say(f"interrupted; {table.kept(folder)}")
-            return errors.INTERRUPTED
+    follow = wanted or SHOWN
+    with LiveTable(plan.name, follow, folder, options.json) as table:
+        done = room.sweep(plan, out=folder, **options.how, show=options.shown, follow=follow,
+                          progress=table)  # fmt: skip
     if done.torn:
         more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
         errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
