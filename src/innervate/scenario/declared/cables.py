@@ -77,16 +77,21 @@ class EventTable(Table, frozen=True, kw_only=True):
 
 
 class CablesScenario(shared.Declared, frozen=True, kw_only=True):
-    """A network over cables; the keys of all media are those of `Declared`.
+    """A network over cables.
 
     Attributes:
+        kind: the network's name.
         nodes: how many there are, "n0", "n1", ...; nodes of `cables` if those are given.
         shape: how they are cabled: from port E (1) to the next one's W (0) in a line or ring; a
             grid, whose rows are joined down (3) to up (2); a tree, up to the parent.
         cables: instead of a shape: pairs like "n0.E-n1.W", "n1-n2" (the first free ports).
+        duration_s: simulated time, s.
         drift_ppm: clocks run up to so much fast or slow.
         start_us: nodes are switched on within so long, us.
+        protocol: parameters of the protocol, by name.
+        input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
+        script: an order of events in place of the clock.
     """
 
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 4
@@ -95,7 +100,10 @@ class CablesScenario(shared.Declared, frozen=True, kw_only=True):
     drift_ppm: Annotated[int, whole("ppm", 0, 1000)] = 30
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     links: Links = Links()
+    protocol: dict[str, int] = {}  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+    script: shared.ScriptTable | None = None
 
 
 def check(source: Source, model: CablesScenario) -> None:

@@ -55,21 +55,29 @@ class EventTable(Table, frozen=True, kw_only=True):
 
 
 class ChannelScenario(shared.Declared, frozen=True, kw_only=True):
-    """A network on a shared channel; the keys of all media are those of `Declared`.
+    """A network on a shared channel.
 
     Attributes:
+        kind: the network's name.
         nodes: how many there are.
         hidden: pairs of nodes that do not hear each other.
         absent: nodes that are off until they join.
+        duration_s: simulated time, s.
         air: the channel.
+        protocol: parameters of the protocol, by name.
+        input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
+        script: an order of events in place of the clock.
     """
 
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 4
     hidden: list[tuple[int, int]] = []  # noqa: RUF012
     absent: list[int] = []  # noqa: RUF012
     air: AirTable = AirTable()
+    protocol: dict[str, int] = {}  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+    script: shared.ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -94,9 +94,10 @@ class EventTable(Table, frozen=True, kw_only=True):
 
 
 class FieldScenario(shared.Declared, frozen=True, kw_only=True):
-    """A network over a field: who is near enough hears; of the keys see `Declared`, too.
+    """A network over a field: who is near enough hears.
 
     Attributes:
+        kind: the network's name.
         nodes: how many there are.
         layout: in a line, on a square grid, or anywhere in a square.
         spacing_m: between neighbours of a line or grid, m.
@@ -104,9 +105,13 @@ class FieldScenario(shared.Declared, frozen=True, kw_only=True):
         positions_m: instead of a layout: (x, y) of every node, m.
         link: instead of places: who hears whom.
         absent: nodes that are off until they are revived.
+        duration_s: simulated time, s.
         start_us: nodes are switched on within so long, us.
         air: what all nodes' radios have.
+        protocol: parameters of the protocol, by name.
+        input: what nodes are given by their users, in any order.
         event: what happens to nodes and between them, in any order.
+        script: an order of events in place of the clock.
     """
 
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 9
@@ -118,7 +123,10 @@ class FieldScenario(shared.Declared, frozen=True, kw_only=True):
     absent: list[int] = []  # noqa: RUF012
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     air: AirTable = AirTable()
+    protocol: dict[str, int] = {}  # noqa: RUF012
+    input: Annotated[list[shared.InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
     event: Annotated[list[EventTable], Meta(max_length=100_000)] = []  # noqa: RUF012
+    script: shared.ScriptTable | None = None
 
 
 @dataclass(frozen=True, slots=True)

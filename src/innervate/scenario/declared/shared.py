@@ -52,24 +52,13 @@ class ScriptTable(Table, frozen=True, kw_only=True):
 
 
 class Declared(Table, frozen=True, kw_only=True):
-    """What scenarios of all media have.
-
-    Attributes:
-        kind: the network's name.
-        duration_s: simulated time, s.
-        protocol: parameters of the protocol, by name.
-        input: what nodes are given by their users, in any order.
-        script: an order of events in place of the clock.
-    """
+    """The keys that scenarios of all media begin with."""
 
     kind: str
     schema: Schema = 1
     name: Name = "network"
     duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
     seed: Seed = 1
-    protocol: dict[str, int] = {}  # noqa: RUF012
-    input: Annotated[list[InputTable], Meta(max_length=10_000)] = []  # noqa: RUF012
-    script: ScriptTable | None = None
 
 
 def check(
