@@ -79,6 +79,7 @@ def failing(error):
         (MemoryError(), 1, "not enough memory"),
         (OSError(28, "No space left on device"), 1, "No space left on device"),
         (KeyboardInterrupt(), 130, "interrupted"),
+        (KeyboardInterrupt("interrupted; it is kept"), 130, "interrupted; it is kept"),
         (errors.UserError("change this"), 2, "change this"),
     ],
 )  # fmt: skip

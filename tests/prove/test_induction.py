@@ -151,7 +151,7 @@ def run(name, machine_of, n=9):
     stage.store[s, "a", None] = stage.number(0)
     before = dict(stage.store)
     given = [s, stage.terms.unknown("n", 0, n)]
-    after, result = machine.run(name, given, dict(before), stage.terms.true)
+    after, result = machine.run(name, given, dict(before))
     return Step(name, machine, stage.records, before, after, [*machine.facts], result=result)
 
 

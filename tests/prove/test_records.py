@@ -14,6 +14,8 @@ from innervate.prove.records import (
 )
 from innervate.prove.terms import Terms
 
+CALL = object()  # that states are of
+
 
 @pytest.fixture
 def terms():
@@ -56,21 +58,21 @@ def test_what_has_a_value_on_some_paths_has_it_where_one_of_them_goes(terms):
 
 def test_states_that_come_together_have_what_either_has(terms):
     p, x, y = truth(terms, "p"), terms.unknown("x", 0, 9), terms.unknown("y", 0, 9)
-    one = State({"i": x, "mine": x}, {"both": x, "same": x, "mine": x}, p)
-    other = State({"i": y, "its": y}, {"both": y, "same": x, "its": y}, terms.negated(p))
+    one = State({"i": x, "mine": x}, {"both": x, "same": x, "mine": x}, p, CALL)
+    other = State({"i": y, "its": y}, {"both": y, "same": x, "its": y}, terms.negated(p), CALL)
     found = merged(terms, p, one, other, terms.true)
-    assert found.path is terms.true
+    assert (found.path, found.call) == (terms.true, CALL)
     partly = {"mine": Partly(p, x), "its": Partly(terms.negated(p), y)}
     assert found.names == {"i": terms.pick(p, x, y), **partly}
     assert found.store == {"both": terms.pick(p, x, y), "same": x, "mine": x, "its": y}
 
 
 def test_a_fork_goes_on_by_itself(terms):
-    state = State({"i": 1}, {"a": 2}, terms.true)
+    state = State({"i": 1}, {"a": 2}, terms.true, CALL)
     fork = state.fork(terms.false)
     fork.names["i"], fork.store["a"] = 3, 4
     assert (state.names, state.store, state.path) == ({"i": 1}, {"a": 2}, terms.true)
-    assert fork.path is terms.false
+    assert (fork.path, fork.call) == (terms.false, CALL)
 
 
 def test_places_have_names():

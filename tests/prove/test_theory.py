@@ -7,9 +7,10 @@ import pytest
 from innervate.prove import faults
 from innervate.prove.check import Checked, Refuted, unreached
 from innervate.prove.errors import ProveError
+from innervate.prove.mutants import Mutant
 from innervate.prove.records import Record
 from innervate.prove.steps import Goal
-from innervate.prove.theory import Fault, Outcome, Source, Theory, is_touched, prove
+from innervate.prove.theory import Outcome, Source, Theory, is_touched, prove
 from tests.prove.test_goals import KNOWN, SOURCE, played
 
 
@@ -139,8 +140,8 @@ def test_a_step_is_touched_by_a_mistake_whose_function_was_asked_for_since():
 
 
 def network(*theories, explorers=False):
-    mutants = (Fault("own", "a", "b"),)
-    others = (Of(name="its", old="c", new="d", more=1),)
+    mutants = (Mutant("own", "a", "b"),)
+    others = (Mutant("its", "c", "d"),)
     return Of(prove=Of(MUTANTS=mutants, EXPLORERS=explorers, theories=lambda *_: theories),
               verify=Of(MUTANTS=others))  # fmt: skip
 
@@ -148,7 +149,7 @@ def network(*theories, explorers=False):
 def test_mistakes_are_hunted_in_what_is_claimed_to_hold():
     false = theory(step(holds=False), refuted_by="in_an_if")
     holds, broken = theory(step()), theory(step("in_a_call", holds=False))
-    fault = Fault("x", "a", "b")
+    fault = Mutant("x", "a", "b")
     assert faults.hunt(network(false, holds, broken), fault) == ("in_a_call", "it holds")
     assert faults.hunt(network(false, holds), fault) == ("", "")
 
@@ -156,7 +157,7 @@ def test_mistakes_are_hunted_in_what_is_claimed_to_hold():
 def test_the_explorers_mistakes_are_tried_where_a_proof_is_about_them():
     assert [one.name for one in faults.faults_of(network())] == ["own"]
     found = faults.faults_of(network(explorers=True))
-    assert found == [Fault("own", "a", "b"), Fault("its", "c", "d")]
+    assert found == [Mutant("own", "a", "b"), Mutant("its", "c", "d")]
 
 
 @pytest.mark.parametrize(("length", "count"), [(0, 1), (3, 3), ("ports", 5)])

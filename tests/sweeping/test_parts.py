@@ -128,7 +128,7 @@ class Conducted:
 def test_elsewhere_a_line_comes_now_and_then(monkeypatch, capsys):
     clock = Clock()
     monkeypatch.setattr(live_table, "time", clock)
-    with LiveTable("mine", ()) as table:
+    with LiveTable("mine", (), Path("there")) as table:
         for _ in range(25):
             clock.now += 1
             table(Conducted())
@@ -137,10 +137,10 @@ def test_elsewhere_a_line_comes_now_and_then(monkeypatch, capsys):
 
 
 def test_what_is_kept_is_said_only_of_what_is_done():
-    table = LiveTable("mine", ())
-    assert table.kept(Path("there")) == "nothing is done yet"
+    table = LiveTable("mine", (), Path("there"))
+    assert table.kept == "nothing is done yet"
     table(Conducted())
-    assert table.kept(Path("there")).startswith("30 of 100 runs done, 2 failed; they are kept in ")
+    assert table.kept.startswith("30 of 100 runs done, 2 failed; they are kept in ")
 
 
 @pytest.mark.parametrize(("left", "words"), [

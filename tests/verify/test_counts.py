@@ -9,10 +9,9 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.network import networks
-from innervate.running.exploring import USUAL
 from innervate.topology.free import free_graph
 from innervate.verify import cases
-from innervate.verify.cases import Story, extent, lines_of
+from innervate.verify.cases import USUAL, Story, extent, lines_of
 from innervate.verify.declared import Net, explore
 from innervate.verify.states import Budget
 from innervate.verify.tally import Tally

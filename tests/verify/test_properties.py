@@ -12,7 +12,6 @@ from innervate.dialect.outbox import deliver, report, send
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import node as mesh_node
 from innervate.networks.mesh.protocol.frames import copy_frame
-from innervate.networks.mesh.verify import cases as mesh_cases
 from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import first, local, net
 from innervate.networks.mesh.verify import model as mesh_model
@@ -250,7 +249,7 @@ CALM = mesh_model.MeshBudget(0, 0, 0, 0)
 
 def explored(entry):
     line = mesh_model.parse("line")
-    made = mesh_model.MeshModel(line, settings=mesh_cases.SHORT, offers=((2, 0),), budget=CALM)
+    made = mesh_model.MeshModel(line, settings=mesh_model.SHORT, offers=((2, 0),), budget=CALM)
     nets = net.Nets(made, local.Locals(made, entry))
     begun = first.begin(nets)  # the first round is over, and was in order
     nets.locals.memo.clear()
@@ -293,7 +292,7 @@ def test_nodes_that_follow_two_gateways_are_told():
         node.gateway = node.number
 
     made = mesh_model.MeshModel(
-        mesh_model.parse("line"), standby=(2,), beats=4, budget=CALM, settings=mesh_cases.QUICK
+        mesh_model.parse("line"), standby=(2,), beats=4, budget=CALM, settings=mesh_model.QUICK
     )
     for do, code in ((lambda *_: True, 0), (leads, local.BROKEN_GATEWAYS)):
         entry = wrong("on_timer", do)

@@ -12,11 +12,12 @@ from typing import Annotated, Any, BinaryIO
 from cyclopts import Parameter
 
 import innervate
+from innervate.cli import live_status
 from innervate.cli.errors import UserError, check_seconds, say
 from innervate.export import links, pcapng
 from innervate.export.errors import ExportError
 from innervate.kernel.words import number_of
-from innervate.live import private, status
+from innervate.live import private
 from innervate.live.machine import ANSWER_S
 from innervate.network import known
 
@@ -40,10 +41,7 @@ def capture(
         for_: End after so many seconds; 0 = never.
     """
     check_seconds("--for", for_)
-    sockets = [status.find(name) for name in nodes] if nodes else status.sockets()
-    if not sockets:
-        where = f"no node runs here (folder {status.where()})"
-        raise UserError(f"{where}; start one with: innervate live node FILE")
+    sockets = live_status.sockets(nodes)
     if out is None:
         if sys.stdout.isatty():
             raise UserError("a capture is no text; name a file with --out, or pipe it to: "

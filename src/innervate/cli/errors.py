@@ -59,7 +59,7 @@ def conclude(error: BaseException) -> int:
 
         traceback.print_exception(error)
     if isinstance(error, KeyboardInterrupt):
-        say("interrupted")
+        say(str(error) or "interrupted")
         return INTERRUPTED
     text, code = explain(error)
     say(text)

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 
 from innervate.cli import errors, live_status
 from innervate.cli.options import Engine, Flag, Json, SendOptions, UpOptions, Whole
+from innervate.kernel.words import number_of
 from innervate.live import status
 from innervate.live.errors import LiveError
 from innervate.live.receipts import ALL, FINAL
@@ -81,12 +82,9 @@ def show(*nodes: str, as_json: Json = False) -> int:
         nodes: Names or sockets; all nodes of this user if left out.
         as_json: Print JSON.
     """
-    sockets = [status.find(name) for name in nodes] if nodes else status.sockets()
-    if not sockets:
-        where = f"no node runs here (folder {status.where()})"
-        raise errors.UserError(f"{where}; start one with: innervate live node FILE")
     told, silent = [], []
-    for path, answer in zip(sockets, status.ask_all(sockets, {"do": "status"}), strict=True):
+    paths = live_status.sockets(nodes)
+    for path, answer in zip(paths, status.ask_all(paths, {"do": "status"}), strict=True):
         if not isinstance(answer, LiveError):
             told.append(answer)
         elif nodes:
@@ -208,7 +206,7 @@ def command(
         print(json.dumps(sent))
     elif sent["ports"]:
         whom = "all cells" if cell is None else f"cell {cell}"
-        ports = f"{sent['ports']} interface port{'s' if sent['ports'] > 1 else ''}"
+        ports = number_of(sent["ports"], "interface port")
         print(f"command {sent['number']} to {whom}, by {ports}")
     else:
         print("nobody is there to hand it down: no cell has the PC as its parent", file=sys.stderr)

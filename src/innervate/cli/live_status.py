@@ -1,12 +1,29 @@
 """What running nodes say of themselves, as `innervate live status` prints it."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from innervate.cli.errors import UserError
+from innervate.live import status
 from innervate.live.addresses import without_interface
 from innervate.network import known
 
 LOSSES = ("unsent", "dropped", "unplugged")  # a path's counters that somebody should see
+
+
+def sockets(nodes: Sequence[str]) -> list[Path]:
+    """The sockets of nodes by their names, or of all nodes of this user if none is named.
+
+    Raises:
+        UserError: no node runs here.
+        LiveError: none of this name.
+    """
+    found = [status.find(name) for name in nodes] if nodes else status.sockets()
+    if not found:
+        where = f"no node runs here (folder {status.where()})"
+        raise UserError(f"{where}; start one with: innervate live node FILE")
+    return found
 
 
 def headline(told: list[dict[str, Any]], silent: list[Path]) -> str:

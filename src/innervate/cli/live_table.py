@@ -22,24 +22,29 @@ MEASURES_MAX = 2
 class LiveTable:
     """Shows how far a sweep is; a context manager, called with the Scheduler; on stderr.
 
-    Of `measures` the means are shown, as many as there is room for. `quiet`, for --json: on a
-    terminal alone.
+    Of `measures` the means are shown, as many as there is room for. Whoever interrupts it is told
+    what is kept in `folder`. `quiet`, for --json: on a terminal alone.
     """
 
-    def __init__(self, name: str, measures: tuple[str, ...], quiet: bool = False) -> None:
+    def __init__(
+        self, name: str, measures: tuple[str, ...], folder: Path, quiet: bool = False
+    ) -> None:
         self.words = ""
         self._name = name
+        self._folder = folder
         self._measures = measures
         self._terminal = sys.stderr.isatty()
         self._silent = quiet and not self._terminal
         self._live: Any = None
         self._last = time.monotonic()
 
-    def kept(self, folder: Path) -> str:
+    @property
+    def kept(self) -> str:
         """What is done when it is stopped, and where that is."""
         if not self.words:
             return "nothing is done yet"
-        return f"{self.words}; they are kept in {folder}, and the same command goes on from there"
+        kept = f"they are kept in {self._folder}, and the same command goes on from there"
+        return f"{self.words}; {kept}"
 
     def __enter__(self) -> Self:
         if self._terminal:
@@ -50,14 +55,12 @@ class LiveTable:
             self._live.start()
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Take the table away again."""
+    def __exit__(self, kind: object, *_: object) -> None:
         if self._live is not None:
             self._live.stop()
             self._live = None
+        if kind is KeyboardInterrupt:
+            raise KeyboardInterrupt(f"interrupted; {self.kept}") from None
 
     def __call__(self, conductor: Scheduler) -> None:
         """The sweep has come so far."""

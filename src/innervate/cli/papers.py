@@ -5,7 +5,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from innervate.cli import errors
 from innervate.cli.options import Flag, Texts
 from innervate.cli.progress import Display
 from innervate.network import first
@@ -47,10 +46,8 @@ def papers(
         try:
             made = room.main(system, out, quick=quick, only=only, progress=tell, redraw=redraw)
         except KeyboardInterrupt:
-            errors.say(
-                "interrupted; what was done is kept, and the same command goes on from there"
-            )
-            return errors.INTERRUPTED
+            what = "what was done is kept, and the same command goes on from there"
+            raise KeyboardInterrupt(f"interrupted; {what}") from None
     if page is not None:
         into_page(page, system, out, only)
     for line in verdict_lines(made.with_suffix(".csv")):

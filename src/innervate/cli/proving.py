@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from innervate.cli import errors
 from innervate.cli.options import Flag, Json
 from innervate.cli.progress import Display
-from innervate.cli.verifying import named
+from innervate.cli.verifying import hunted, named
+from innervate.kernel.stop import Stop
 from innervate.kernel.words import number_of
 from innervate.network import Network, first
 
 if TYPE_CHECKING:
+    from innervate.prove.mutants import Mutant
     from innervate.prove.theory import Outcome
 
 
@@ -31,7 +33,6 @@ def prove(system: str | None = None, /, *, faults: Flag = False, as_json: Json =
 
 
 def _theories(network: Network, as_json: bool) -> int:
-    from innervate.kernel.stop import Stop
     from innervate.prove.theory import prove as attempt
 
     done: list[Outcome] = []
@@ -111,22 +112,11 @@ def _verdict(done: list[Outcome], asked: int) -> str:
 
 def _faults(network: Network, as_json: bool) -> int:
     """Plant every mistake; 1 if one is not refuted."""
-    from innervate.kernel.stop import Stop
     from innervate.prove.faults import faults_of, hunt
 
-    rows: list[dict[str, Any]] = []
-    planted = faults_of(network)
-    with Display(as_json) as display, Stop() as stop:
-        for number, fault in enumerate(planted):
-            display.show(fault.name, number, len(planted), None)
-            step, goal = hunt(network, fault)
-            rows.append({"fault": fault.name, "step": step, "refuted": goal})
-            if not as_json:
-                print(f"{fault.name}: {f'{goal} ({step})' if goal else 'NOT REFUTED'}", flush=True)
-            if stop.asked:
-                return errors.INTERRUPTED
-    if as_json:
-        print(json.dumps(rows, indent=2))
-    elif not rows:
-        print(f"No mistakes are listed for {network.name}.")
-    return 0 if all(row["refuted"] for row in rows) else 1
+    def refuted(fault: Mutant) -> tuple[dict[str, str], str]:
+        step, goal = hunt(network, fault)
+        return {"fault": fault.name, "step": step, "refuted": goal}, goal and f"{goal} ({step})"
+
+    planted = [(fault, refuted) for fault in faults_of(network)]
+    return hunted(network.name, planted, as_json, "NOT REFUTED")

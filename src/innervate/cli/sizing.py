@@ -32,16 +32,12 @@ def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")])
     asked = sizing.Question(ports=sizing.parse_ports(options.ports), **question)
     folder = options.out or Path("sweeps") / f"size-{Path(asked.urdf).stem}"
     seed = 1 if options.seed is None else options.seed
-    with LiveTable(folder.name, (sizing.RECOVERY, "data.loss_ratio"), options.json) as table:
-        try:
-            answer = sizing.size(
-                asked, out=folder, workers=options.workers, dask=options.dask, progress=table,
-                repeat=options.repeat, seed=seed,
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            table.close()
-            errors.say(f"interrupted; {table.kept(folder)}")
-            return errors.INTERRUPTED
+    shown = (sizing.RECOVERY, "data.loss_ratio")
+    with LiveTable(folder.name, shown, folder, options.json) as table:
+        answer = sizing.size(
+            asked, out=folder, workers=options.workers, dask=options.dask, progress=table,
+            repeat=options.repeat, seed=seed,
+        )  # fmt: skip
     picture = answer.draw(folder)
     if options.json:
         told = answer.record() | {"picture": str(picture)}

@@ -12,6 +12,7 @@ from innervate.analysis.headline import LEVELS
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.cli.options import SweepOptions
+from innervate.kernel.words import number_of
 
 if TYPE_CHECKING:
     from innervate.sweeping import Sweep, SweepPlan
@@ -39,16 +40,10 @@ def sweep(
     plan: SweepPlan = room.make_plan(file, **options.planned)
     folder = options.out or Path("sweeps") / (plain_name(plan.name) or "sweep")
     wanted = tuple(dict.fromkeys([*options.shown, *(rule.measure for rule in plan.until)]))
-    with LiveTable(plan.name, wanted or SHOWN, options.json) as table:
-        try:
-            done = room.sweep(
-                plan, out=folder, **options.how, show=options.shown,
-                follow=wanted or SHOWN, progress=table,
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            table.close()
-            errors.say(f"interrupted; {table.kept(folder)}")
-            return errors.INTERRUPTED
+    follow = wanted or SHOWN
+    with LiveTable(plan.name, follow, folder, options.json) as table:
+        done = room.sweep(plan, out=folder, **options.how, show=options.shown, follow=follow,
+                          progress=table)  # fmt: skip
     if done.torn:
         more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
         errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
@@ -65,7 +60,7 @@ def sweep(
             print(f"Drawn: {path}")
         print(f"Written: {folder / 'results.parquet'}")
     if done.others:
-        kept = f"{done.others:,} other run{'s' if done.others > 1 else ''}"
+        kept = number_of(done.others, "other run")
         errors.say(f"{folder} keeps {kept}, too, which these tables do not show; whoever asks for "
                    "them again has them at once (--out: another folder)")  # fmt: skip
     undrawn = len(drawn) < len(done.plan.plots)

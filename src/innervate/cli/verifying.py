@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import count as numbers
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,11 +15,16 @@ from innervate.cli import errors
 from innervate.cli.options import Json, VerifyOptions
 from innervate.cli.progress import Display
 from innervate.export import files
+from innervate.kernel.stop import Stop
 from innervate.kernel.words import number_of
 from innervate.network import Network, find, first, networks, use
 
 if TYPE_CHECKING:
+    from innervate.prove.mutants import Mutant
     from innervate.verify.cases import Case
+
+    # Hunts a mistake: what --json says of that, and what finds it; "" nothing.
+    Hunt = Callable[[Mutant], tuple[dict[str, str], str]]
 
 
 def verify(
@@ -68,13 +75,12 @@ def named(system: str, knows: str = "verify explores") -> Network:
 
 
 def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path | None) -> int:
-    from innervate.kernel.stop import Stop
-    from innervate.verify.cases import verdict
+    from innervate.verify.cases import notice_of, verdict
 
     done: list[Case] = []
     wanted = iter(network.verify.explorations(network, options))
     with Display(as_json) as display, Stop() as stop:
-        if notice := network.verify.notice(options):
+        if notice := notice_of(network, options):
             display.begin(notice, line=True)
 
         def tell(what: str, part: int, of: int) -> bool:
@@ -123,34 +129,48 @@ def _hunts(system: str) -> list[tuple[Any, Any]]:
     known = networks()
     wanted = known if system == next(iter(known)) else [system]
     rooms = [known[name].verify for name in wanted]
-    return [(mutant, room.hunt) for room in rooms for mutant in room.MUTANTS]
+    return [(mutant, room.hunt) for room in rooms for mutant in getattr(room, "MUTANTS", ())]
 
 
 def _mutants(system: str, as_json: bool, count: int = 0) -> int:
     """Try the explorer on copies of the protocol with a mistake in each; 1 if one is missed."""
-    from innervate.kernel.stop import Stop
+    hunts = [(mutant, partial(_caught, hunt)) for mutant, hunt in _hunts(system)[: count or None]]
+    return hunted(system, hunts, as_json, "NOT CAUGHT")
 
-    caught, hunts = [], _hunts(system)[: count or None]
+
+def _caught(hunt: Any, mutant: Mutant) -> tuple[dict[str, str], str]:
+    catch = hunt(mutant)
+    row = {"mutant": mutant.name, "by": catch.by, "where": catch.where}
+    return row, catch.by and f"{catch.by} ({catch.where})"
+
+
+def hunted(system: str, hunts: Sequence[tuple[Mutant, Hunt]], as_json: bool, missed: str) -> int:
+    """Hunt mistakes that are planted in a protocol, and say what finds each; 1 if one is missed.
+
+    Args:
+        system: its name.
+        hunts: each mistake, and what hunts it.
+        as_json: print what was found as JSON and nothing else.
+        missed: what is said of one that nothing finds.
+    """
+    found = []
     with Stop() as stop, Display(as_json) as display:
         for number, (mutant, hunt) in enumerate(hunts):
             display.show(mutant.name, number, len(hunts), None)
-            caught.append(hunt(mutant))
+            found.append(hunt(mutant))
             if not as_json:
-                by = f"{caught[-1].by} ({caught[-1].where})" if caught[-1].by else "NOT CAUGHT"
-                print(f"{mutant.name}: {by}", flush=True)
+                print(f"{mutant.name}: {found[-1][1] or missed}", flush=True)
             if stop.asked:
                 return errors.INTERRUPTED
     if as_json:
-        rows = [{"mutant": c.mutant.name, "by": c.by, "where": c.where} for c in caught]
-        print(json.dumps(rows, indent=2))
-    elif not caught:
+        print(json.dumps([row for row, _ in found], indent=2))
+    elif not found:
         print(f"No mistakes are listed for {system}.")
-    return 0 if all(catch.by for catch in caught) else 1
+    return 0 if all(by for _, by in found) else 1
 
 
 def search(seed: int | None, count: int, as_json: bool, out: Path | None) -> int:
     """Run whole networks `seed`, `seed` + 1, ...; 1 with the first that breaks something."""
-    from innervate.kernel.stop import Stop
     from innervate.running import fuzz
 
     first, done, broken = 1 if seed is None else seed, 0, None

@@ -15,14 +15,12 @@ from innervate.network import Network, kinds_of
 from innervate.prove.errors import ProveError
 from innervate.prove.laid import beside_ranges
 from innervate.prove.steps import Stage, Step, own_goals
-from innervate.prove.theory import Fault, Theory, source
+from innervate.prove.theory import Theory, source
 
 OUTBOX = 16
 PORTS = 4
 KIND_MAX = 1 << 20  # of what a scenario hands to nodes
 RECORDS = ("state", "params", "frame")
-MUTANTS: tuple[Fault, ...] = ()
-EXPLORERS = False
 
 
 def theories(network: Network, change: Change | None = None) -> list[Theory]:

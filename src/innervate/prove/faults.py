@@ -1,17 +1,18 @@
 """A proof can fail: mistakes are planted in the protocol, and each has to be refuted."""
 
 from innervate.network import Network
-from innervate.prove.theory import Fault, prove
+from innervate.prove.mutants import Mutant
+from innervate.prove.theory import prove
 
 
-def faults_of(network: Network) -> list[Fault]:
-    """A network's own mistakes, and the explorer's that an invariant is about."""
+def faults_of(network: Network) -> list[Mutant]:
+    """A network's own mistakes, and the explorer's where its proofs are about these, too."""
     part = network.prove
-    others = network.verify.MUTANTS if part.EXPLORERS else ()
-    return [*part.MUTANTS, *(Fault(one.name, one.old, one.new) for one in others)]
+    others = network.verify.MUTANTS if getattr(part, "EXPLORERS", False) else ()
+    return [*getattr(part, "MUTANTS", ()), *others]
 
 
-def hunt(network: Network, fault: Fault) -> tuple[str, str]:
+def hunt(network: Network, fault: Mutant) -> tuple[str, str]:
     """(step, lemma) that a mistake breaks first; "" if none.
 
     Raises:

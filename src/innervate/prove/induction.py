@@ -7,7 +7,7 @@ from typing import Any
 
 from innervate.prove.errors import ProveError
 from innervate.prove.execute import Machine
-from innervate.prove.records import Call, State
+from innervate.prove.records import State
 from innervate.prove.terms import Term, Terms
 
 
@@ -58,25 +58,26 @@ class Induction(Machine):
     vary: Callable[[State], None]  # gives whatever passes change any value
     passes: Passes  # of the loop, once it was run
 
-    def loop(self, node: ast.For, state: State, call: Call) -> State | None:
+    def loop(self, node: ast.For, state: State) -> State | None:
         """Any pass, from the head on; it goes on with what follows the last."""
+        call = state.call
         if call.function.name != self.looped:
-            return super().loop(node, state, call)
+            return super().loop(node, state)
         t, whole, actions = self.terms, state.path, len(self.out.actions)
         assert isinstance(node.iter, ast.Call)
-        count = t.as_number(self.value(node.iter.args[-1], state, call))
+        count = t.as_number(self.value(node.iter.args[-1], state))
         if len(node.iter.args) != 1 or count.value is None:
-            raise ProveError(f"{self.place(node, call)}: how many passes there are is not known")
+            raise ProveError(f"{self.place(node, state)}: how many passes there are is not known")
         at = t.unknown("passes done", 0, count.value)
         is_pass, entered = t.less(at, count), state.fork(whole)
         self.vary(state)
         head, outer = state.fork(whole), self.enter(call)
-        passed = self.one_pass(node, t.true, at, state.fork(t.all(whole, is_pass)), call)
+        passed = self.one_pass(node, t.true, at, state.fork(t.all(whole, is_pass)))
         if passed is None or call.broken or len(self.out.actions) > actions:
-            raise ProveError(f"{self.place(node, call)}: a pass acts, or ends the loop")
+            raise ProveError(f"{self.place(node, state)}: a pass acts, or ends the loop")
         call.broken, call.continued = outer
         self.passes = Passes(at, is_pass, entered, head, passed)
         if missing := self.passes.missing():
-            raise ProveError(f"{self.place(node, call)}: a pass changes {missing[0]}, too")
+            raise ProveError(f"{self.place(node, state)}: a pass changes {missing[0]}, too")
         state.path = t.all(whole, t.negated(is_pass))
         return state

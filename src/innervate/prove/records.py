@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -111,10 +111,11 @@ class State:
     names: dict[str, Any]  # its local names
     store: Store  # values of all records
     path: Term  # which of the function's paths
+    call: Call  # of the function
 
     def fork(self, path: Term) -> State:
         """The same, to go on with by itself."""
-        return State(dict(self.names), dict(self.store), path)
+        return State(dict(self.names), dict(self.store), path, self.call)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +155,7 @@ def merged(terms: Terms, if_: Term, a: State, b: State, path: Term) -> State:
         one, its = names.get(name), others.get(name)
         if one is not its:
             names[name] = either(terms, if_, one, its)
-    return State(names, store, path)
+    return State(names, store, path, a.call)
 
 
 def either(terms: Terms, if_: Term, a: Any, b: Any) -> Any:
@@ -176,6 +177,15 @@ def _partly(terms: Terms, if_: Term, a: Any, b: Any) -> Any:
     values = [x.value for x in (one, other) if x.value is not None]
     value = either(terms, if_, *values) if len(values) == 2 else values[0]
     return value if where is terms.true else Partly(where, value)
+
+
+def of_each(terms: Terms, ref: Any, read: Callable[[Any], Any]) -> Any:
+    """What is read of all that a reference may stand for, each where it does."""
+    found: Any = None
+    for where, one in each_of(terms, ref, terms.true):
+        value = read(one)
+        found = value if found is None else either(terms, where, value, found)
+    return found
 
 
 def each_of(terms: Terms, ref: Any, under: Term) -> Iterator[tuple[Term, Any]]:

@@ -99,11 +99,14 @@ class Stage:
 
     def play(self, name: str, handler: str, args: list[Any], facts: list[Term]) -> Step:
         """Run a handler; numbers among its arguments are known ones."""
-        given = [self.number(arg) if isinstance(arg, int) else arg for arg in args]
         before = dict(self.store)
-        after, result = self.machine.run(handler, given, before, self.terms.true)
+        after, result = self.machine.run(handler, args, before)
         known = [*facts, *self.machine.facts]
         return Step(name, self.machine, self.records, before, after, known, result=result)
+
+    def step(self, name: str, after: Store, facts: list[Term], goals: list[Goal]) -> Step:
+        """What led from the values on the stage to others, as a step with goals."""
+        return Step(name, self.machine, self.records, self.store, after, facts, goals)
 
 
 def own_goals(step: Step, changed: tuple[str, ...], timers: int, ports: int) -> list[Goal]:

@@ -14,15 +14,6 @@ from innervate.prove.tell import changes
 from innervate.prove.terms import Term
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """A mistake that proofs must refute: `old` stands once in the sources and becomes `new`."""
-
-    name: str
-    old: str
-    new: str
-
-
 class Source(dict[str, Function]):
     """The functions of a protocol, which know who was asked for them."""
 

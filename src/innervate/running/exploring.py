@@ -7,7 +7,7 @@ from typing import TypedDict, Unpack
 
 from innervate.network import Network, NetworkError, networks, use
 from innervate.running.showing import Bar
-from innervate.verify.cases import Case
+from innervate.verify.cases import USUAL, Case, notice_of
 
 
 class Wanted(TypedDict, total=False):
@@ -46,12 +46,6 @@ class Wanted(TypedDict, total=False):
     plain: bool
 
 
-USUAL = Wanted(
-    rule="", updates="all", graph="all", cells=0, budget="", prompt=False, liveness=True, starts=0,
-    states=0, walks=0, seed=None, memory="2G", reduce=True, plain=False,
-)  # fmt: skip
-
-
 def explore(network: str | os.PathLike[str] | Network, **wanted: Unpack[Wanted]) -> list[Case]:
     """Explore every order of events of a protocol on small graphs, as `innervate verify` does.
 
@@ -68,14 +62,14 @@ def explore(network: str | os.PathLike[str] | Network, **wanted: Unpack[Wanted])
         VerifyError: no such graph, rule or budget.
         TypeError: no option of that name.
     """
-    unknown = wanted.keys() - USUAL.keys()
+    unknown = wanted.keys() - Wanted.__annotations__
     if unknown:
         raise TypeError(f"explore takes no {', '.join(sorted(unknown))}; it takes "
-                        f"{', '.join(USUAL)}")  # fmt: skip
+                        f"{', '.join(Wanted.__annotations__)}")  # fmt: skip
     if not isinstance(network, Network):
         network = named(network)
     options = SimpleNamespace(**(USUAL | wanted))
-    with Bar(network.verify.notice(options) or "exploring") as bar:
+    with Bar(notice_of(network, options) or "exploring") as bar:
         return [one(bar.explored) for one in network.verify.explorations(network, options)]
 
 

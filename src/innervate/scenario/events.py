@@ -58,6 +58,29 @@ def own_keys(index: int, event: Any, table: Sequence[Action]) -> Iterator[Findin
             yield ("event", index, name), message
 
 
+class Harmed:
+    """Who is dead and what is cut as events go by, so that random ones hit what is whole.
+
+    Attributes:
+        actions: those of a table, by their words.
+        by: what an action has done harm to that nobody has mended, by the action's word.
+    """
+
+    def __init__(self, table: Sequence[Action]) -> None:
+        self.actions = {action.word: action for action in table}
+        self.by: dict[str, set[Any]] = {action.word: set() for action in table if action.harms}
+
+    def note(self, word: str, hit: Any) -> None:
+        """Remember what an event did."""
+        action = self.actions[word]
+        if action.harms:
+            self.by[word].add(hit)
+        if action.mends:
+            self.by[action.mends].discard(hit)
+        if action.revives:  # off and on: whoever was dead is there again
+            self.by["kill"].discard(hit)
+
+
 def exact(value: float) -> Fraction:
     """The decimal number the user wrote, free of binary rounding."""
     return Fraction(repr(float(value)))

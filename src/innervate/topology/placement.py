@@ -11,6 +11,8 @@ from typing import Protocol
 
 UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
 UNREACHABLE = -1  # in `distances`: there is no way
+STEP_CDB = 10  # reception is tabulated in steps of 0.1 dB
+ONE_Q15 = 32_768  # a chance of 1
 NEAREST_CM = 100  # closer than 1 m the path loss is that of 1 m
 _NORMAL = NormalDist()
 _STEPS = 1 << 53
@@ -48,6 +50,18 @@ def normal_cdb(draw: Draw, sigma_cdb: int) -> int:
 def path_loss_cdb(distance_cm: int, exponent_c: int) -> int:
     """What a signal loses between 1 m and a distance, 0.01 dB; `exponent_c` is x 100."""
     return round(10 * exponent_c * math.log10(max(distance_cm, NEAREST_CM) / 100))
+
+
+def reception_q15(over_cdb: int) -> int:
+    """Chance of reception in 1/32768 at so much above the 50 % point (0.01 dB) [mesh 6]."""
+    steps = (over_cdb + STEP_CDB // 2) // STEP_CDB
+    return round(ONE_Q15 / (1 + math.exp(-min(max(steps, -300), 300) / 10)))
+
+
+def quality_cdb(quality: float) -> int:
+    """How far above the 50 % point a link of this quality is, 0.01 dB, within +-9.21 dB."""
+    share = min(max(quality, 1e-4), 1 - 1e-4)
+    return round(100 * math.log(share / (1 - share)))
 
 
 def distance_cm(a: Point, b: Point) -> int:

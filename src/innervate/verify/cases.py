@@ -11,13 +11,16 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from innervate.kernel.words import number_of
+from innervate.prove.mutants import Mutant
 from innervate.verify.errors import VerifyError
 from innervate.verify.tally import Tally
 
 BUDGET_MAX = 20
-# What options say of that which is explored, if they are left out.
+# What options say if they are left out: of that which is explored, and how much and how it is.
 UNSAID = {"rule": "", "updates": "all", "graph": "all", "cells": 0, "budget": "", "prompt": False,
           "starts": 0, "walks": 0}  # fmt: skip
+USUAL = UNSAID | {"liveness": True, "states": 0, "seed": None, "memory": "2G", "reduce": True,
+                  "plain": False}  # fmt: skip
 
 # Is told what is being done, how much of it is, and of how much (0 = unknown); true = stop.
 Tell = Callable[[str, int, int], bool]
@@ -79,6 +82,28 @@ class Case:
 
 
 Explore = Callable[[Tell], Case]
+
+
+def notice_of(network: Any, options: Any) -> str:
+    """What to say before the first exploration of a network; "" = nothing takes long."""
+    return str(network.verify.notice(options)) if hasattr(network.verify, "notice") else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Catch:
+    """What an explorer found of a mutant, which it runs uncompiled on copies of the protocol.
+
+    Attributes:
+        mutant: that was hunted.
+        by: what it breaks; "" = nothing was found.
+        where: it was found.
+        states: how many were looked at, or runs.
+    """
+
+    mutant: Mutant
+    by: str
+    where: str
+    states: int
 
 
 def verdict(done: list[Case], is_cut: bool = False) -> str:

@@ -74,19 +74,6 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
     return replace(tally, ended="complete"), Story("")
 
 
-MUTANTS: tuple[Any, ...] = ()
-
-
-def hunt(mutant: Any) -> Any:
-    """There are no mutants of a network that only declares its protocol."""
-    raise LookupError(mutant)
-
-
-def notice(options: Any) -> str:
-    """What to say before the first: nothing is compiled."""
-    return ""
-
-
 def explorations(network: Network, options: Any) -> Iterator[Explore]:
     """All that the options of the command line ask for."""
     only(network.name, options, "graph", "budget")

@@ -19,6 +19,11 @@ def words(table: tuple[Action, ...]) -> tuple[str, ...]:
     return tuple(action.word for action in table)
 
 
+def targets(table: tuple[Action, ...]) -> dict[str, str]:
+    """What each happens to, by its word."""
+    return {action.word: action.target for action in table}
+
+
 def harmful(table: tuple[Action, ...]) -> tuple[str, ...]:
     """Those that make it worse."""
     return tuple(action.word for action in table if action.harms)

@@ -1,6 +1,6 @@
 """What can be done to a network of cables while it runs."""
 
-from innervate.scenario.actions.action import Action, harmful, words
+from innervate.scenario.actions.action import Action, harmful, targets, words
 
 TABLE = (
     Action("cut", "cable", harms=True),
@@ -11,6 +11,6 @@ TABLE = (
     Action("restart", "node"),
     Action("lose", "cable", "frames", harms=True),
 )
-ACTIONS, HARM = words(TABLE), harmful(TABLE)
+ACTIONS, HARM, TARGETS = words(TABLE), harmful(TABLE), targets(TABLE)
 CUT, RESTORE, KILL, REVIVE, LOOSE, RESTART, LOSE = range(7)
 GIVE = 7  # no fault: the sink is given a command for nodes

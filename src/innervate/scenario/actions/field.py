@@ -1,6 +1,6 @@
 """What can be done to the nodes of a field while it runs."""
 
-from innervate.scenario.actions.action import Action, harmful, words
+from innervate.scenario.actions.action import Action, harmful, targets, words
 
 TABLE = (
     Action("kill", "node", harms=True),
@@ -11,5 +11,5 @@ TABLE = (
     Action("quiet", "node", mends="jam"),
     Action("restart", "node", revives=True),
 )
-ACTIONS, HARM = words(TABLE), harmful(TABLE)
+ACTIONS, HARM, TARGETS = words(TABLE), harmful(TABLE), targets(TABLE)
 KILL, REVIVE, CUT, RESTORE, JAM, QUIET, RESTART = range(7)

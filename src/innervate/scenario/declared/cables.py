@@ -5,17 +5,18 @@ Built in code they are the same: `CablesScenario(kind="ring", nodes=5)`.
 
 import math
 from array import array
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
 from innervate.network import networks
 from innervate.scenario import cables
-from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TABLE
+from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TARGETS
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
-from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.keys import Micros, Table, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown
 from innervate.topology import PORT_NAMES, PORTS, TopologyError, free_graph
@@ -75,7 +76,7 @@ class EventTable(Table, frozen=True, kw_only=True):
     value: int = 0
 
 
-class CablesScenario(Table, frozen=True, kw_only=True):
+class CablesScenario(shared.Declared, frozen=True, kw_only=True):
     """A network over cables.
 
     Attributes:
@@ -93,11 +94,6 @@ class CablesScenario(Table, frozen=True, kw_only=True):
         script: an order of events in place of the clock.
     """
 
-    kind: str
-    schema: Schema = 1
-    name: Name = "network"
-    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
-    seed: Seed = 1
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 4
     shape: Literal["line", "ring", "grid", "tree"] = "ring"
     cables: list[str] = []  # noqa: RUF012
@@ -116,21 +112,16 @@ def check(source: Source, model: CablesScenario) -> None:
     Raises:
         ScenarioError: the first thing that cannot be.
     """
-    network = networks()[model.kind]
     low, high = model.links.latency_us
     if low > high:
         raise source.error(("links", "latency_us"), "links.latency_us must be [least, greatest]")
-    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     graph = _graph(source, model)
-    shared.check_script(source, model, graph)
-    shared.check_inputs(source, model, network, graph.cells)
-    for place, event in enumerate(model.event):
-        shared.check_happening(source, model, place, network, ACTIONS)
-        _check_target(source, ("event", place), event, graph)
+    target = partial(_check_target, source, graph)
+    shared.check(source, model, graph.cells, ACTIONS, target, graph)
 
 
-def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> None:
-    on_cable = event.action in ACTIONS and TABLE[ACTIONS.index(event.action)].target == "cable"
+def _check_target(source: Source, graph: Graph, key: Key, event: EventTable) -> None:
+    on_cable = TARGETS.get(event.action) == "cable"
     wanted, other = ("link", "node") if on_cable else ("node", "link")
     if getattr(event, wanted) is None:
         example = '"n0-n1"' if on_cable else "0"
@@ -139,7 +130,6 @@ def _check_target(source: Source, key: Key, event: EventTable, graph: Graph) -> 
         raise source.error((*key, other), f"{event.action} has no {other}; leave it out")
     if on_cable:
         _end_of(source, (*key, "link"), graph, str(event.link))
-    shared.check_node(source, (*key, "node"), event.node, graph.cells)
 
 
 def _end_of(source: Source, key: Key, graph: Graph, text: str) -> int:

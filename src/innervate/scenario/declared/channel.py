@@ -15,7 +15,7 @@ from innervate.scenario.cables import LOSS_ONE, Input
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.events import opening, told
-from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.keys import Micros, Table, number, whole
 from innervate.scenario.source import Source
 
 NODES_MAX = 1_000
@@ -54,7 +54,7 @@ class EventTable(Table, frozen=True, kw_only=True):
     value: int = 0
 
 
-class ChannelScenario(Table, frozen=True, kw_only=True):
+class ChannelScenario(shared.Declared, frozen=True, kw_only=True):
     """A network on a shared channel.
 
     Attributes:
@@ -70,11 +70,6 @@ class ChannelScenario(Table, frozen=True, kw_only=True):
         script: an order of events in place of the clock.
     """
 
-    kind: str
-    schema: Schema = 1
-    name: Name = "network"
-    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
-    seed: Seed = 1
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 4
     hidden: list[tuple[int, int]] = []  # noqa: RUF012
     absent: list[int] = []  # noqa: RUF012
@@ -129,18 +124,10 @@ def check(source: Source, model: ChannelScenario) -> None:
     Raises:
         ScenarioError: the first thing that cannot be.
     """
-    network = networks()[model.kind]
-    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     for place, one in enumerate(model.hidden):
         for node in one:
             shared.check_node(source, ("hidden", place), node, model.nodes)
-    for place, node in enumerate(model.absent):
-        shared.check_node(source, ("absent", place), node, model.nodes)
-    shared.check_script(source, model)
-    shared.check_inputs(source, model, network, model.nodes)
-    for place, event in enumerate(model.event):
-        shared.check_node(source, ("event", place, "node"), event.node, model.nodes)
-        shared.check_happening(source, model, place, network, DONE)
+    shared.check(source, model, model.nodes, DONE)
 
 
 def plan(scenario: Any) -> ChannelPlan:

@@ -5,6 +5,7 @@ Built in code they are the same: `FieldScenario(kind="flood", nodes=20)`.
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta
@@ -15,7 +16,7 @@ from innervate.scenario.cables import Input
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.events import opening, told
-from innervate.scenario.keys import Micros, Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.keys import Micros, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
 from innervate.topology import placement
@@ -23,7 +24,6 @@ from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
 
 NODES_MAX = 254
-ONE = 32_768
 RSSI50_CDB = -9_500  # half of the frames are received at -95 dBm
 GOOD_CDB = 300  # a good link is so much louder: 95 % are received
 LEAST = 0.01  # who receives less than that of a node's frames is out of its reach
@@ -93,7 +93,7 @@ class EventTable(Table, frozen=True, kw_only=True):
     value: int = 0
 
 
-class FieldScenario(Table, frozen=True, kw_only=True):
+class FieldScenario(shared.Declared, frozen=True, kw_only=True):
     """A network over a field: who is near enough hears.
 
     Attributes:
@@ -114,11 +114,6 @@ class FieldScenario(Table, frozen=True, kw_only=True):
         script: an order of events in place of the clock.
     """
 
-    kind: str
-    schema: Schema = 1
-    name: Name = "network"
-    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
-    seed: Seed = 1
     nodes: Annotated[int, whole("nodes", 2, NODES_MAX)] = 9
     layout: Literal["line", "grid", "random"] = "grid"
     spacing_m: Annotated[float, above_0("metres", 100_000)] = 20.0
@@ -180,8 +175,6 @@ def check(source: Source, model: FieldScenario) -> None:
     Raises:
         ScenarioError: the first thing that cannot be.
     """
-    network = networks()[model.kind]
-    shared.check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
     if model.positions_m and len(model.positions_m) != model.nodes:
         what = f"positions_m has {len(model.positions_m)} places for {model.nodes} nodes"
         raise source.error(("positions_m",), what)
@@ -189,17 +182,10 @@ def check(source: Source, model: FieldScenario) -> None:
         raise source.error(("air", "exponent_min"), "air.exponent_min is above exponent_max")
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
-    for place, node in enumerate(model.absent):
-        shared.check_node(source, ("absent", place), node, model.nodes)
-    shared.check_script(source, model)
-    shared.check_inputs(source, model, network, model.nodes)
-    for place, event in enumerate(model.event):
-        shared.check_node(source, ("event", place, "node"), event.node, model.nodes)
-        shared.check_happening(source, model, place, network, ACTIONS)
-        _check_other(source, ("event", place), event, model.nodes)
+    shared.check(source, model, model.nodes, ACTIONS, partial(_check_other, source, model.nodes))
 
 
-def _check_other(source: Source, key: Key, event: EventTable, nodes: int) -> None:
+def _check_other(source: Source, nodes: int, key: Key, event: EventTable) -> None:
     if event.action in PAIRS and event.other is None:
         raise source.error(key, f"{event.action} needs the other node; add other = 1")
     if event.action not in PAIRS and event.other is not None:
@@ -279,23 +265,17 @@ def _placed(model: FieldScenario, points: list[tuple[int, int]]) -> Heard:
     gains = placement.gains(points, faded, exponent_c)
     rssi = [placement.UNHEARD if i % (count + 1) == 0 else max(at_1m + one, placement.UNHEARD + 1)
             for i, one in enumerate(gains)]  # fmt: skip
-    return Heard(rssi, [_chance(one - RSSI50_CDB) for one in rssi])
-
-
-def _chance(over_cdb: int) -> int:
-    steps = min(max((over_cdb + 5) // 10, -120), 120)  # of 0.1 dB: the same on any machine
-    chance = 1 / (1 + math.exp(-steps / 10))
-    return round(ONE * chance) if chance >= LEAST else 0
+    chances = (placement.reception_q15(one - RSSI50_CDB) for one in rssi)
+    return Heard(rssi, [one if one >= LEAST * placement.ONE_Q15 else 0 for one in chances])
 
 
 def _linked(model: FieldScenario) -> Heard:
     count = model.nodes
     rssi, prob = [placement.UNHEARD] * (count * count), [0] * (count * count)
     for link in model.link:
-        share = min(max(link.quality, 1e-4), 1 - 1e-4)
         for a, b in (link.nodes, link.nodes[::-1]):
-            rssi[a * count + b] = RSSI50_CDB + round(100 * math.log(share / (1 - share)))
-            prob[a * count + b] = round(link.quality * ONE)
+            rssi[a * count + b] = RSSI50_CDB + placement.quality_cdb(link.quality)
+            prob[a * count + b] = round(link.quality * placement.ONE_Q15)
     return Heard(rssi, prob)
 
 

@@ -1,18 +1,18 @@
 """What scenarios of declared networks have in common, whatever medium their nodes are on."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from operator import itemgetter
 from typing import Annotated, Any
 
 from msgspec import Meta
 
-from innervate.network import Network
+from innervate.network import Network, networks
 from innervate.scenario.cables import Happening, Input
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.events import exact, in_time, refuse
 from innervate.scenario.explain import alternatives, nearest
-from innervate.scenario.keys import Table, number, whole
+from innervate.scenario.keys import Name, Schema, Seed, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown, with_article
 from innervate.topology import Graph, TopologyError, free_graph
@@ -49,6 +49,58 @@ class ScriptTable(Table, frozen=True, kw_only=True):
 
     steps: Annotated[list[str], Meta(max_length=100_000, description="a list of events")]
     graph: str = ""
+
+
+class Declared(Table, frozen=True, kw_only=True):
+    """The keys that scenarios of all media begin with."""
+
+    kind: str
+    schema: Schema = 1
+    name: Name = "network"
+    duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
+    seed: Seed = 1
+
+
+def check(
+    source: Source,
+    model: Any,
+    nodes: int,
+    actions: Iterable[str],
+    target: Callable[[Key, Any], None] | None = None,
+    graph: Graph | None = None,
+) -> None:
+    """What single keys do not show and all media have: parameters, inputs, a script, events.
+
+    Args:
+        source: for the errors.
+        model: the scenario.
+        nodes: how many there are.
+        actions: of the medium; an event's is one of them, or the network's own.
+        target: refuses what an event at a key cannot happen to; None = it is a node.
+        graph: over cables, of the nodes.
+
+    Raises:
+        ScenarioError: the first thing that cannot be.
+    """
+    network = networks()[model.kind]
+    check_values(source, ("protocol",), model.protocol, network.fields.PARAMS)
+    for place, node in enumerate(getattr(model, "absent", ())):
+        check_node(source, ("absent", place), node, nodes)
+    check_script(source, model, graph)
+    for place, given in enumerate(model.input):
+        refuse(source, in_time(place, given.at_s, model.duration_s, table="input"))
+        check_node(source, ("input", place, "node"), given.node, nodes)
+        check_values(source, ("input", place, "item"), given.item, network.fields.FRAME)
+    known = [*actions, *(network.happenings if network.has("happenings") else ())]
+    for place, event in enumerate(model.event):
+        key: Key = ("event", place)
+        check_node(source, (*key, "node"), event.node, nodes)
+        if event.action not in known:
+            what = f"action must be {alternatives(known)}, not {shown(event.action)}"
+            raise source.error((*key, "action"), what)
+        refuse(source, in_time(place, event.at_s, model.duration_s))
+        if target is not None:
+            target(key, event)
 
 
 def script_of(plan: Any) -> ScriptTable | None:
@@ -148,35 +200,6 @@ def check_node(source: Source, key: Key, node: int | None, nodes: int) -> None:
     """
     if node is not None and not 0 <= node < nodes:
         raise source.error(key, f"there is no node {node}; they are 0 to {nodes - 1}")
-
-
-def check_inputs(source: Source, model: Any, network: Network, nodes: int) -> None:
-    """That nodes can be given what the tables `input` say, and that it happens.
-
-    Raises:
-        ScenarioError: the first thing that cannot be.
-    """
-    for place, given in enumerate(model.input):
-        key: Key = ("input", place)
-        refuse(source, in_time(place, given.at_s, model.duration_s, table="input"))
-        check_node(source, (*key, "node"), given.node, nodes)
-        check_values(source, (*key, "item"), given.item, network.fields.FRAME)
-
-
-def check_happening(
-    source: Source, model: Any, place: int, network: Network, actions: Iterable[str]
-) -> None:
-    """That event `place` is one of the medium's `actions` or the network's own, and happens.
-
-    Raises:
-        ScenarioError: it is not, or does not.
-    """
-    action = model.event[place].action
-    known = [*actions, *(network.happenings if network.has("happenings") else ())]
-    if action not in known:
-        what = f"action must be {alternatives(known)}, not {shown(action)}"
-        raise source.error(("event", place, "action"), what)
-    refuse(source, in_time(place, model.event[place].at_s, model.duration_s))
 
 
 def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]) -> list[Input]:

@@ -8,13 +8,14 @@ for the ratio of capture, is 4e18: below 2^63.
 import math
 from functools import cache
 
+from innervate.topology.placement import reception_q15
+
 FLOOR_CDB = -15_000  # power 1
 CEILING_CDB = 0
 STEP_CDB = 10
 CAPTURE_ONE = 4096
 
 SPREAD_CDB = 1200  # beyond this, a frame is always or never received
-ONE_Q15 = 32_768
 
 MANTISSA_BITS = 8  # 0.026 dB at most with a path loss exponent of 6
 MANTISSA = 1 << MANTISSA_BITS
@@ -33,7 +34,7 @@ def strength_table() -> tuple[int, ...]:
 def chance_table() -> tuple[int, ...]:
     """Chance of reception in 1/32768, per 0.1 dB from -SPREAD_CDB to SPREAD_CDB about rssi50."""
     steps = range(-SPREAD_CDB, SPREAD_CDB + 1, STEP_CDB)
-    return tuple(round(ONE_Q15 / (1 + math.exp(-step / 100))) for step in steps)
+    return tuple(reception_q15(step) for step in steps)
 
 
 @cache

@@ -4,8 +4,8 @@ from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.networks.mesh.verify import cases, command, fuzz
-from innervate.networks.mesh.verify.cases import MeshWanted
+from innervate.networks.mesh.verify import command, fuzz
+from innervate.networks.mesh.verify.command import MeshWanted
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel, parse
 from tests.networks.draws import Draw
 
@@ -20,7 +20,7 @@ def budget(deaths=0, revivals=0, acks=0):
 
 
 def test_each_promise_is_explored_with_as_much_as_may_fail():
-    found = dict(cases.models(MeshWanted(("search",), LINE)))
+    found = dict(command.models(MeshWanted(("search",), LINE)))
     assert found == {
         "a message": MeshModel(LINE, "search", ((2, 0),), -1, (), budget(1, 0, 1), SHORT),
         "an alarm": MeshModel(LINE, "search", (), 2, (), budget(), SHORT),
@@ -29,7 +29,7 @@ def test_each_promise_is_explored_with_as_much_as_may_fail():
             LINE, "search", (), -1, (2,), budget(1), ASKED, beats=3
         ),
     }
-    (random,) = cases.models(MeshWanted(("random",)))
+    (random,) = command.models(MeshWanted(("random",)))
     assert random == ("two messages", MeshModel(
         parse("line"), "random", ((1, 0), (1, 0)), -1, (), budget(0, 0, 1), SHORT, reliable=False
     ))  # fmt: skip

@@ -73,7 +73,7 @@ def test_an_exploration_is_told_in_a_line_and_goes_on_record(ended, told, unit, 
         seen.append(progress(tally))
         return found
 
-    monkeypatch.setattr(command.cases, "run", run)
+    monkeypatch.setattr(command, "run", run)
     monkeypatch.setattr(command, "story_of", lambda one: told)
     monkeypatch.setattr(command, "_record", lambda *_: {"it": 1})
     said = []
@@ -108,7 +108,7 @@ def test_an_exploration_says_that_it_tried_one_value_of_wide_draws_if_there_were
     text = ",".join(f"{name}={count}" for name, count in budget.items())
     wanted = command.wanted_of(options(graph="0-1 1-2", budget=text, states=0 if not drawn else 500,
                                        rule="search", liveness=False))  # fmt: skip
-    model = dict(command.cases.models(wanted))[which]
+    model = dict(command.models(wanted))[which]
     case = command._explore(which, model, wanted, lambda *_: False)
     assert case.record["one_value"] == drawn
     assert re.search(f" s  {said}$", case.lines[0])

@@ -4,8 +4,8 @@ import pytest
 
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
-from innervate.networks.mesh.verify.cases import ASKED, DEATH_AND_ACK, QUICK, SHORT
-from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify.command import DEATH_AND_ACK
+from innervate.networks.mesh.verify.model import ASKED, QUICK, SHORT, MeshBudget, MeshModel
 
 TWICE = (("e2e_tries", 1), ("transmissions", 2))
 DEATH, CALM = MeshBudget(1, 0, 0, 0), MeshBudget(0, 0, 0, 0)

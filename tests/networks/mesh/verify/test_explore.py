@@ -9,7 +9,6 @@ from innervate import scenario
 from innervate.networks.mesh.plot import counterexample as mesh_counterexample
 from innervate.networks.mesh.protocol import constants as const
 from innervate.networks.mesh.sim.simulate import simulate
-from innervate.networks.mesh.verify import cases as mesh_cases
 from innervate.networks.mesh.verify import fair as mesh_fair
 from innervate.networks.mesh.verify import local as mesh_local
 from innervate.networks.mesh.verify import model as mesh_model
@@ -17,9 +16,9 @@ from innervate.networks.mesh.verify import net as mesh_net
 from innervate.networks.mesh.verify import replay as mesh_replay
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify import story as story
-from innervate.networks.mesh.verify.cases import SHORT
 from innervate.networks.mesh.verify.first import begin
-from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify.model import SHORT, MeshBudget, MeshModel
+from innervate.verify.cases import budget_of
 from innervate.verify.errors import VerifyError
 
 NOTHING = MeshBudget(0, 0, 0, 0)
@@ -108,7 +107,7 @@ def test_a_relay_that_restarts_gives_everything_back_until_the_next_round():
 
 def test_two_gateways_agree_when_the_first_returns():
     made = MeshModel(
-        mesh_model.parse("line"), standby=(2,), beats=4, budget=DEATH, settings=mesh_cases.QUICK
+        mesh_model.parse("line"), standby=(2,), beats=4, budget=DEATH, settings=mesh_model.QUICK
     )
     found = mesh_search.explore(made)
     assert (found.broken, found.tally.ended) == (0, "complete")
@@ -119,7 +118,7 @@ def test_who_dies_before_it_responds_and_is_asked_by_name_holds_nothing_up():
     """Any order of events; with `asks` there are more of them, and all end well."""
     states = []
     for asks in (False, True):
-        settings = (*mesh_cases.QUICK, ("transmissions", 1), ("asks", asks))
+        settings = (*mesh_model.QUICK, ("transmissions", 1), ("asks", asks))
         found = mesh_search.explore(model("line", settings=settings, budget=DEATH, beats=4))
         assert (found.broken, found.tally.ended) == (0, "complete")
         assert found.tally.states == found.fair
@@ -130,7 +129,7 @@ def test_who_dies_before_it_responds_and_is_asked_by_name_holds_nothing_up():
 def test_gateways_that_never_agree_are_found(monkeypatch):
     monkeypatch.setattr(mesh_net.Nets, "calm_beats", lambda self: 1)
     made = MeshModel(
-        mesh_model.parse("line"), standby=(2,), beats=6, budget=DEATH, settings=mesh_cases.QUICK
+        mesh_model.parse("line"), standby=(2,), beats=6, budget=DEATH, settings=mesh_model.QUICK
     )
     found = mesh_search.explore(made)
     assert found.broken == mesh_local.BROKEN_GATEWAYS
@@ -190,7 +189,7 @@ def test_bounds_and_names():
         with pytest.raises(VerifyError):
             mesh_model.parse(wrong)
     with pytest.raises(VerifyError, match="should be NAME=NUMBER"):
-        mesh_cases.budget_of("dead=1", NOTHING)
+        budget_of("dead=1", NOTHING)
     with pytest.raises(VerifyError, match="failover is one of"):
         mesh_model.parameters(model("line", "guess"))
 

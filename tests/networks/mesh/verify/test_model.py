@@ -9,8 +9,8 @@ from innervate.networks.mesh.verify import first, local, mutants, search, story
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify.model import MeshBudget, MeshModel, parse, reach
 from innervate.networks.mesh.verify.net import Nets
+from innervate.prove.mutants import Mutant
 from innervate.verify.errors import VerifyError
-from innervate.verify.mutants import Mutant, copies
 
 LINE, SQUARE = ((0, 1), (1, 2)), ((0, 1), (0, 2), (1, 3), (2, 3))
 
@@ -114,10 +114,10 @@ def test_a_mutant_is_caught_where_it_first_breaks_something(broken_at, where, st
 
     monkeypatch.setattr(mutants.mesh_search, "explore", explore)
     monkeypatch.setattr(mutants.mesh_story, "tell", lambda found: Of(title="it loops"))
-    monkeypatch.setattr(mutants, "copies", lambda *_: ("entry",))
     monkeypatch.setattr(mutants, "Nets", lambda model, _: Of(model=model))
-    found = mutants.hunt("some")
-    assert found == mutants.Catch("some", "it loops" if where else "", where, states)
+    some = Of(copies=lambda _: ("entry",))
+    found = mutants.hunt(some)
+    assert found == mutants.Catch(some, "it loops" if where else "", where, states)
 
 
 START, HEAR = (
@@ -135,7 +135,7 @@ START, HEAR = (
      "Node 1 sends a discovery request to all."),
 ], ids=("a value as it is switched on", "no way on", "a value as a frame comes"))  # fmt: skip
 def test_a_first_round_that_breaks_is_told_as_a_story(line, more, title, last):
-    (entry,) = copies(Mutant("", line, line + more), "innervate.networks.mesh.protocol.node")
+    (entry,) = Mutant("", line, line + more).copies("innervate.networks.mesh.protocol.node")
     made = MeshModel(LINE)
     found = search.explore(made, nets=Nets(made, local.Locals(made, entry)))
     assert found.tally.ended == "broken"

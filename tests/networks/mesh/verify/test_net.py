@@ -7,10 +7,9 @@ import pytest
 from innervate.networks.mesh.protocol.constants import ALL
 from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
-from innervate.networks.mesh.verify.cases import SHORT
 from innervate.networks.mesh.verify.first import begin
 from innervate.networks.mesh.verify.local import GRAIN_US, NEVER, NONE
-from innervate.networks.mesh.verify.model import MeshBudget, MeshModel
+from innervate.networks.mesh.verify.model import SHORT, MeshBudget, MeshModel
 from innervate.networks.mesh.verify.net import DEAD, DIE, REVIVE, Net, Nets
 from innervate.verify.explore import Tally
 

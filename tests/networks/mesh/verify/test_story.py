@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.networks.mesh.protocol import constants as const
-from innervate.networks.mesh.verify import cases, fuzz, local, replay, story
+from innervate.networks.mesh.verify import command, fuzz, local, replay, story
 from innervate.networks.mesh.verify import model as models
 from innervate.networks.mesh.verify import net as nets
-from innervate.networks.mesh.verify.cases import MeshWanted
+from innervate.networks.mesh.verify.command import MeshWanted
 from innervate.networks.mesh.verify.model import MeshBudget
 from innervate.networks.mesh.verify.net import DEAD
 from innervate.networks.mesh.verify.replay import Loss
@@ -174,14 +174,14 @@ ASKS = "gateways that are asked"
 
 def test_what_is_explored_if_nobody_says_and_on_links_of_ones_own():
     found = [
-        (name, models_.failover, models_.links) for name, models_ in cases.models(MeshWanted())
+        (name, models_.failover, models_.links) for name, models_ in command.models(MeshWanted())
     ]
     shapes = [models.parse(shape) for shape in ("line", "triangle", "square")]
     messages = [("a message", "search", links) for links in shapes]
     more = [(name, "search", shapes[0]) for name in ("an alarm", "gateways", ASKS)]
     assert found == [*messages, *more, *(("a message", "graph", links) for links in shapes)]
     links = ((0, 1), (1, 2), (2, 3))
-    own = list(cases.models(MeshWanted(("search", "random"), links, "deaths=2")))
+    own = list(command.models(MeshWanted(("search", "random"), links, "deaths=2")))
     assert [name for name, _ in own] == ["a message", "an alarm", "gateways", ASKS, "two messages"]
     assert {one.links for _, one in own} == {links}
     message, alarm, gateways, asked, two = (one for _, one in own)
@@ -192,7 +192,7 @@ def test_what_is_explored_if_nobody_says_and_on_links_of_ones_own():
     assert asks == [0, 100_000]
     assert [one.budget.deaths for one in (message, alarm, gateways, asked, two)] == [2] * 5
     assert message.budget == MeshBudget(deaths=2, frames=0, acks=1)
-    assert cases.text_of(links) == "0-1 1-2 2-3"
+    assert command.text_of(links) == "0-1 1-2 2-3"
 
 
 def test_smaller_meshes_are_smaller_one_thing_at_a_time():

@@ -8,10 +8,11 @@ from innervate.networks.skin.prove.neighbours import TICKS
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
 from innervate.prove.faults import faults_of, hunt
-from innervate.prove.theory import Fault, prove
+from innervate.prove.mutants import Mutant
+from innervate.prove.theory import prove
 
 SKIN = networks()["skin"]
-# Of the explorer's; those of FAULTS are in tests/networks/skin/verify/test_assumptions.py, and all
+# Of the explorer's; those of MUTANTS are in tests/networks/skin/verify/test_assumptions.py, and all
 # are tried in `make full`.
 QUICK = (
     "penalties grow beyond 2",
@@ -61,4 +62,4 @@ def test_a_refuted_step_is_told_of_two_cells():
 
 def test_a_mistake_that_is_nowhere_is_no_mistake():
     with pytest.raises(ProveError, match="in no source"):
-        hunt(SKIN, Fault("x", "cell.fd_dist = distance_of_nobody", "pass"))
+        hunt(SKIN, Mutant("x", "cell.fd_dist = distance_of_nobody", "pass"))

@@ -34,15 +34,15 @@ def function(name):
 def test_a_draw_is_less_than_what_it_is_of_where_it_is_made_at_all():
     terms = Terms()
     made, many = asked(terms), terms.unknown("many", -3, 4)
-    called, state = SimpleNamespace(under=terms.true), State({}, {}, terms.true)
-    drawn = made.draw(many, state, called)
+    state = State({}, {}, terms.true, SimpleNamespace(under=terms.true))
+    drawn = made.draw(many, state)
     assert (drawn.low, drawn.high) == (0, 3)
     assert made.draws == [(drawn, many, terms.at_most(terms.number(1), many))]
     assert made.facts == [
         terms.implies(terms.at_most(terms.number(1), many), terms.less(drawn, many))
     ]
-    assert asked(terms).draw(many, state, called) is drawn  # of the other run
-    assert made.draw(many, state, called) is not drawn
+    assert asked(terms).draw(many, state) is drawn  # of the other run
+    assert made.draw(many, state) is not drawn
 
 
 @pytest.mark.parametrize(("name", "port", "is_answered"), [
@@ -70,8 +70,8 @@ def test_what_some_port_says_is_what_another_than_the_dead_one_says(dead, low, o
     cell = Record("cell", ())
     said = {(cell, "dist", k): terms.unknown(f"dist {k}", 0, 9) for k in range(4)}
     path, under = (terms.as_truth(terms.unknown(name, 0, 1)) for name in ("path", "under"))
-    state, called = State({}, said, path), SimpleNamespace(under=under)
-    found = made.element(Array(cell, "dist", 4), index, None, state, called)
+    state = State({}, said, path, SimpleNamespace(under=under))
+    found = made.element(Array(cell, "dist", 4), index, None, state)
     expected = said[cell, "dist", others[0]]
     for k in others:
         here = terms.same(index, terms.number(k))
@@ -89,11 +89,10 @@ def test_a_known_index_or_what_no_port_says_is_looked_up_as_ever(name, low, high
     made, index = asked(terms), terms.unknown("index", low, high)
     cell = Record("cell", ((name, 4, 0, 9, "x", ""),))
     said = {(cell, name, k): terms.unknown(f"{name} {k}", 0, 9) for k in range(4)}
-    state, called = State({}, said, terms.true), SimpleNamespace(under=terms.true)
-    called.function = function("is_usable")
-    node = called.function.node
-    found = made.element(Array(cell, name, 4), index, node, state, called)
-    plain = Machine({}, terms, made.out).element(Array(cell, name, 4), index, node, state, called)
+    called = SimpleNamespace(under=terms.true, function=function("is_usable"))
+    state, node = State({}, said, terms.true, called), called.function.node
+    found = made.element(Array(cell, name, 4), index, node, state)
+    plain = Machine({}, terms, made.out).element(Array(cell, name, 4), index, node, state)
     assert found is plain
     assert all(one.what != "a dead port is not looked at" for one in made.demands)
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from innervate.networks.skin.protocol.constants import RULE_FEASIBLE
-from innervate.networks.skin.prove.faults import FAULTS
+from innervate.networks.skin.prove.faults import MUTANTS
 from innervate.networks.skin.prove.neighbours import ANY_RULE
 from innervate.networks.skin.prove.theories import resting
-from innervate.networks.skin.verify import assumptions, cases, graphs, mutants
+from innervate.networks.skin.verify import assumptions, command, graphs, mutants
 from innervate.networks.skin.verify.system import RULES, UPDATES, Budget, SkinModel
 from innervate.prove.theory import prove
 from innervate.verify.errors import VerifyError
@@ -47,13 +47,13 @@ def test_mistakes_that_could_hide_behind_it_are_found(name):
 
 # Five were planted by an independent check: a reduced search that trusts the rule ends with nothing
 # broken. The others are in the paths that reductions cut, too.
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda one: one.name)
+@pytest.mark.parametrize("fault", MUTANTS, ids=lambda one: one.name)
 def test_what_the_reductions_would_hide_is_refuted_first(fault):
     assert assumptions.refuted("feasible", (fault.old, fault.new)).startswith("refuted: "), fault
 
 
 def test_there_are_the_five_and_at_least_ten_more():
-    assert len({(fault.old, fault.new) for fault in FAULTS}) >= 15
+    assert len({(fault.old, fault.new) for fault in MUTANTS}) >= 15
 
 
 def test_under_other_rules_what_is_forgotten_decides_nothing_either():
@@ -71,11 +71,11 @@ def test_nor_where_the_pc_restarts_under_strict():
 
 def test_a_reduced_search_does_not_start_without_them(monkeypatch):
     monkeypatch.setattr(assumptions, "broken", lambda _: "a route is taken")
-    wanted = cases.Wanted(live=False, states=50, plain=True)
+    wanted = command.Wanted(live=False, states=50, plain=True)
     with pytest.raises(VerifyError, match="a route is taken; --no-reduce"):
-        cases.run(model("feasible", "periodic"), wanted, lambda *_: False)
+        command.run(model("feasible", "periodic"), wanted, lambda *_: False)
     whole = model("feasible", "periodic").changed(lean=False)
-    assert cases.run(whole, wanted, lambda *_: False).tally.ended == "limit"
+    assert command.run(whole, wanted, lambda *_: False).tally.ended == "limit"
 
 
 # Each lemma about what is forgotten, and a mistake that it refutes.

@@ -4,9 +4,10 @@ from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.networks.skin.verify import cases, graphs
-from innervate.networks.skin.verify.cases import Wanted
+from innervate.networks.skin.verify import command, graphs
+from innervate.networks.skin.verify.command import Wanted
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
+from innervate.verify.cases import budget_of
 from innervate.verify.errors import VerifyError
 
 PAIR = graphs.parse("pair")
@@ -33,18 +34,18 @@ def played(monkeypatch):
         one.model = model if one.model is None else one.model
         return one
 
-    monkeypatch.setattr(cases.explore, "explore", explore)
-    monkeypatch.setattr(cases.explore, "wander", lambda model, walks, **_: explore(model))
-    monkeypatch.setattr(cases.fair, "check", lambda *_, **__: made.schedules.pop(0))
-    monkeypatch.setattr(cases.retrace, "retrace", lambda _: made.retraced)
-    monkeypatch.setattr(cases.story, "tell", lambda whole: f"story of {len(whole.path)}")
-    monkeypatch.setattr(cases.story, "in_short", lambda one: "in short")
-    monkeypatch.setattr(cases.assumptions, "broken", lambda model: made.broken)
+    monkeypatch.setattr(command.explore, "explore", explore)
+    monkeypatch.setattr(command.explore, "wander", lambda model, walks, **_: explore(model))
+    monkeypatch.setattr(command.fair, "check", lambda *_, **__: made.schedules.pop(0))
+    monkeypatch.setattr(command.retrace, "retrace", lambda _: made.retraced)
+    monkeypatch.setattr(command.story, "tell", lambda whole: f"story of {len(whole.path)}")
+    monkeypatch.setattr(command.story, "in_short", lambda one: "in short")
+    monkeypatch.setattr(command.assumptions, "broken", lambda model: made.broken)
     return made
 
 
 def run(model=None, **wanted):
-    return cases.run(model or SkinModel(PAIR, lean=True), Wanted(**wanted), lambda *_: False)
+    return command.run(model or SkinModel(PAIR, lean=True), Wanted(**wanted), lambda *_: False)
 
 
 @pytest.mark.parametrize(("ended", "is_played"), [
@@ -103,9 +104,9 @@ def test_what_a_search_of_whole_states_found_is_told_as_it_is(played):
 
 def test_of_whole_states_there_are_no_more_ticks_than_it_took():
     budget = Budget(ticks=ANY, faults=2)
-    whole = cases._whole(found(depth=3, budget=budget))
+    whole = command._whole(found(depth=3, budget=budget))
     assert (whole.lean, whole.budget) == (False, Budget(ticks=4, faults=2))
-    few = cases._whole(found(depth=9, budget=Budget(ticks=2)))
+    few = command._whole(found(depth=9, budget=Budget(ticks=2)))
     assert few.budget.ticks == 2
 
 
@@ -132,13 +133,14 @@ def test_without_reductions_a_schedule_that_ends_badly_stands(played):
 
 def test_everything_that_is_asked_for_is_explored_in_order():
     one, other = PAIR, graphs.parse("pc-1")
-    made = list(cases.models(Wanted(("feasible", "paper"), ("periodic", "triggered"), (one, other),
-                                    prompt=True, budget=Budget(ticks=1))))  # fmt: skip
+    wanted = Wanted(("feasible", "paper"), ("periodic", "triggered"), (one, other),
+                    prompt=True, budget=Budget(ticks=1))  # fmt: skip
+    made = list(command.models(wanted))
     assert [(m.graph, m.rule, m.updates, m.keep) for m in made] == [
         (graph, rule, updates, rule == "feasible") for graph in (one, other)
         for rule in ("feasible", "paper") for updates in ("periodic", "triggered")]  # fmt: skip
     assert {(m.prompt, m.lean, m.budget) for m in made} == {(True, True, Budget(ticks=1))}
-    (quiet,) = cases.models(Wanted(updates=("periodic",), graphs=(one,), live=False))
+    (quiet,) = command.models(Wanted(updates=("periodic",), graphs=(one,), live=False))
     assert not quiet.keep
 
 
@@ -147,15 +149,15 @@ def test_everything_that_is_asked_for_is_explored_in_order():
 def test_any_number_of_ticks_goes_with_reductions_alone(keys, fits):
     wanted = Wanted(graphs=(PAIR,), budget=Budget(ticks=ANY), **keys)
     if fits:
-        assert len(list(cases.models(wanted))) == 2
+        assert len(list(command.models(wanted))) == 2
     else:
         with pytest.raises(VerifyError, match="ticks=any goes neither"):
-            list(cases.models(wanted))
+            list(command.models(wanted))
 
 
 def test_budgets_from_text_keep_what_is_left_out():
     usual = Budget()
-    assert cases.budget_of("") == usual
-    assert cases.budget_of("ticks=any,loss=3") == Budget(
+    assert budget_of("", usual, command.TICKS) == usual
+    assert budget_of("ticks=any,loss=3", usual, command.TICKS) == Budget(
         **{name: getattr(usual, name) for name in Budget.__dataclass_fields__}
         | {"ticks": ANY, "loss": 3})  # fmt: skip

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.skin.verify import cases, graphs, story
+from innervate.networks.skin.verify import command, graphs, story
 from innervate.networks.skin.verify.fair import Fair
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
 from innervate.verify.errors import VerifyError
@@ -13,7 +13,7 @@ def case(ended="complete", fair=None, told=None, left_out=0, **keys):
     model = SkinModel(graphs.parse("pair"), **keys)
     tally = Tally(states=5, expanded=4, generated=9, depth=3, wall_s=0.12345, ended=ended,
                   left_out=left_out)  # fmt: skip
-    return cases.SkinCase(model, "pc-1 1-2", tally, fair, told)
+    return command.SkinCase(model, "pc-1 1-2", tally, fair, told)
 
 
 def fair(ended, starts=3, of=3, left_out=0):
@@ -76,8 +76,10 @@ def test_a_record_has_what_the_fair_schedule_came_to():
 @pytest.mark.parametrize(("cells", "fits"), [(0, False), (1, True), (4, True), (5, False)])
 def test_graphs_of_one_to_four_cells_are_all_that_there_are(cells, fits):
     if fits:
-        assert {graph.cells for graph in cases.graphs_of("all", cells)} == set(range(1, cells + 1))
+        assert {graph.cells for graph in command.graphs_of("all", cells)} == set(
+            range(1, cells + 1)
+        )
     else:
         with pytest.raises(VerifyError, match="must be 1 to 4"):
-            cases.graphs_of("all", cells)
-    assert len(cases.graphs_of("pair", cells)) == 1
+            command.graphs_of("all", cells)
+    assert len(command.graphs_of("pair", cells)) == 1

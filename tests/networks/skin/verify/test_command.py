@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from innervate.networks.skin.verify import cases, command, graphs, story
-from innervate.networks.skin.verify.cases import SkinCase, Wanted
+from innervate.networks.skin.verify import command, graphs, story
+from innervate.networks.skin.verify.command import SkinCase, Wanted
 from innervate.networks.skin.verify.fair import Fair
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
 from innervate.verify.errors import VerifyError
@@ -69,15 +69,15 @@ def test_what_broke_is_told_event_by_event_or_by_its_rounds():
 
 
 def test_graphs_by_name_and_all_of_up_to_so_many_cells():
-    (one,) = cases.graphs_of("pair", 99)
+    (one,) = command.graphs_of("pair", 99)
     assert graphs.cables(one) == graphs.cables(PAIR)
     for text in ("pc-1", "pc-1 1-2", "pc-1 pc-2 1-2 2-3"):
         assert graphs.cables(graphs.parse(text)) == text
-    assert [graph.cells for graph in cases.graphs_of("all", 2)] == sorted(
-        graph.cells for graph in cases.graphs_of("all", 2)
+    assert [graph.cells for graph in command.graphs_of("all", 2)] == sorted(
+        graph.cells for graph in command.graphs_of("all", 2)
     )
-    assert {graph.cells for graph in cases.graphs_of("all", 2)} == {1, 2}
-    assert {graph.cells for graph in cases.graphs_of("all", 1)} == {1}
+    assert {graph.cells for graph in command.graphs_of("all", 2)} == {1, 2}
+    assert {graph.cells for graph in command.graphs_of("all", 1)} == {1}
 
 
 @pytest.mark.parametrize(("more", "fits"), [
@@ -86,19 +86,19 @@ def test_graphs_by_name_and_all_of_up_to_so_many_cells():
 def test_ticks_without_end_need_what_is_forgotten(more, fits):
     wanted = Wanted(graphs=(PAIR,), budget=Budget(ticks=ANY), **more)
     if fits:
-        assert len(list(cases.models(wanted))) == len(cases.UPDATES)
+        assert len(list(command.models(wanted))) == len(command.system.UPDATES)
     else:
         with pytest.raises(VerifyError, match="ticks=any goes neither with"):
-            list(cases.models(wanted))
+            list(command.models(wanted))
 
 
 def test_models_are_all_that_is_asked_for_and_keep_what_the_fair_schedule_needs():
     wanted = Wanted(("paper", "feasible"), ("wave",), (PAIR,), prompt=True, lean=False)
-    paper, feasible = cases.models(wanted)
+    paper, feasible = command.models(wanted)
     assert [(one.rule, one.updates, one.keep) for one in (paper, feasible)] == [
         ("paper", "wave", False), ("feasible", "wave", True),
     ]  # fmt: skip
-    (calm,) = cases.models(Wanted(updates=("wave",), graphs=(PAIR,), live=False))
+    (calm,) = command.models(Wanted(updates=("wave",), graphs=(PAIR,), live=False))
     assert not calm.keep
 
 
@@ -124,14 +124,14 @@ def test_the_shortest_story_is_told_of_states_with_all_that_is_in_them(
     monkeypatch, reduced, whole, unreduced, told, walks
 ):
     """Of walks nothing is searched anew."""
-    monkeypatch.setattr(cases.retrace, "retrace", lambda _: whole)
-    monkeypatch.setattr(cases, "_explore", lambda *_: unreduced)
+    monkeypatch.setattr(command.retrace, "retrace", lambda _: whole)
+    monkeypatch.setattr(command, "_explore", lambda *_: unreduced)
     monkeypatch.setattr(story, "tell", lambda result: result)
     monkeypatch.setattr(story, "in_short", lambda _: "in short")
     if walks and told == "unreduced":
         told = "whole" if whole is not None else "in short"
     wanted = {"reduced": reduced, "whole": whole, "unreduced": unreduced}.get(told, told)
-    assert cases._tell(reduced, Wanted(walks=walks), "name", None) is wanted
+    assert command._tell(reduced, Wanted(walks=walks), "name", None) is wanted
 
 
 @pytest.mark.parametrize(
@@ -147,10 +147,10 @@ def test_the_shortest_story_is_told_of_states_with_all_that_is_in_them(
 def test_a_schedule_that_ends_badly_stands_unless_all_was_looked_at_unreduced(
     monkeypatch, whole, again, stands
 ):
-    monkeypatch.setattr(cases, "_explore", lambda *_: whole)
-    monkeypatch.setattr(cases, "_settle", lambda *_: again)
+    monkeypatch.setattr(command, "_explore", lambda *_: whole)
+    monkeypatch.setattr(command, "_settle", lambda *_: again)
     broken = fair("broken")
-    taken = cases._settle_whole(broken, found(), Wanted(), "name", None)
+    taken = command._settle_whole(broken, found(), Wanted(), "name", None)
     assert taken is (broken if stands else again)
 
 
@@ -158,7 +158,7 @@ def test_a_schedule_that_ends_badly_stands_unless_all_was_looked_at_unreduced(
 def test_unreduced_nothing_is_forgotten_and_no_more_ticks_are_had_than_it_took(
     ticks, depth, wanted
 ):
-    model = cases._whole(found(ticks=ticks, depth=depth))
+    model = command._whole(found(ticks=ticks, depth=depth))
     assert (model.lean, model.budget.ticks) == (False, wanted)
 
 
@@ -173,7 +173,7 @@ def test_skins_of_up_to_two_cells_are_explored_under_the_rule_that_keeps_its_pro
     found = asked()
     assert {model.rule for model, *_ in found} == {"feasible"}
     assert {model.graph.cells for model, *_ in found} == {1, 2}
-    assert {model.updates for model, *_ in found} == set(cases.UPDATES)
+    assert {model.updates for model, *_ in found} == set(command.system.UPDATES)
     assert [first for *_, first in found] == [True] + [False] * (len(found) - 1)
     assert {wanted.seed for _, wanted, _ in found} == {1}
     found = asked(rule="paper", graph="pair", seed=7, cells=1)
@@ -200,11 +200,11 @@ def test_what_is_left_out_is_told_once(plain, first, words, is_told, monkeypatch
         assert progress("pair", tally(depth=3))
         return made
 
-    monkeypatch.setattr(command.cases, "run", run)
+    monkeypatch.setattr(command, "run", run)
     monkeypatch.setattr(command.compilation, "mark_compiled", marked.append)
     monkeypatch.setattr(command.assumptions, "told", lambda model: words)
     monkeypatch.setattr(command.assumptions, "grounds", lambda model: {"page": "it"})
-    found = command._explore(made.model, Wanted(plain=plain), first,
+    found = command._case(made.model, Wanted(plain=plain), first,
                              lambda *told: said.append(told) or True)  # fmt: skip
     assert found.lines == [*command._lines(made), *([words] if is_told else [])]
     assert found.record == made.as_dict() | {"reductions": {"page": "it"}}

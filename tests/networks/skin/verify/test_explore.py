@@ -1,9 +1,10 @@
 import pytest
 
 from innervate.networks.skin.verify import graphs
-from innervate.networks.skin.verify.cases import budget_of
+from innervate.networks.skin.verify.command import TICKS
 from innervate.networks.skin.verify.system import Budget, SkinModel, system_of
 from innervate.verify import explore, search, table
+from innervate.verify.cases import budget_of
 from innervate.verify.errors import VerifyError
 from tests.networks.skin.verify.bench import parents_of
 
@@ -146,9 +147,9 @@ def test_a_graph_that_is_none_is_refused_in_one_line(text, words):
 
 
 def test_budgets_are_read():
-    assert budget_of("ticks=4, loss=0") == Budget(ticks=4, loss=0)
+    assert budget_of("ticks=4, loss=0", Budget(), TICKS) == Budget(ticks=4, loss=0)
     with pytest.raises(VerifyError, match="should be NAME=NUMBER"):
-        budget_of("tick=4")
+        budget_of("tick=4", Budget(), TICKS)
 
 
 def test_a_first_row_holds_the_budgets():

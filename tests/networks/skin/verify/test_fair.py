@@ -5,7 +5,7 @@ from itertools import permutations, product
 
 import pytest
 
-from innervate.networks.skin.verify import calm, cases, fair, graphs, mutants
+from innervate.networks.skin.verify import calm, command, fair, graphs, mutants
 from innervate.networks.skin.verify import world as w
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel, system_of
 from innervate.verify import explore
@@ -119,7 +119,7 @@ def test_what_a_reduced_search_finds_stands_if_the_whole_one_agrees_or_says_less
 ):
     monkeypatch.setattr(fair, "bound_of", lambda _: 1)
     made = model("pc-1 1-2", lean=True, budget=Budget(ticks=ticks, faults=1))
-    case = cases.run(made, cases.Wanted(), lambda *_: False)
+    case = command.run(made, command.Wanted(), lambda *_: False)
     assert case.fair.ended == "broken"
     assert case.is_broken
 

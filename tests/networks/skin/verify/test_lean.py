@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.skin.verify import cases, fair, graphs, mutants, reduction
+from innervate.networks.skin.verify import command, fair, graphs, mutants, reduction
 from innervate.networks.skin.verify.system import Budget, SkinModel
 from innervate.networks.skin.verify.world import BROKEN_LOOP
 from innervate.verify import explore
@@ -100,7 +100,7 @@ def test_the_loops_of_the_paper_rule_are_found_all_the_same(graph, updates):
 
 def test_a_story_is_told_of_whole_states():
     made = model("triangle", "triggered", rule="paper", budget=Budget(faults=2), lean=True)
-    case = cases.run(made, cases.Wanted(), lambda *_: False)
+    case = command.run(made, command.Wanted(), lambda *_: False)
     assert case.is_broken
     assert case.story.lines()[-1].startswith("So: closed loop n")
     assert "[script]" in case.story.scenario

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import innervate
-from innervate.networks.skin.prove.faults import FAULTS
+from innervate.networks.skin.prove.faults import MUTANTS
 
-FIVE = FAULTS[:5]  # planted by an independent check: a reduced search on trust finds none of them
+FIVE = MUTANTS[:5]  # planted by an independent check: a reduced search on trust finds none of them
 COMMANDS = {"verify": ("verify", "--graph", "triangle"), "prove": ("prove",)}
 SOURCES = Path(innervate.__file__).resolve().parent
 
@@ -35,7 +35,7 @@ def typed(command, home):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda one: one.name)
+@pytest.mark.parametrize("fault", MUTANTS, ids=lambda one: one.name)
 def test_no_reduced_search_begins_on_a_protocol_that_lemmas_refute(fault, tmp_path):
     planted(fault, tmp_path)
     code, told = typed("verify", tmp_path)
@@ -54,7 +54,7 @@ def test_the_proof_of_the_skin_refutes_the_five(fault, tmp_path):
 
 
 if __name__ == "__main__":  # python -m tests.networks.skin.verify.test_planted FOLDER
-    for number, fault in enumerate(FAULTS):
+    for number, fault in enumerate(MUTANTS):
         home = Path(sys.argv[1]) / str(number)
         planted(fault, home)
         for command in ("verify", "prove"):

@@ -4,7 +4,7 @@ from itertools import groupby, pairwise
 
 import pytest
 
-from innervate.networks.skin.verify import cases, graphs, retrace
+from innervate.networks.skin.verify import command, graphs, retrace
 from innervate.networks.skin.verify.system import Budget, SkinModel, system_of
 from innervate.verify.explore import explore, wander
 from innervate.verify.twin import Twin
@@ -51,7 +51,7 @@ def test_whole_states_follow_each_other_and_are_reduced_to_what_was_found(graph,
 @pytest.mark.parametrize("states", [0, 20])
 def test_the_fair_schedule_is_played_from_what_a_search_found_that_was_to_end(states):
     model = SkinModel(graphs.parse("pc-1 1-2"), budget=Budget(ticks=2, faults=1), keep=True)
-    case = cases.run(model, cases.Wanted(states=states, plain=True), lambda *_: False)
+    case = command.run(model, command.Wanted(states=states, plain=True), lambda *_: False)
     assert case.tally.ended == ("limit" if states else "complete")
     assert (case.fair.ended, case.fair.of) == ("complete", case.tally.states)
     assert case.is_complete == (not states)

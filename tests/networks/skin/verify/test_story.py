@@ -10,8 +10,8 @@ from innervate.networks.skin.verify import graphs, story
 from innervate.networks.skin.verify import row as r
 from innervate.networks.skin.verify.mutants import copy_of
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
+from innervate.prove.mutants import Mutant
 from innervate.verify.explore import Result, Tally, explore
-from innervate.verify.mutants import Mutant
 from innervate.verify.twin import Event
 from tests.networks.skin.verify.tiny import PC, Tiny
 

@@ -62,25 +62,20 @@ class Router:
         dest = self.t.unknown("node.q_dest[0]", 0, SIZE - 1)
         self.stage.store[self.node, "q_dest", 0] = dest
 
-    def ask(self, store: Store, question: str, *told: Term) -> Term:
+    def ask(self, store: Store, question: str, *told: Term | int) -> Term:
         """What a function of the node says."""
-        _, answer = self.stage.machine.run(question, [self.node, *told], store, self.t.true)
+        _, answer = self.stage.machine.run(question, [self.node, *told], store)
         assert isinstance(answer, Term)
         return answer
 
     def had(self, store: Store, who: Term) -> Term:
         """The packet was at somebody, by its path."""
-        return self.t.as_truth(self.ask(store, "was_at", self.t.number(0), who))
+        return self.t.as_truth(self.ask(store, "was_at", 0, who))
 
     def has_failed(self, store: Store, who: Term) -> Term:
         """Somebody failed for the packet."""
         packet = (store[self.node, name, 0] for name in ("q_origin", "q_seq"))
         return self.t.as_truth(self.ask(store, "is_skipped", *packet, who))
-
-    def step(self, name: str, after: Store, facts: list[Term], goals: list[Goal]) -> Step:
-        """What was run, as a step."""
-        return Step(name, self.stage.machine, self.stage.records, self.stage.store, after, facts,
-                    goals)  # fmt: skip
 
 
 def _chosen(known: dict[str, Any]) -> Step:
@@ -88,11 +83,11 @@ def _chosen(known: dict[str, Any]) -> Step:
     router = Router(known)
     stage = router.stage
     stage.machine = Answers(known, router.t, stage.out, LOOKED_UP)
-    t, before, zero = router.t, stage.store, router.t.number(0)
-    args = [router.node, router.params, zero]
-    after, who = stage.machine.run("choose_by_search", args, dict(before), t.true)
+    t, before = router.t, stage.store
+    args = [router.node, router.params, 0]
+    after, who = stage.machine.run("choose_by_search", args, before)
     is_one = t.negated(t.same(who, t.number(NOBODY)))
-    came = t.same(who, router.ask(before, "giver", zero))
+    came = t.same(who, router.ask(before, "giver", 0))
     back = t.any(came, t.same(who, before[router.node, "q_from", 0]))
     goals = [
         Goal("P1 who had the packet is asked only to take it back",
@@ -100,7 +95,7 @@ def _chosen(known: dict[str, Any]) -> Step:
         Goal("P2 nobody is asked who failed for it",
              t.implies(is_one, t.negated(router.has_failed(before, who)))),
     ]  # fmt: skip
-    return router.step("the next hop is chosen", after, stage.machine.facts, goals)
+    return router.stage.step("the next hop is chosen", after, stage.machine.facts, goals)
 
 
 def _entered(known: dict[str, Any]) -> Step:
@@ -108,9 +103,7 @@ def _entered(known: dict[str, Any]) -> Step:
     router = Router(known)
     t, before = router.t, router.stage.store
     who = t.unknown("who", 0, 255)
-    after, result = router.stage.machine.run(
-        "add_hop", [router.node, t.number(0)], dict(before), t.true
-    )
+    after, result = router.stage.machine.run("add_hop", [router.node, 0], before)
     done = t.same(t.as_number(result), t.number(1))
     me = before[router.node, "number", None]
     goals = [
@@ -119,7 +112,7 @@ def _entered(known: dict[str, Any]) -> Step:
         Goal("P4 who was in its path stays there",
              t.implies(router.had(before, who), router.had(after, who))),
     ]  # fmt: skip
-    return router.step("a node transmits a packet", after, [], goals)
+    return router.stage.step("a node transmits a packet", after, [], goals)
 
 
 def _stored(known: dict[str, Any]) -> Step:
@@ -128,13 +121,13 @@ def _stored(known: dict[str, Any]) -> Step:
     t, stage = router.t, router.stage
     frame = stage.record("frame", fields.FRAME)
     who = t.unknown("who", 0, 255)
-    before = dict(stage.store)
-    _, was = stage.machine.run("in_path", [frame, who], before, t.true)
+    before = stage.store
+    _, was = stage.machine.run("in_path", [frame, who], before)
     body = t.same(before[frame, "length", None], t.number(0))
-    after, _ = stage.machine.run("store", [router.node, t.number(0), frame], before, t.true)
+    after, _ = stage.machine.run("store", [router.node, 0, frame], before)
     same = t.same(t.as_truth(was), router.had(after, who))
     goal = Goal("P5 the path of what is taken over is that it came with", same)
-    return router.step("a node takes a packet over", after, [body], [goal])
+    return router.stage.step("a node takes a packet over", after, [body], [goal])
 
 
 def _failed(known: dict[str, Any]) -> Step:
@@ -146,8 +139,8 @@ def _failed(known: dict[str, Any]) -> Step:
     who = t.unknown("who", 0, 254)
     other = [t.unknown(f"other.{name}", 0, high) for name, high in (("o", 254), ("s", 65535))]
     then = t.unknown("then", 0, 254)
-    once, _ = stage.machine.run("skip", [node, *packet, who], dict(before), t.true)
-    last, _ = stage.machine.run("skip", [node, *other, then], dict(before), t.true)
+    once, _ = stage.machine.run("skip", [node, *packet, who], before)
+    last, _ = stage.machine.run("skip", [node, *other, then], before)
     place = t.unknown("place", 0, SKIPS - 1)
     kept = []
     for k in range(SKIPS):
@@ -159,7 +152,7 @@ def _failed(known: dict[str, Any]) -> Step:
         Goal("P6 who failed for a packet is noted", router.has_failed(once, who)),
         Goal("P7 every other failure stays noted but the oldest", t.all(*kept)),
     ]
-    return router.step("a neighbour fails for a packet", last, [], goals)
+    return router.stage.step("a neighbour fails for a packet", last, [], goals)
 
 
 def _returned(known: dict[str, Any]) -> Step:
@@ -171,22 +164,19 @@ def _returned(known: dict[str, Any]) -> Step:
     second = stage.record("second", fields.FRAME)
     for name in ("kind", "flags", "origin", "seq"):
         stage.store[second, name, None] = stage.store[first, name, None]
-    before = dict(stage.store)
-    after, results = dict(before), []
+    after, results = stage.store, []
     for frame in (first, second):
-        after, result = stage.machine.run("record_return", [node, frame], after, t.true)
+        after, result = stage.machine.run("record_return", [node, frame], after)
         results.append(t.same(t.as_number(result), t.number(0)))
     facts = [results[0], _passed_on(stage, node, first)]
     goal = Goal(ONCE, t.negated(results[1]))
-    return Step(TWICE, stage.machine, stage.records, before, after, facts, [goal])
+    return stage.step(TWICE, after, facts, [goal])
 
 
 def _passed_on(stage: Stage, node: Record, frame: Record) -> Term:
     """A node has the packet at the first place of its cache, with the path that it came with."""
     t, store = stage.terms, stage.store
-    flags = store[frame, "flags", None]
-    parity = t.shr(t.bits_and(flags, t.number(PARITY)), t.number(1))
-    kind = t.bits_or(store[frame, "kind", None], parity)
+    kind = cached_kind(stage, frame)
     others = [t.negated(t.same(store[node, "done_origin", k], store[frame, "origin", None]))
               for k in range(1, FORWARDED)]  # fmt: skip
     return t.all(
@@ -196,6 +186,13 @@ def _passed_on(stage: Stage, node: Record, frame: Record) -> Term:
         t.less(t.number(1), store[node, "done_hops", 0]),
         *others,
     )
+
+
+def cached_kind(stage: Stage, frame: Record) -> Term:
+    """What a cache of packets that were passed on has as a frame's kind: its parity, too."""
+    t, store = stage.terms, stage.store
+    parity = t.shr(t.bits_and(store[frame, "flags", None], t.number(PARITY)), t.number(1))
+    return t.bits_or(store[frame, "kind", None], parity)
 
 
 def simple(step: Step) -> list[Term]:

@@ -10,15 +10,15 @@ from typing import Any
 from innervate.dialect.arith import HALF16, MASK16
 from innervate.dialect.source import Change
 from innervate.networks.mesh.protocol import fields
-from innervate.networks.mesh.protocol.constants import PARITY
 from innervate.networks.mesh.protocol.duplicates import ANEW, BITS, FLOODED
 from innervate.networks.mesh.protocol.fields import FORWARDED, WINDOW_WORDS
 from innervate.networks.mesh.prove import hops
 from innervate.prove.errors import ProveError
+from innervate.prove.mutants import planted
 from innervate.prove.records import Record, Store
 from innervate.prove.steps import Goal, Stage, Step, own_goals
 from innervate.prove.terms import Term
-from innervate.prove.theory import Fault, Theory, is_in, source
+from innervate.prove.theory import Theory, is_in, source
 
 ENTRY = "innervate.networks.mesh.protocol.node"
 ORIGINS = 2
@@ -34,38 +34,30 @@ ASSUMED = (
     "A packet that is still on its way is less than 2^15 numbers behind.",
 )
 KEPT = (f"Reach: the {FORWARDED} packets that were noted last.",)
-MUTANTS = tuple(
-    Fault(*texts)
-    for texts in (
-        ("a packet that was delivered is delivered again",
-         "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n"),
-        ("what is behind the newest is new",
-         "    if node.window[word] & bit:\n        return 0\n", ""),
-        ("the window begins anew with every packet",
-         "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
-        ("what is behind is not noted",
-         "    node.window[word] = node.window[word] | bit\n", ""),
-        ("the packet that was newest is not in the window",
-         "            if old == -1:\n", "            if old == -2:\n"),
-        ("the window moves a place too far",
-         "old = at * BITS + b - ahead\n", "old = at * BITS + b - ahead - 1\n"),
-        ("a packet that was passed on is passed on again",
-         "        if node.done_kind[k] == kind:\n            return 1\n        node.done_kind",
-         "        node.done_kind"),
-        ("every packet is noted in the same place", "(k + 1) % FORWARDED", "k % FORWARDED"),
-        ("who had the packet is asked again",
-         "    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):\n",
-         "    if who == NONE or is_suspect(node, params, who):\n"),
-        ("who failed for a packet is asked again",
-         "            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):\n",
-         "            if who == NONE:\n"),
-        ("who transmits a packet is not in its path",
-         "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
-    )
+MUTANTS = planted(
+    ("a packet that was delivered is delivered again",
+     "    if ahead == 0:\n        return 0\n", "    if ahead == 0:\n        return 1\n"),
+    ("what is behind the newest is new", "    if node.window[word] & bit:\n        return 0\n", ""),
+    ("the window begins anew with every packet",
+     "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
+    ("what is behind is not noted", "    node.window[word] = node.window[word] | bit\n", ""),
+    ("the packet that was newest is not in the window",
+     "            if old == -1:\n", "            if old == -2:\n"),
+    ("the window moves a place too far",
+     "old = at * BITS + b - ahead\n", "old = at * BITS + b - ahead - 1\n"),
+    ("a packet that was passed on is passed on again",
+     "        if node.done_kind[k] == kind:\n            return 1\n        node.done_kind",
+     "        node.done_kind"),
+    ("every packet is noted in the same place", "(k + 1) % FORWARDED", "k % FORWARDED"),
+    ("who had the packet is asked again",
+     "    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):\n",
+     "    if who == NONE or is_suspect(node, params, who):\n"),
+    ("who failed for a packet is asked again",
+     "            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):\n",
+     "            if who == NONE:\n"),
+    ("who transmits a packet is not in its path",
+     "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
 )  # fmt: skip
-
-
-EXPLORERS = False  # of the explorer's mutants none but those above concern these caches
 
 
 def theories(_network: Any, change: Change | None = None) -> list[Theory]:
@@ -135,15 +127,14 @@ class Window:
 
     def accept(self, origin: int, seq: Term) -> tuple[Store, Term]:
         """The values after a packet of some origin, and whether it is delivered."""
-        args = [self.node, self.params, self.t.number(origin), seq, self.first]
-        after, result = self.stage.machine.run("accept", args, self.stage.store, self.t.true)
+        args = [self.node, self.params, origin, seq, self.first]
+        after, result = self.stage.machine.run("accept", args, self.stage.store)
         return after, self.t.as_truth(result)
 
     def step(self, name: str, after: Store, facts: list[Term], goals: list[Goal]) -> Step:
         """What was run as a step; fields stay in range and indices in arrays, too."""
-        machine, stage = self.stage.machine, self.stage
-        step = Step(name, machine, stage.records, stage.store, after, facts, singly=True)
-        step.goals = [*own_goals(step, ("node",), 0, 0), *goals]
+        step = self.stage.step(name, after, facts, [])
+        step.singly, step.goals = True, [*own_goals(step, ("node",), 0, 0), *goals]
         return step
 
     def state(self) -> list[Term]:
@@ -200,12 +191,10 @@ def _other(known: dict[str, Any]) -> Step:
 def _cache(known: dict[str, Any]) -> tuple[Stage, Record, Record, Term]:
     """A node's cache of packets that were passed on, a frame, and the frame's kind there."""
     stage = Stage(known, fields.FRAME, 8)
-    t = stage.terms
     kept = [field for field in fields.packets(ORIGINS)
             if field[0].startswith(("done_", "skip_"))]  # fmt: skip
     node, frame = stage.record("node", kept), stage.record("frame", fields.FRAME)
-    parity = t.shr(t.bits_and(stage.store[frame, "flags", None], t.number(PARITY)), t.number(1))
-    return stage, node, frame, t.bits_or(stage.store[frame, "kind", None], parity)
+    return stage, node, frame, hops.cached_kind(stage, frame)
 
 
 def _is_it(stage: Stage, node: Record, frame: Record, store: Store, k: int) -> Term:

@@ -6,51 +6,35 @@ from typing import Any
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import Nodes, are, there_are
 from innervate.networks.mesh.scenario.plan import MeshFault
-from innervate.scenario.actions.field import ACTIONS, TABLE
-from innervate.scenario.events import at_us
+from innervate.scenario.actions.field import ACTIONS, TABLE, TARGETS
+from innervate.scenario.events import Harmed, at_us
 from innervate.trace.streams import Stream, stream
 
-ACTION = {action.word: action for action in TABLE}
 NOISE_CDB = 2000  # a noise is so much above the 50 % point if nothing is said
 
 Pair = tuple[int, int]
 
 
-class _Tale:
-    """Who is dead and what is cut as events go by, so that random ones hit what is whole."""
+class _Tale(Harmed):
+    """What random events may hit as events go by."""
 
     def __init__(
         self, nodes: Nodes, good: list[Pair], spared: Collection[int], absent: list[int]
     ) -> None:
+        super().__init__(TABLE)
         self.nodes = nodes
         self.good = good
         self.spared = spared
-        # By the action that did it.
-        self.harmed: dict[str, set[Any]] = {one.word: set() for one in TABLE if one.harms}
-        self.harmed["kill"] |= {node for node, away in enumerate(absent) if away}
+        self.by["kill"] |= {node for node, away in enumerate(absent) if away}
 
-    def candidates(self, action: str) -> list[Any]:
+    def candidates(self, word: str) -> list[Any]:
         """What a random event may hit: nodes, or links for cut and restore."""
-        if ACTION[action].mends:
-            return sorted(self.harmed[ACTION[action].mends])
-        if action == "cut":
-            return [link for link in self.good if link not in self.harmed["cut"]]
+        if self.actions[word].mends:
+            return sorted(self.by[self.actions[word].mends])
+        if word == "cut":
+            return [link for link in self.good if link not in self.by["cut"]]
         return [node for node in range(len(self.nodes.names))
-                if node not in self.spared and node not in self.harmed["kill"]]  # fmt: skip
-
-    def note(self, action: str, hit: Any) -> None:
-        """Remember what an event did."""
-        if action in self.harmed:
-            self.harmed[action].add(hit)
-        elif action == "restart":
-            self.harmed["kill"].discard(hit)  # off and on: whoever was dead is there again
-        elif ACTION[action].mends:
-            self.harmed[ACTION[action].mends].discard(hit)
-
-
-def target_of(action: str) -> str:
-    """What an action happens to: "node" or "link"."""
-    return ACTION[action].target
+                if node not in self.spared and node not in self.by["kill"]]  # fmt: skip
 
 
 def absent(model: MeshScenario, nodes: Nodes, roles: dict[str, int]) -> list[int]:
@@ -131,7 +115,7 @@ def _hits(
             which = {
                 "revive": "dead", "cut": "whole", "restore": "cut", "quiet": "jammed",
             }.get(event.action, "alive and no flow's end, robot, gateway or monitor")  # fmt: skip
-            there = there_are(len(free), target_of(event.action))
+            there = there_are(len(free), TARGETS[event.action])
             message = f"event.{index}.random = {event.random}, but {there} that "
             message += f"{are(len(free))} {which}"
             raise nodes.source.error(("event", index, "random"), message)

@@ -58,7 +58,7 @@ def _bad_ways(made: MeshPlan, bad: BadLinks) -> list[str]:
     """Who has no way to the gateway but over links that are worse than retries make up for."""
     if not bad:
         return []
-    gateway = made.ranks.index(0)
+    gateway = made.gateway
     share, a, b = min(bad.values())
     there, back = (made.radio.prob_q15[i * made.nodes + j] / ONE for i, j in ((a, b), (b, a)))
     return [
@@ -74,7 +74,7 @@ def _bad_ways(made: MeshPlan, bad: BadLinks) -> list[str]:
 
 def _badly_reached(made: MeshPlan) -> BadLinks:
     """Nodes whose best way to the gateway has a bad link: the worst on it, see _worst_links()."""
-    worst = _worst_links(made, made.ranks.index(0))
+    worst = _worst_links(made, made.gateway)
     return {node: link for node, link in worst.items()
             if link[0] < ACKED_MIN and not made.robots[node]}  # fmt: skip
 
@@ -107,7 +107,7 @@ def _hasty(made: MeshPlan) -> list[str]:
     guard_us = made.params["guard_us"]
     if not 0 < guard_us < PATIENT_US:
         return []
-    worst = _worst_links(made, made.ranks.index(0))
+    worst = _worst_links(made, made.gateway)
     ways = {node: worst[node] for node, rank in enumerate(made.ranks) if rank > 0 and node in worst}
     lossy = [node for node, link in ways.items() if link[0] < HALF]
     if not lossy:
@@ -189,7 +189,7 @@ def _too_much(made: MeshPlan) -> list[str]:
     if not made.radio.collisions:
         return []
     bytes_to: dict[int, int] = {}
-    gateway = made.ranks.index(0)
+    gateway = made.gateway
     monitor = gateway if made.params["monitor"] == MONITOR else made.params["monitor"]
     for offer in made.offers:
         dest = monitor if offer.dest == MONITOR else offer.dest

@@ -1,7 +1,7 @@
 """Who is in a mesh, where everybody lies, and who hears whom how well [mesh 6]."""
 
 from dataclasses import dataclass
-from math import ceil, exp, isqrt, log
+from math import ceil, isqrt
 from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshScenario
@@ -10,7 +10,7 @@ from innervate.networks.mesh.scenario.plan import ONE, MeshRadio
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB, REPORT_CDB, Profile
 from innervate.scenario.errors import ScenarioError
 from innervate.topology import placement
-from innervate.topology.placement import UNHEARD, Point
+from innervate.topology.placement import UNHEARD, Point, quality_cdb, reception_q15
 from innervate.trace.streams import stream
 
 MEAN_DEGREE = 8.0
@@ -19,7 +19,6 @@ REACH = 1.5  # spacings of a grid or line: its eight, or two, neighbours are in 
 SHADOWING_DB, DIRECTION_DB = 3.0, 1.0
 WORK_MAX = 3_000_000  # pairs looked at before a connected placement is given up
 TRIES_MAX = 300
-STEP_CDB = 10  # reception is tabulated in steps of 0.1 dB
 
 
 @dataclass(slots=True)
@@ -33,18 +32,6 @@ class Network:
     # If qualities were given, rssi of the weakest good link, at most what is reported anyway; else
     # None.
     weakest_cdb: int | None = None
-
-
-def reception_q15(over_cdb: int) -> int:
-    """Chance of reception in 1/32768 at so much above the 50 % point (0.01 dB) [mesh 6]."""
-    steps = (over_cdb + STEP_CDB // 2) // STEP_CDB
-    return round(ONE / (1 + exp(-min(max(steps, -300), 300) / 10)))
-
-
-def quality_cdb(quality: float) -> int:
-    """How far above the 50 % point a link of this quality is, 0.01 dB, within +-9.21 dB."""
-    share = min(max(quality, 1e-4), 1 - 1e-4)
-    return round(100 * log(share / (1 - share)))
 
 
 def linked(model: MeshScenario, nodes: Nodes, profile: Profile) -> Network:

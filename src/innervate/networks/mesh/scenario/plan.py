@@ -6,19 +6,15 @@ from operator import itemgetter
 from typing import Any
 
 from innervate.scenario.declared.field import Fault
+from innervate.topology.placement import ONE_Q15
 
+ONE: int = ONE_Q15
 CLASSES = (32, 64, 254)  # capacity classes: nodes that a record has room for
-ONE = 32_768
+MeshFault = Fault  # one event of a run: what happens in any field
 HEADER_SLOTS = 2  # what medium access protocols of radio teams put in front of a frame, bytes
 
 
 Point = tuple[float, float]
-
-
-class MeshFault(Fault):
-    """One event of a mesh run: what happens in any field."""
-
-    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,3 +103,8 @@ class MeshPlan:
     faults: list[MeshFault] = field(default_factory=list)  # events in order of time
     # Which part of a larger network this is (`clusters.Cluster`), None if it is whole.
     cluster: Any = None
+
+    @property
+    def gateway(self) -> int:
+        """The node that leads, before any standby does."""
+        return self.ranks.index(0)

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from innervate.networks.mesh.scenario import fence as mesh_fence
-from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.model import MeshEventTable, MeshScenario
 from innervate.networks.mesh.scenario.nodes import (
     NODES_MAX,
@@ -12,7 +11,7 @@ from innervate.networks.mesh.scenario.nodes import (
     there_are,
     too_many,
 )
-from innervate.scenario.actions.field import TABLE
+from innervate.scenario.actions.field import TABLE, TARGETS
 from innervate.scenario.events import Finding, in_time, own_keys, refuse
 from innervate.scenario.source import Source, shown
 
@@ -208,7 +207,7 @@ def _event(model: MeshScenario, index: int, event: MeshEventTable) -> Iterator[F
     key, name = ("event", index), f"event.{index}"
     yield from in_time(index, event.at_s, model.duration_s)
     given = [t for t in ("node", "link", "random") if getattr(event, t) is not None]
-    wanted = target_of(event.action)
+    wanted = TARGETS[event.action]
     words = 'link = ["n1", "n2"] or random = 1' if wanted == "link" else "node = 3 or random = 1"
     if len(given) != 1:
         message = f'{name} ("{event.action}") needs one target: {words}'

@@ -5,13 +5,12 @@ from typing import Any
 
 from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.distribution import first_round, graph_nodes_max
-from innervate.networks.mesh.scenario.events import target_of
 from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.foreseen import foreseen
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import RESERVED, count_of, listed
 from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
-from innervate.scenario.actions.field import JAM
+from innervate.scenario.actions.field import JAM, TARGETS
 from innervate.scenario.events import opening, told
 from innervate.topology.placement import distances, neighbours
 
@@ -29,7 +28,7 @@ SOURCE_ROUTE_MAX = 19  # hops; at an MTU of 64 tables do not fit beside longer r
 def describe(made: MeshPlan) -> str:
     """A plan in words, several lines, without a newline at the end."""
     model: MeshScenario = made.scenario.model
-    params, gateway = made.params, made.ranks.index(0)
+    params, gateway = made.params, made.gateway
     names = [made.names[made.ranks.index(rank)] for rank in range(1, max(made.ranks) + 1)]
     standby = f", standby {listed(names)}" if names else ""
     monitor = "the gateway" if params["monitor"] == c.MONITOR else made.names[params["monitor"]]
@@ -67,7 +66,7 @@ def forwarding(made: MeshPlan) -> str:
     if failover != "auto":
         return str({c.WHOLE_GRAPH: "graph", c.TABLE_FREE: "table-free"}.get(mode, failover))
     near = neighbours(made.nodes, made.good)
-    tables_us, graph_us = first_round(made.radio, made.params, near, made.ranks.index(0))
+    tables_us, graph_us = first_round(made.radio, made.params, near, made.gateway)
     takes = f"{graph_us / 1e6:.2f} s on the air"
     if made.nodes > graph_nodes_max(made.params["mtu"]):
         takes = f"holds {graph_nodes_max(made.params['mtu'])} nodes"
@@ -97,7 +96,7 @@ def warnings(made: MeshPlan) -> list[str]:
     model: MeshScenario = made.scenario.model
     found = []
     near = neighbours(made.nodes, made.good)
-    gateway = made.ranks.index(0)
+    gateway = made.gateway
     leaves = sum(len(around) == 1 for around in near)
     if made.nodes > NEIGHBOURS_MIN and leaves >= STAR * made.nodes:
         found.append(
@@ -196,7 +195,7 @@ def fault_words(made: MeshPlan, fault: MeshFault) -> str:
     """A fault in words: "at 2 s kill n3", "at 3 s cut n1 - n2"."""
     event = made.scenario.model.event[fault.index]
     what = made.names[fault.node]
-    if target_of(event.action) == "link":
+    if TARGETS[event.action] == "link":
         what += f" - {made.names[fault.other]}"
     more = f" with {fault.value / 100:g} dBm" if fault.action == JAM else ""
     return f"at {fault.at_us / 1e6:g} s {event.action} {what}{more}"

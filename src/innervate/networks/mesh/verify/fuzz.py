@@ -4,9 +4,6 @@ import random
 from collections.abc import Iterator
 
 from innervate.scenario.shrink import Tables, with_fewer_keys
-from innervate.scenario.shrink import nothing as trouble
-
-__all__ = ["trouble"]
 
 SHARE = (0.75, 1.0)
 

@@ -28,6 +28,11 @@ BRISK = {
     "jitter_s": 0.02, "listen_s": 0.1, "spread_s": 0.1, "collect_s": 0.4, "copies": 1,
     "e2e_adapt": False,
 }  # fmt: skip
+# A message is tried twice in all, a hop once: what three transmissions can do to a hop, one can.
+SHORT = (("e2e_tries", 1), ("transmissions", 1))
+QUICK = (("period_s", 2.0), ("period_max_s", 2.0), ("dead_s", 3.0), ("dead_step_s", 1.0))
+# Questions, each after a wait: all in vain before the next request could be missed.
+ASKED = (("period_s", 6.0), ("period_max_s", 6.0), ("guard_s", 0.1))
 FENCE = {
     "points": 4,
     "px": [0, 1000, 1000, 0] + [0] * (mesh_fields.POINTS - 4),
@@ -100,6 +105,11 @@ def parse(text: str) -> tuple[tuple[int, int], ...]:
             f'"{text[:60]}": a mesh joins the nodes 0, 1, ... by links: 3 to {NODES_MAX} of them'
         )
     return tuple(sorted(links))
+
+
+def text_of(links: Any) -> str:
+    """Pairs of nodes as "0-1 1-2"."""
+    return " ".join(f"{a}-{b}" for a, b in links)
 
 
 def reach(nodes: int, links: Any, start: int, dead: Any = ()) -> set[int]:

@@ -10,7 +10,6 @@ from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.constants import NONE
 from innervate.networks.radio.prove import turns
 from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart, hear
-from innervate.prove.records import Outbox
 from innervate.prove.solve import Question
 from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.theory import Source, Theory
@@ -42,24 +41,20 @@ def _stage(known: Source) -> Stage:
 
 def _both(known: Source) -> Step:
     """Both stations hear a report, of whatever rounds."""
-    stage = _stage(known)
-    report = Report(known, stage, False)
-    first, *others = report.machines
-    return Step("two stations hear a report, of whatever rounds", first, stage.records,
-                report.before, report.after, report.facts(),
-                [report.each(), report.own(f"R10 {OWN}")], others=others)  # fmt: skip
+    report = Report(known, _stage(known), False)
+    goals = [report.own(f"R10 {OWN}")]
+    return report.step("two stations hear a report, of whatever rounds", goals)
 
 
 def _one(known: Source) -> Step:
     """A station hears a report that the other misses."""
     stage = _stage(known)
     t, a, b = stage.terms, stage.records["a"], stage.records["b"]
-    machine, before = Ending(known, t, Outbox(fields.FRAME, ROOM)), dict(stage.store)
-    after, _ = hear(stage, machine, a, before)
-    asked = t.same(before[b, "slot", None], t.number(NONE))
-    facts = [apart(t, before, a, b), asked, *machine.facts]
-    return Step(MISSED, machine, stage.records, before, after, facts,
-                [Goal(OWN, apart(t, after, a, b))])  # fmt: skip
+    stage.machine = machine = Ending(known, t, stage.out)
+    after, _ = hear(stage, machine, a, stage.store)
+    asked = t.same(stage.store[b, "slot", None], t.number(NONE))
+    facts = [apart(t, stage.store, a, b), asked, *machine.facts]
+    return stage.step(MISSED, after, facts, [Goal(OWN, apart(t, after, a, b))])
 
 
 def tell(step: Step, question: Question, _goal: str) -> list[str]:

@@ -14,7 +14,7 @@ from innervate.networks.radio.protocol.constants import MINISLOTS, NONE, POSITIO
 from innervate.networks.radio.protocol.modes import QUIET_MOST
 from innervate.prove.induction import Induction
 from innervate.prove.records import Array, Outbox, Record, State, Store
-from innervate.prove.steps import Goal, Stage
+from innervate.prove.steps import Goal, Stage, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import Source
 
@@ -70,9 +70,10 @@ class Report:
     """
 
     def __init__(self, known: Source, stage: Stage, alike: bool) -> None:
-        self.t, self.before, self.alike = stage.terms, dict(stage.store), alike
+        self.stage, self.t, self.alike = stage, stage.terms, alike
+        self.before = stage.store
         self.a, self.b, self.frame = (stage.records[name] for name in ("a", "b", "frame"))
-        self.after = dict(self.before)  # the values behind it
+        self.after = self.before  # the values behind it
         self.machines = []  # that heard it
         for one in (self.a, self.b):
             machine = Hearing(known, self.t, one, "round" if alike else one.name)
@@ -84,7 +85,7 @@ class Report:
         """What is known before the report, and before any of its minislots."""
         t, machine = self.t, self.machines[0]
         at = machine.passes.at
-        _, good = machine.run("bit", [Array(self.frame, "good", 2), at], self.before, t.true)
+        _, good = machine.run("bit", [Array(self.frame, "good", 2), at], self.before)
         both = [t.same(self.before[one, "slot", None], at) for one in (self.a, self.b)]
         used_by_one = t.negated(t.all(t.as_truth(good), *both))
         drawn = [fact for one in self.machines for fact in one.facts]
@@ -99,12 +100,7 @@ class Report:
         for name in COUNTS:
             parts.append(t.same(mine.names[name], other.names[name]))
             parts.append(t.at_most(t.as_number(mine.names[name]), done))
-        return t.all(*parts, self.same_round(store) if self.alike else t.true)
-
-    def same_round(self, store: Store) -> Term:
-        """Both have the same record of the round."""
-        return self.t.all(*(self.t.same(store[self.a, "live", k], store[self.b, "live", k])
-                            for k in range(POSITIONS)))  # fmt: skip
+        return t.all(*parts, *([same_round(t, store, self.a, self.b)] if self.alike else []))
 
     def each(self) -> Goal:
         """It is so before the first minislot, and behind each."""
@@ -113,6 +109,12 @@ class Report:
         behind = t.implies(passes[0].is_pass, self.holds("passed", more))
         fits = t.all(*(one.fits(t) for one in passes))
         return Goal(EACH, t.all(self.holds("entered", t.number(0)), behind, fits))
+
+    def step(self, name: str, goals: list[Goal]) -> Step:
+        """That it is heard, as a step; it is so minislot by minislot, and goals hold besides."""
+        first, *others = self.machines
+        return Step(name, first, self.stage.records, self.before, self.after, self.facts(),
+                    [self.each(), *goals], others=others)  # fmt: skip
 
     def own(self, name: str) -> Goal:
         """They have places of their own behind the last."""
@@ -123,7 +125,13 @@ def hear(stage: Stage, machine: Ending, one: Record, store: Store) -> tuple[Stor
     """A station hears the stage's frame as a report."""
     now = stage.terms.unknown(f"{one.name}.now", 0, MASK30)
     given = [one, stage.records["params"], now, stage.records["frame"], machine.out]
-    return machine.run("hear_report", given, store, stage.terms.true)
+    return machine.run("hear_report", given, store)
+
+
+def same_round(terms: Terms, store: Store, a: Record, b: Record) -> Term:
+    """Two stations have the same record of the round."""
+    return terms.all(*(terms.same(store[a, "live", k], store[b, "live", k])
+                       for k in range(POSITIONS)))  # fmt: skip
 
 
 def apart(terms: Terms, store: Store, a: Record, b: Record) -> Term:

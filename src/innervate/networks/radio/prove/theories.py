@@ -11,37 +11,33 @@ from innervate.dialect.source import Change
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.prove import missed, turns
 from innervate.prove.errors import ProveError
+from innervate.prove.mutants import planted
 from innervate.prove.steps import Goal, Stage, Step, own_goals
 from innervate.prove.terms import Term
-from innervate.prove.theory import Fault, Theory, is_in, source
+from innervate.prove.theory import Theory, is_in, source
 
 ENTRY = "innervate.networks.radio.protocol.practical"
 STATION = (*fields.STATION, *fields.PRACTICAL)
 ROOM = 16
 TIMERS = 2
-EXPLORERS = False  # its mutants are about turns
 PLACES = 16
 UNREACHABLE = {
     ("join_after", "if wide:", True): "bounds are not doubled yet when a station is switched on",
     ("schedule", "if after(station.at, now):", False): "what is waited for is always to come",
 }
-MUTANTS = tuple(
-    Fault(*texts)
-    for texts in (
-        ("a packet is put where the oldest is", "station.head + station.queued", "station.head"),
-        ("a full queue takes another", "station.queued >= QUEUE", "station.queued > QUEUE"),
-        ("a place that another gets is kept",
-         "                if place == station.pos:\n                    station.pos = NONE\n", ""),
-        ("who is not named takes the turn",
-         "    if cur == station.pos:\n", "    if cur <= station.pos:\n"),
-        ("a turn does not wait for the one before it",
-         "2 * least_delay(params, wide) - params.ta_us)",
-         "3 * least_delay(params, wide) - params.ta_us)"),
-        ("a turn is given up too soon",
-         "+ 4 * most_delay(params, wide) + minislot(params, wide)", "+ minislot(params, wide)"),
-        ("who is passed over takes the sender's place",
-         "        station.pos = NONE\n    if lone:", "        station.pos = sender\n    if lone:"),
-    )
+MUTANTS = planted(
+    ("a packet is put where the oldest is", "station.head + station.queued", "station.head"),
+    ("a full queue takes another", "station.queued >= QUEUE", "station.queued > QUEUE"),
+    ("a place that another gets is kept",
+     "                if place == station.pos:\n                    station.pos = NONE\n", ""),
+    ("who is not named takes the turn",
+     "    if cur == station.pos:\n", "    if cur <= station.pos:\n"),
+    ("a turn does not wait for the one before it", "2 * least_delay(params, wide) - params.ta_us)",
+     "3 * least_delay(params, wide) - params.ta_us)"),
+    ("a turn is given up too soon",
+     "+ 4 * most_delay(params, wide) + minislot(params, wide)", "+ minislot(params, wide)"),
+    ("who is passed over takes the sender's place",
+     "        station.pos = NONE\n    if lone:", "        station.pos = sender\n    if lone:"),
 )  # fmt: skip
 
 

@@ -15,10 +15,11 @@ from innervate.dialect.outbox import SEND
 from innervate.networks.radio.protocol import constants as const
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.protocol.modes import TURN
-from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart
+from innervate.networks.radio.prove.reports import ROOM, STATION, Ending, Report, apart, same_round
 from innervate.prove.answers import Answers
-from innervate.prove.records import Outbox, Record
+from innervate.prove.records import Outbox, Record, Store
 from innervate.prove.steps import Goal, Stage, Step
+from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import Source
 
 LOOKED_UP = ("count_kept", "count_places", "goes_on")  # whatever they answer
@@ -81,15 +82,12 @@ def _reported(known: Source) -> Step:
     report, t = Report(known, stage, True), stage.terms
     cur = t.same(report.after[a, "cur", None], report.after[b, "cur", None])
     goals = [
-        report.each(),
         report.own("R1 they have places of their own"),
         Goal("R2 they have the same record of the round",
-             t.implies(report.ends, report.same_round(report.after))),
+             t.implies(report.ends, same_round(t, report.after, a, b))),
         Goal("R3 they go on with the same place", t.implies(report.ends, cur)),
     ]  # fmt: skip
-    first, *others = report.machines
-    return Step("two stations hear a report", first, stage.records, report.before, report.after,
-                report.facts(), goals, others=others)  # fmt: skip
+    return report.step("two stations hear a report", goals)
 
 
 def _named(known: dict[str, Any]) -> Step:
@@ -99,25 +97,25 @@ def _named(known: dict[str, Any]) -> Step:
     sender, behind = (stage.store[frame, name, None] for name in ("pos", "next"))
     names = t.all(t.less(behind, t.number(const.WINDOWS)), t.negated(t.same(behind, sender)),
                   t.less(sender, t.number(const.POSITIONS)))  # fmt: skip
-    before, turns, machines = dict(stage.store), [], []
-    after = dict(before)
+    before, after, turns, machines = stage.store, stage.store, [], []
     for one in (a, b):
         machine = Ending(known, t, Outbox(fields.FRAME, ROOM))
         given = [one, params, t.unknown(f"{one.name}.now", 0, MASK30), frame, machine.out]
-        after, _ = machine.run("hear_data", given, after, t.true)
-        kept = t.any(*(t.same(after[one, "pos", None], value)
-                       for value in (before[one, "pos", None], t.number(const.NONE))))  # fmt: skip
-        turns.append(kept)
+        after, _ = machine.run("hear_data", given, after)
+        turns.append(_kept(t, before, after, one))
         machines.append(machine)
-    live = t.all(
-        *(t.same(after[a, "live", k], after[b, "live", k]) for k in range(const.POSITIONS))
-    )
     goals = [
         Goal("R4 nobody gets another's place", t.all(*turns)),
-        Goal("R5 they have the same record of the round", live),
+        Goal("R5 they have the same record of the round", same_round(t, after, a, b)),
     ]
     return Step("two stations hear a data frame", machine, stage.records, before, after,
                 [names, apart(t, before, a, b)], goals, others=machines[:-1])  # fmt: skip
+
+
+def _kept(terms: Terms, before: Store, after: Store, one: Record) -> Term:
+    """A station has the place that it had, or none."""
+    may = before[one, "pos", None], terms.number(const.NONE)
+    return terms.any(*(terms.same(after[one, "pos", None], place) for place in may))
 
 
 def _taken(known: dict[str, Any]) -> Step:
@@ -132,11 +130,9 @@ def _taken(known: dict[str, Any]) -> Step:
     sends = t.any(*(one.guard for one in step.machine.out.actions if one.kind == SEND))
     waits = t.all(t.same(step.after[a, "mode", None], t.number(TURN)),
                   t.same(step.after[a, "act", None], t.number(1)))  # fmt: skip
-    own = t.any(*(t.same(step.after[a, "pos", None], value)
-                  for value in (step.before[a, "pos", None], t.number(const.NONE))))  # fmt: skip
     step.goals = [
         Goal("R6 only who has the place takes the turn", t.implies(t.any(sends, waits), mine)),
-        Goal("R7 it keeps its place or gives it up", own),
+        Goal("R7 it keeps its place or gives it up", _kept(t, step.before, step.after, a)),
     ]
     return step
 
@@ -149,7 +145,7 @@ def _alone(known: dict[str, Any], wide: int, late: bool) -> Step:
     dmin, dmax, _, slot, dead = (store[params, name, None] for name in PLANNED)
     planned = t.add(t.add(turn, turn), t.add(t.mul(t.number(3), dmax), slot))
     least, most, wait, end = (
-        stage.machine.run(name, [params, t.number(wide)], dict(store), t.true)[1]
+        stage.machine.run(name, [params, wide], store)[1]
         for name in ("least_delay", "most_delay", "guard", "turn_timeout")
     )
     # From sender to next, and on to a third: two delays; from sender to the third: one.
@@ -160,5 +156,5 @@ def _alone(known: dict[str, Any], wide: int, late: bool) -> Step:
     if late:
         goal = Goal("R9 it begins before it would be given up",
                     t.at_most(t.sub(latest, least), end))  # fmt: skip
-    return Step(f"turn follows turn, dmax x {1 << wide}", stage.machine, stage.records, store,
-                store, [t.at_most(dmin, dmax), t.at_most(planned, dead)], [goal])  # fmt: skip
+    facts = [t.at_most(dmin, dmax), t.at_most(planned, dead)]
+    return stage.step(f"turn follows turn, dmax x {1 << wide}", store, facts, [goal])

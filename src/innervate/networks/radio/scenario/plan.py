@@ -6,11 +6,7 @@ from typing import Any, NamedTuple, Self
 from innervate.networks.radio.scenario.baselines import NONE
 from innervate.scenario.declared.channel import Fault
 
-
-class RadioFault(Fault):
-    """One event of a radio run: what happens on any channel."""
-
-    __slots__ = ()
+RadioFault = Fault  # one event of a run: what happens on any channel
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,9 @@ from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan, parame
 from innervate.networks.radio.scenario.rules import pair
 from innervate.networks.radio.scenario.traffic import OFFERS_MAX, arrivals, mean_interval_us, sizes
 from innervate.scenario.actions.channel import JOIN, KILL, LEAVE, TABLE, WORDS
+from innervate.scenario.cables import LOSS_ONE
 from innervate.scenario.events import at_us
 from innervate.trace.streams import stream
-
-LOSS_ONE = 32_768
 
 
 def plan(scenario: Any) -> RadioPlan:

@@ -1,6 +1,6 @@
 """What `innervate verify radio` does: offers, delays and draws on a grid, and trees of draws."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -37,9 +37,7 @@ def _search(grid: Grid, limit: int, tell: Tell) -> Case:
         return tell(what, found.done, found.grid.points)
 
     found = grids.search(grid, progress, limit)
-    code = next(iter(found.broken), None)
-    told = None if code is None else _told(code, story(grid, found.first[code]))
-    return _case(found, _lines(found), told)
+    return _case(found, _lines(found), lambda code: story(grid, found.first[code]))
 
 
 def _grow(grid: Grid, limit: int, tell: Tell) -> Case:
@@ -48,18 +46,13 @@ def _grow(grid: Grid, limit: int, tell: Tell) -> Case:
         return tell(what, 0, 0)
 
     grown = trees.search(_tree(grid), limit=limit, progress=progress)
-    code = next(iter(grown.broken), None)
-    told = None if code is None else _told(code, trees.story(grown, code))
-    return _case(grown, [_tree_line(grown)], told)
+    return _case(grown, [_tree_line(grown)], partial(trees.story, grown))
 
 
-def _told(code: int, sentences: list[str]) -> Story:
-    """What is written of the first thing that broke: the last of its sentences is the title."""
-    return Story(WORDS[code], [one for one in sentences if not one.startswith("So: ")])
-
-
-def _case(found: Found | Grown, lines: list[str], told: Story | None) -> Case:
-    is_all = found.ended == "complete"
+def _case(found: Found | Grown, lines: list[str], tell: Callable[[int], list[str]]) -> Case:
+    """What came of it; `tell` gives the sentences of the first thing that broke, by its number."""
+    code, is_all = next(iter(found.broken), None), found.ended == "complete"
+    told = None if code is None else Story(WORDS[code], tell(code))
     return Case(lines, found.as_dict(), bool(found.broken), is_all, sums_up=False, story=told)
 
 
@@ -80,14 +73,14 @@ def _grids(stations: int, mode: str) -> list[Grid]:
 
 def _lines(found: Found) -> list[str]:
     grid = found.grid
-    head = f"{grid.stations} stations, {grid.mode}, turnaround {grid.turnaround_us} us: "
-    head += f"{found.done:,} of {grid.points:,} points in {found.wall_s:.1f} s"
+    head = f"{grid.words}: {found.done:,} of {grid.points:,} points in {found.wall_s:.1f} s"
     if not found.broken:
         return [f"{head}; all delivered, in order, nothing lost silently"]
     lines = [head]
     for code, count in found.broken.items():
         lines.append(f"    BROKEN at {number_of(count, 'point')}: {WORDS[code]}. The first:")
-        told = enumerate(story(grid, found.first[code]), 1)
+        sentences = [*story(grid, found.first[code]), f"So: {WORDS[code]}."]
+        told = enumerate(sentences, 1)
         lines += [f"        {number}. {sentence}" for number, sentence in told]
     return lines
 
@@ -100,11 +93,9 @@ def _tree(grid: Grid) -> Tree:
 
 def _tree_line(grown: Grown) -> str:
     """What came of a tree."""
-    grid = grown.tree.grid
-    head = f"{grid.stations} stations, {grid.mode}, turnaround {grid.turnaround_us} us: "
-    head += f"every answer to the first {grown.tree.depth} draws, {number_of(grown.runs, 'run')}"
     part = "" if grown.ended == "complete" else f" ({grown.ended})"
-    head += f"{part} in {grown.wall_s:.1f} s"
+    head = f"{grown.tree.grid.words}: every answer to the first {grown.tree.depth} draws, "
+    head += f"{number_of(grown.runs, 'run')}{part} in {grown.wall_s:.1f} s"
     if not grown.broken:
         return f"{head}; all delivered, in order, nothing lost silently"
     told = [f"{WORDS[code]} ({number_of(runs, 'run')})" for code, runs in grown.broken.items()]

@@ -4,24 +4,20 @@ from collections.abc import Iterator
 
 from innervate.networks.radio.verify import grid as grid
 from innervate.networks.radio.verify import tree as tree
-from innervate.verify.mutants import Catch, Mutant, copies
+from innervate.prove.mutants import Mutant, planted
+from innervate.verify.cases import Catch
 
 RUNS = 120
 
-MUTANTS = tuple(
-    Mutant(*texts)
-    for texts in (
-        ("minislots that collided do not split",
-         "station.slot = parts * groups + draw(station, parts)", "station.slot = parts * groups"),
-        ("a collision's wait is not drawn",
-         "wait + step * draw(station, bound // step)", "wait"),
-        ("who was given a place does not note it",
-         "                if i == mine and station.mode == modes.WINDOW:\n"
-         "                    station.pos = place\n", ""),
-        ("nothing is ever proved",
-         "    if count:\n        delivered(station, count, out)\n",
-         "    if count < 0:\n        delivered(station, count, out)\n"),
-    )
+MUTANTS = planted(
+    ("minislots that collided do not split",
+     "station.slot = parts * groups + draw(station, parts)", "station.slot = parts * groups"),
+    ("a collision's wait is not drawn", "wait + step * draw(station, bound // step)", "wait"),
+    ("who was given a place does not note it",
+     "                if i == mine and station.mode == modes.WINDOW:\n"
+     "                    station.pos = place\n", ""),
+    ("nothing is ever proved", "    if count:\n        delivered(station, count, out)\n",
+     "    if count < 0:\n        delivered(station, count, out)\n"),
 )  # fmt: skip
 
 
@@ -34,7 +30,7 @@ def trees() -> Iterator[tree.Tree]:
 
 def hunt(mutant: Mutant) -> Catch:
     """Try a mutant on all trees until something is broken."""
-    (entry,) = copies(mutant, "innervate.networks.radio.protocol.practical")
+    (entry,) = mutant.copies("innervate.networks.radio.protocol.practical")
     runs = 0
     for one in trees():
         found = tree.search(one, entry, RUNS, lambda grown: bool(grown.broken))

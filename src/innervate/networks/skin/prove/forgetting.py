@@ -18,7 +18,7 @@ from innervate.networks.skin.protocol import fields
 from innervate.networks.skin.prove.neighbours import ANY_RULE, ENTRY, ROOM
 from innervate.networks.skin.prove.reductions import LOADS, STORED, Bare
 from innervate.prove.execute import Machine
-from innervate.prove.records import Array, Call, Demand, Outbox, State, Store
+from innervate.prove.records import Array, Demand, Outbox, State, Store
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
@@ -55,14 +55,14 @@ class Asked(Machine):
             return after, self.terms.false
         return after, value
 
-    def element(self, array: Array, index: Term, node: ast.AST, state: State, call: Call) -> Term:
+    def element(self, array: Array, index: Term, node: ast.AST, state: State) -> Term:
         """An element of an array: at an unknown index it is not the dead port's."""
         if index.value is not None or array.name not in SAYS:
-            return super().element(array, index, node, state, call)
+            return super().element(array, index, node, state)
         t = self.terms
         others = [k for k in range(max(index.low, 0), array.length) if k != self.port.value]
         other = t.negated(t.same(index, self.port))
-        guard = t.all(call.under, state.path)
+        guard = self.here(state)
         self.demands.append(Demand("a dead port is not looked at", guard, other, self.question))
         found = state.store[array.record, array.name, others[0]]
         for k in others[1:]:
@@ -70,11 +70,11 @@ class Asked(Machine):
             found = t.pick(here, state.store[array.record, array.name, k], found)
         return found
 
-    def draw(self, many: Term, state: State, call: Call) -> Term:
+    def draw(self, many: Term, state: State) -> Term:
         """The same draw of both runs returns the same number."""
         t = self.terms
         drawn = t.unknown(f"{self.event}: draw {len(self.draws)}", 0, const.PORTS - 1)
-        under = t.all(call.under, state.path, t.at_most(t.number(1), many))
+        under = t.all(self.here(state), t.at_most(t.number(1), many))
         self.facts.append(t.implies(under, t.less(drawn, many)))
         self.draws.append((drawn, many, under))
         return drawn

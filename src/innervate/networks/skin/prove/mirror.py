@@ -25,7 +25,7 @@ from innervate.networks.skin.prove.reductions import (
     same_state,
 )
 from innervate.prove.execute import Machine
-from innervate.prove.records import Call, Demand, Outbox, Record, State, Store, name_of
+from innervate.prove.records import Demand, Outbox, Record, State, Store, name_of
 from innervate.prove.steps import Goal, Step
 from innervate.prove.terms import Term, Terms
 from innervate.prove.theory import source
@@ -102,11 +102,11 @@ class Second(Machine):
         self.demands.append(Demand(MADE, under, alike, CHOICE))
         return {**store, **self.mirror.of_store(found)}, t.number(0)
 
-    def draw(self, many: Term, state: State, call: Call) -> Term:
+    def draw(self, many: Term, state: State) -> Term:
         """The number that is tried, if it is among so many."""
         if self.number is None:
-            return super().draw(many, state, call)
-        under = self.terms.all(call.under, state.path)
+            return super().draw(many, state)
+        under = self.here(state)
         self.can_be.append(self.terms.implies(under, self.terms.less(self.number, many)))
         return self.number
 
@@ -163,10 +163,10 @@ def _choice(known: dict[str, Any], rule: int, how: str) -> Step:
     bare = _bare(known, rule)
     t, mirror, before = bare.t, Mirror(bare.t, ORDERS[how]), bare.stage.store
     first = First(known, t, True)
-    given = [bare.cell, bare.params, t.number(0)]
-    after, _ = first.run(CHOICE, [*given, first.out], before, t.true)
+    given = [bare.cell, bare.params, 0]
+    after, _ = first.run(CHOICE, [*given, first.out], before)
     second = Second(first, mirror)
-    image, _ = second.run(CHOICE, [*given, second.out], mirror.of_store(before), t.true)
+    image, _ = second.run(CHOICE, [*given, second.out], mirror.of_store(before))
     bare.machines = [first, second]
     others = [t.same(before[key], after[key]) for key, _, _ in bare.cell.places()
               if key[1] not in (*CHOSEN, *NOT_DRAWN)]  # fmt: skip

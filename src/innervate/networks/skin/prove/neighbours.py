@@ -249,12 +249,12 @@ class Cell:
         """All that a handler is given; "cause", "port", "frame" among what it is told are any."""
         cause = self.t.unknown("cause", 0, 1)
         given = {"cause": cause, "port": self.port, "frame": self.frame}
-        args = [self.t.number(one) if isinstance(one, int) else given.get(one, one) for one in told]
+        args = (given.get(one, one) for one in told)
         return [self.cell, self.params, self.stage.clock(), *args, out]
 
     def asks(self, question: str, args: list[Any], store: Store) -> Term:
         """What a function of the protocol answers, as a truth."""
-        _, answer = blank(self.known, self.t).run(question, args, store, self.t.true)
+        _, answer = blank(self.known, self.t).run(question, args, store)
         return self.t.as_truth(answer)
 
 
@@ -340,4 +340,4 @@ def moved(name: str, rule: Rule, moves: Moves) -> Step:
     now = View(stage.terms, cell.cell, cell.params, stage.store, after)
     goals = [*rule.invariants(now), Goal("what neighbours have is true", true_ghosts(now))]
     assumed = [*rule.facts(cell.view(stage.store)), *known]
-    return Step(name, stage.machine, stage.records, stage.store, stage.store, assumed, goals)
+    return stage.step(name, stage.store, assumed, goals)

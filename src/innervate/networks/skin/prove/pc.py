@@ -43,7 +43,7 @@ def _known_before(known: dict[str, Any]) -> Step:
     """A number that it knows, or of a cell that never had one."""
     step = _play(known, "the PC hears what it knows", "on_frame", ["port", "frame"], BEACON)
     t, said, mine = step.terms, step.was("frame", "sq"), step.was("own", "sq")
-    _, newer = step.machine.run("later", [said, mine], step.before, t.true)
+    _, newer = step.machine.run("later", [said, mine], step.before)
     old = t.all(t.same(step.was("own", "sq_known"), t.number(1)), t.negated(t.as_truth(newer)))
     step.facts.append(t.any(old, t.same(step.was("frame", "load"), t.number(0))))
     step.goals = [Goal("it notes no more than a port's load", _same(step, step.before))]
@@ -62,7 +62,7 @@ def _heard_alike(known: dict[str, Any]) -> Step:
     port = t.unknown("port'", 0, PORTS - 1)
     step.facts += [t.same(*none), t.less(port, step.was("own", "ports"))]
     given = [step.records["pc"], step.records["params"], t.unknown("now'", 0, MASK30), port, frame]
-    after, _ = step.machine.run("on_frame", [*given, step.machine.out], other, t.true)
+    after, _ = step.machine.run("on_frame", [*given, step.machine.out], other)
     step.goals = [Goal("the same comes of it, and nothing is sent", _same(step, after))]
     return step
 

@@ -58,7 +58,7 @@ class Bare(Cell):
 
     def by(self, machine: Any, store: Store, handler: str, *told: Any) -> tuple[Store, Any]:
         """The same by a machine of one's own."""
-        after, _ = machine.run(handler, self.arguments(told, machine.out), store, self.t.true)
+        after, _ = machine.run(handler, self.arguments(told, machine.out), store)
         self.machines.append(machine)
         return after, machine
 

@@ -90,18 +90,17 @@ def _ticks(two: Two, cell: Record, store: Store, heard: bool) -> Store:
     """A cell's period ends; whether a beacon of the PC came in it. The other's last comes again."""
     flags = {PC: int(heard), OTHER: 1}
     store = {**store, **{(cell, "heard", p): two.stage.number(flags[p]) for p in flags}}
-    args = [cell, two.params, two.stage.clock(), two.stage.number(const.TICK), two.stage.out]
-    after, _ = two.stage.machine.run("on_timer", args, store, two.stage.terms.true)
+    args = [cell, two.params, two.stage.clock(), const.TICK, two.stage.out]
+    after, _ = two.stage.machine.run("on_timer", args, store)
     return after
 
 
-def _ring(two: Two, name: str, before: Store, after: Store, facts: list[Term]) -> Step:
+def _ring(two: Two, name: str, after: Store, facts: list[Term]) -> Step:
     t = two.stage.terms
     closed = t.all(*(t.same(after[cell, "parent", None], t.number(OTHER))
                      for cell in (two.a, two.b)))  # fmt: skip
-    machine = two.stage.machine
-    return Step(name, machine, two.stage.records, before, after, [*facts, *machine.facts],
-                [Goal(GOAL, t.negated(closed))])  # fmt: skip
+    known = [*facts, *two.stage.machine.facts]
+    return two.stage.step(name, after, known, [Goal(GOAL, t.negated(closed))])
 
 
 def _both_lose(known: dict[str, Any], rule: int) -> Step:
@@ -112,9 +111,8 @@ def _both_lose(known: dict[str, Any], rule: int) -> Step:
         _routed(two, cell, PC, 0, sq)
         stage.fix(cell, "dist", 1, OTHER)
         stage.store[cell, "sq", OTHER] = sq
-    before = dict(stage.store)
-    after = _ticks(two, two.b, _ticks(two, two.a, before, False), False)
-    return _ring(two, BOTH_LOSE, before, after, [])
+    after = _ticks(two, two.b, _ticks(two, two.a, stage.store, False), False)
+    return _ring(two, BOTH_LOSE, after, [])
 
 
 def _goes_back(known: dict[str, Any], rule: int, only_rises: bool) -> Step:
@@ -134,12 +132,11 @@ def _goes_back(known: dict[str, Any], rule: int, only_rises: bool) -> Step:
     facts = [_ahead(two, early, sq), *(_ahead(two, oldest, one) for one in (early, sq, new))]
     if only_rises:
         facts.append(_ahead(two, sq, new))
-    before = dict(stage.store)
-    args = [two.a, two.params, stage.clock(), stage.number(PC), two.frame, stage.out]
-    heard, _ = stage.machine.run("on_frame", args, before, t.true)
+    args = [two.a, two.params, stage.clock(), PC, two.frame, stage.out]
+    heard, _ = stage.machine.run("on_frame", args, stage.store)
     followed = _ticks(two, two.a, heard, True)
     after = _ticks(two, two.a, followed, False)
-    return _ring(two, PC_GOES_BACK, before, after, facts)
+    return _ring(two, PC_GOES_BACK, after, facts)
 
 
 def _ahead(two: Two, a: Term, b: Term) -> Term:

@@ -18,8 +18,7 @@ from innervate.networks.skin.prove import (
     system,
     unread,
 )
-from innervate.networks.skin.prove.faults import EXPLORERS
-from innervate.networks.skin.prove.faults import FAULTS as MUTANTS
+from innervate.networks.skin.prove.faults import EXPLORERS, MUTANTS
 from innervate.networks.skin.prove.neighbours import ANY_RULE, ENTRY, base_of
 from innervate.networks.skin.prove.words import tell
 from innervate.prove.errors import ProveError

@@ -1,5 +1,6 @@
 """What refutes a claim about cells, told of the two cells it concerns."""
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.protocol.constants import INFINITY, NONE, PORTS
 from innervate.prove.records import Record, Store
 from innervate.prove.solve import Question
@@ -45,7 +46,7 @@ def _unlike(step: Step, question: Question, cell: Record, p: int) -> bool:
 
 
 def _hops(dist: int) -> str:
-    return "no route" if dist == INFINITY else f"{dist} hop{'' if dist == 1 else 's'}"
+    return "no route" if dist == INFINITY else number_of(dist, "hop")
 
 
 def _cell(question: Question, cell: Record, store: Store) -> str:

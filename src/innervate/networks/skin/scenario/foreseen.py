@@ -6,8 +6,10 @@ from array import array
 from dataclasses import replace
 
 from innervate.networks.skin.scenario.plan import Plan
-from innervate.scenario.actions.cables import CUT, KILL, RESTART, RESTORE, REVIVE
+from innervate.networks.skin.scenario.targets import hit
+from innervate.scenario.actions.cables import CUT, KILL, RESTART, RESTORE, REVIVE, TABLE
 from innervate.scenario.cables import Fault, fault_words
+from innervate.scenario.events import Harmed
 from innervate.topology.graph import UNREACHABLE
 from innervate.topology.patch import NOTHING
 
@@ -47,25 +49,17 @@ def foreseen(made: Plan) -> list[str]:
 
 def _played(made: Plan) -> tuple[set[int], set[int], list[tuple[Fault, str]]]:
     """(cells that are off, cables that are cut, by an end, at the end; events in vain, and why)."""
-    off: set[int] = set()
-    cut: set[int] = set()
-    idle = []
+    harmed, idle = Harmed(TABLE), []
+    off = harmed.by["kill"]
     for fault in made.faults:
-        whom, what = off, fault.node
-        if fault.action in (CUT, RESTORE):
-            whom, what = cut, min(fault.end, made.graph.peer[fault.end])
-        if fault.action in (CUT, KILL):
-            why = WHY[fault.action] if what in whom else ""
-            whom.add(what)
-        else:
-            # A cell that is off does not restart.
-            vain = what in off if fault.action == RESTART else what not in whom
-            why = WHY[fault.action] if fault.action in WHY and vain else ""
-            if fault.action in (RESTORE, REVIVE):
-                whom.discard(what)
-        if why:
-            idle.append((fault, why))
-    return off, cut, idle
+        action, what = TABLE[fault.action], hit(made.graph, fault.end, fault.node)
+        is_vain = what in off  # a cell that is off does not restart
+        if action.harms or action.mends:
+            is_vain = (what in harmed.by[action.mends or action.word]) == action.harms
+        if is_vain and fault.action in WHY:
+            idle.append((fault, WHY[fault.action]))
+        harmed.note(action.word, what)
+    return off, harmed.by["cut"], idle
 
 
 def _depths(made: Plan, off: set[int], cut: set[int]) -> array[int]:

@@ -9,11 +9,11 @@ from innervate.networks.skin.scenario.model import ProtocolTable, SkinScenario
 from innervate.networks.skin.scenario.orders import Order, orders
 from innervate.networks.skin.scenario.rules import ONE
 from innervate.networks.skin.scenario.script import Step, steps
-from innervate.networks.skin.scenario.targets import Damage, target
+from innervate.networks.skin.scenario.targets import hit, target
 from innervate.networks.skin.scenario.touch import Touch, sample
-from innervate.scenario.actions.cables import ACTIONS
+from innervate.scenario.actions.cables import ACTIONS, TABLE
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
-from innervate.scenario.events import at_us, exact, micros
+from innervate.scenario.events import Harmed, at_us, exact, micros
 from innervate.scenario.load import Scenario
 from innervate.trace.streams import stream
 
@@ -113,12 +113,12 @@ def parameters(protocol: ProtocolTable, depth_max: int) -> dict[str, int]:
 def _faults(named: Named, model: SkinScenario) -> list[Fault]:
     draws = [stream(model.seed, f"event/{index}") for index in range(len(model.event))]
     times = [at_us(event, draw) for event, draw in zip(model.event, draws, strict=True)]
-    damage = Damage()
+    harmed = Harmed(TABLE)
     faults = []
     for index in sorted(range(len(times)), key=lambda i: (times[i], i)):
         event = model.event[index]
-        end, node = target(named, index, event, draws[index], damage)
-        damage.note(named.graph, event.action, end, node)
+        end, node = target(named, index, event, draws[index], harmed)
+        harmed.note(event.action, hit(named.graph, end, node))
         loss_q15 = round(exact(event.loss or 0.0) * LOSS_ONE)
         frames = (event.frames or 1) if event.action == "lose" else 0
         action = ACTIONS.index(event.action)

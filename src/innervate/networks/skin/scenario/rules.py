@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import ceil
 
 from innervate.networks.skin.scenario.model import K_MAX, CommandTable, EventTable, SkinScenario
-from innervate.scenario.actions.cables import TABLE
+from innervate.scenario.actions.cables import TABLE, TARGETS
 from innervate.scenario.events import Finding, exact, in_order, in_time, own_keys, refuse
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
@@ -14,8 +14,7 @@ ONE = 840  # p_f = 1 in fixed point [skin 5]
 # drift_ppm has to stay below 2^33, less a little for the rounding of the drift.
 DRIFT_S_PPM = 8_000_000_000
 COMMANDS_MAX = 1_000_000
-TARGETS = ("interface", "cell", "link", "node", "pc", "random")
-TARGET_OF = {action.word: action.target for action in TABLE}
+NAMES = ("interface", "cell", "link", "node", "pc", "random")
 # The keys that name a target, and the words for them.
 _NAMED = {
     "cable": (
@@ -113,8 +112,8 @@ def _event(model: SkinScenario, index: int, event: EventTable) -> Iterator[Findi
     key: Key = ("event", index)
     name = f"event.{index}"
     yield from in_time(index, event.at_s, model.duration_s, "least, most")
-    given = [t for t in TARGETS if getattr(event, t) is not None and getattr(event, t) is not False]
-    target = TARGET_OF[event.action]
+    given = [t for t in NAMES if getattr(event, t) is not None and getattr(event, t) is not False]
+    target = TARGETS[event.action]
     allowed, words = _NAMED[target]
     if not given:
         yield key, f'{name} ("{event.action}") has no target; name {words}'

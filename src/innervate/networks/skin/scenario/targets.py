@@ -1,10 +1,9 @@
 """Whom an event means: the end of a cable or a node, named or drawn from the seed."""
 
-from dataclasses import dataclass, field
-
 from innervate.networks.skin.scenario.graph import Named, numbered
 from innervate.networks.skin.scenario.model import CellTable, EventTable
-from innervate.networks.skin.scenario.rules import TARGET_OF
+from innervate.scenario.actions.cables import TARGETS
+from innervate.scenario.events import Harmed
 from innervate.scenario.lines import Key
 from innervate.topology import PORT_NAMES, PORTS, Graph
 from innervate.trace.streams import Stream
@@ -12,28 +11,13 @@ from innervate.trace.streams import Stream
 NONE = -1
 
 
-@dataclass(slots=True)
-class Damage:
-    """What earlier events took away, so that random ones choose among what is left."""
-
-    cut: set[int] = field(default_factory=set)  # for every cut cable the lower of its two ends
-    dead: set[int] = field(default_factory=set)  # cells killed and not revived
-
-    def note(self, graph: Graph, action: str, end: int, node: int) -> None:
-        """Take down what an event does."""
-        cable = min(end, graph.peer[end]) if end >= 0 else NONE
-        if action == "cut":
-            self.cut.add(cable)
-        elif action == "restore":
-            self.cut.discard(cable)
-        elif action == "kill":
-            self.dead.add(node)
-        elif action == "revive":
-            self.dead.discard(node)
+def hit(graph: Graph, end: int, node: int) -> int:
+    """What an event happens to, as a number: of a cable the lower of its ends, or the node."""
+    return min(end, graph.peer[end]) if end >= 0 else node
 
 
 def target(
-    named: Named, index: int, event: EventTable, draw: Stream, damage: Damage
+    named: Named, index: int, event: EventTable, draw: Stream, harmed: Harmed
 ) -> tuple[int, int]:
     """(end, node) of event `index`; the one that does not apply is -1.
 
@@ -46,8 +30,8 @@ def target(
     key: Key = ("event", index)
     graph = named.graph
     if event.random is not None:
-        return _drawn(named, key, event, draw, damage)
-    if TARGET_OF[event.action] != "cable":
+        return _drawn(named, key, event, draw, harmed)
+    if TARGETS[event.action] != "cable":
         return NONE, _node(named, event, key)
     if event.interface is not None:
         if event.interface >= graph.interfaces:
@@ -120,7 +104,7 @@ def find_link(graph: Graph, a: tuple[int, int], b: tuple[int, int]) -> int:
 
 
 def _drawn(
-    named: Named, key: Key, event: EventTable, draw: Stream, damage: Damage
+    named: Named, key: Key, event: EventTable, draw: Stream, harmed: Harmed
 ) -> tuple[int, int]:
     """A random target. Repairs choose among what is broken, everything else among what is whole.
 
@@ -128,7 +112,7 @@ def _drawn(
     """
     graph, mending = named.graph, event.action in ("restore", "revive")
     if event.random == "cell":
-        nodes = [c for c in range(graph.cells) if (c in damage.dead) == mending]
+        nodes = [c for c in range(graph.cells) if (c in harmed.by["kill"]) == mending]
         if nodes:
             return NONE, nodes[draw.draw(len(nodes))]
     else:
@@ -139,7 +123,7 @@ def _drawn(
             for end in range(first, last)
             if graph.peer[end] >= 0
             and (first == border or end < graph.peer[end] < border)
-            and (min(end, graph.peer[end]) in damage.cut) == mending
+            and (min(end, graph.peer[end]) in harmed.by["cut"]) == mending
         ]
         if ends:
             return ends[draw.draw(len(ends))], NONE

@@ -4,9 +4,6 @@ import random
 from collections.abc import Iterator
 
 from innervate.scenario.shrink import Tables, with_fewer_keys
-from innervate.scenario.shrink import nothing as trouble
-
-__all__ = ["trouble"]
 
 SHARE = (0.25, 0.75)
 SKIN_ACTIONS = ("cut", "restore", "kill", "revive", "loose", "lose", "restart")

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import combinations, permutations
 
 from innervate.topology import Graph, free_graph
+from innervate.topology.placement import UNREACHABLE, distances, neighbours
 from innervate.verify.errors import VerifyError
 
 CELLS_MAX = 5
@@ -70,12 +71,7 @@ def cables(graph: Graph) -> str:
 
 def is_connected(cells: int, edges: set[Edge] | frozenset[Edge]) -> bool:
     """True if cables join all cells to the PC (node 0)."""
-    reached, grew = {0}, True
-    while grew:
-        more = {b for a, b in edges if a in reached} | {a for a, b in edges if b in reached}
-        grew = not more <= reached
-        reached |= more
-    return len(reached) == cells + 1
+    return UNREACHABLE not in distances(neighbours(cells + 1, list(edges)), 0)
 
 
 def all_graphs(cells: int) -> Iterator[Graph]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from innervate.kernel.words import number_of
 from innervate.networks.skin.protocol.constants import INFINITY, NONE, PORTS
 from innervate.networks.skin.verify import check as skin_check
 from innervate.networks.skin.verify import moves as skin_moves
@@ -247,4 +248,4 @@ def _queued_frame(twin: Twin, way: int, count: int) -> bytes:
 def _route(dist: int, sq: int) -> str:
     if dist == INFINITY:
         return f"no route, number {sq}"
-    return f"{dist} hop{'' if dist == 1 else 's'}, number {sq}"
+    return f"{number_of(dist, 'hop')}, number {sq}"
