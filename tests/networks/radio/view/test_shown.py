@@ -188,7 +188,7 @@ def test_switches_and_what_is_refused(view):
 def test_a_headline_is_of_what_is_known_now(view, monkeypatch, now_us, complete, ended):
     seen = []
     monkeypatch.setattr("innervate.networks.radio.view.view.headline", seen.append)
-    view.engine.now_us, view.engine.is_complete = now_us, lambda: complete
+    view.engine.now_us, view.engine.running.is_complete = now_us, lambda: complete
     view.headline()
     view.memory.wrong = {3, 1}
     view.headline()
