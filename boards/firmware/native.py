@@ -47,10 +47,9 @@ def run(command: Iterable[str | Path]) -> str:
 
 def write(library: Library, folder: Path) -> Path:
     """Header and source in a folder; the source's path."""
-    name = library.prefix
-    (folder / f"{name}.h").write_text(library.header())
-    (folder / f"{name}.c").write_text(library.source(f"{name}.h"))
-    return folder / f"{name}.c"
+    for name, text in library.texts().items():
+        (folder / name).write_text(text)
+    return folder / library.own_files[1]
 
 
 class Native:

@@ -3,7 +3,7 @@
 import pytest
 
 from innervate.analysis.intervals import quantile
-from innervate.analysis.percentiles import percentiles
+from innervate.analysis.percentiles import percentiles, usual
 
 
 @pytest.mark.parametrize(("values", "shares", "linear", "nearest"), [
@@ -17,3 +17,9 @@ def test_a_percentile_lies_between_two_values_or_is_the_nearest(values, shares, 
     assert percentiles(values, shares, nearest=True) == nearest
     if values:  # as of sweeps
         assert [quantile(values, share / 100) for share in shares] == pytest.approx(linear)
+
+
+def test_usually_told_are_the_median_one_that_few_exceed_and_the_greatest():
+    told = pytest.approx({"p50": 2.0, "p99": 3.96, "max": 4.0})
+    assert usual([4000, 1000, 2000], 1e-3) == told
+    assert usual([]) == {"p50": None, "p99": None, "max": None}

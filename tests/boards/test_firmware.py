@@ -69,8 +69,8 @@ def test_a_mistake_in_c_is_found(what, tmp_path, monkeypatch):
     old, new = MISTAKES[what]
     source = Library.source
 
-    def wrong(self, header):
-        text = source(self, header)
+    def wrong(self):
+        text = source(self)
         assert old in text
         return text.replace(old, new, 1)
 

@@ -113,9 +113,9 @@ MISTAKES = {
 )
 def test_a_mistake_in_c_is_found(name, tmp_path, monkeypatch):
     old, new = MISTAKES[name]
-    text = Library.source(calls.library(name), f"{name}.h")
+    text = Library.source(calls.library(name))
     assert old in text
-    monkeypatch.setattr(Library, "source", lambda self, header: text.replace(old, new, 1))
+    monkeypatch.setattr(Library, "source", lambda self: text.replace(old, new, 1))
     assert all_in_c(name, tmp_path)
 
 
@@ -153,8 +153,8 @@ def test_a_wrong_record_is_found(where, tmp_path, monkeypatch):
 
 def test_played_beside_c_it_says_in_which_call_what_differs(tmp_path, monkeypatch):
     old, new = MISTAKES["skin"]
-    text = calls.library("skin").source("skin.h")
-    monkeypatch.setattr(Library, "source", lambda self, header: text.replace(old, new, 1))
+    text = calls.library("skin").source()
+    monkeypatch.setattr(Library, "source", lambda self: text.replace(old, new, 1))
     player = Player(calls.library("skin"), Native(calls.library("skin"), tmp_path))
     with pytest.raises(BoardFailed, match=r"^call \d+, on_timer: .* but in C"):
         list(player.play(calls.told("skin")))

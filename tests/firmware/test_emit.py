@@ -78,7 +78,7 @@ def test_every_function_says_where_it_comes_from(made):
 def test_the_same_source_has_the_same_hash_and_another_has_another():
     one, other = library_of("skin", []), library_of("skin", ["beacon_us=5000"])
     assert one.digest() == other.digest()
-    assert one.source("skin.h") != other.source("skin.h")
+    assert one.source() != other.source()
     assert f'"{one.digest()}"' in one.header()
     wider = one.role._replace(room=13)
     assert Library(wider, {}).digest() == one.digest()
@@ -166,7 +166,7 @@ def test_what_is_not_there_or_does_not_fit_is_one_line(alone, capsys):
         (line,) = capsys.readouterr().err.splitlines()
         assert said in line
     with pytest.raises(FirmwareError, match=r"not in 100\.\.1000000"):
-        Library(library_of("skin", []).role, {"beacon_us": 1}).source("skin.h")
+        Library(library_of("skin", []).role, {"beacon_us": 1}).source()
 
 
 def test_a_line_carries_frames_that_just_fit(tmp_path):

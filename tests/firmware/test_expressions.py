@@ -220,7 +220,7 @@ def test_what_has_but_one_value_is_a_number_in_c(tmp_path, monkeypatch):
     text = text.replace("now, frame", "now, port, frame")
     role = role_of(tmp_path, monkeypatch, "own_only", text)
     role = role._replace(params=(("seven", 0, 7, 7, "number", ""),))
-    source = Library(role, {}).source("own.h")
+    source = Library(role, {}).source()
     body = [line.strip() for line in source[source.rindex("{\n    (void)") :].splitlines()]
     assert body == [
         "{", "(void)params;", "(void)now;", "(void)port;", "(void)out;", "state->five = 5;",
@@ -246,7 +246,7 @@ def test_c_works_out_what_python_does(tmp_path, monkeypatch):
     texts = [*HAND, *(drawn(rng, 3) for _ in range(DRAWN + WRITTEN - len(HAND)))]
     made = Library(role_of(tmp_path, monkeypatch, "own_made", result_of(texts)), {})
     (tmp_path / "own.h").write_text(made.header())
-    (tmp_path / "own.c").write_text(made.source("own.h"))
+    (tmp_path / "own.c").write_text(made.source())
     run(["gcc", "-std=c99", "-Werror=discarded-qualifiers", "-O0", "-fPIC", "-shared",
          tmp_path / "own.c", "-o", tmp_path / "own.so"])  # fmt: skip
     native, packed = ctypes.CDLL(str(tmp_path / "own.so")), Packed(made.records["state"])

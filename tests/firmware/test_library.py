@@ -13,7 +13,8 @@ from innervate.networks.mesh.board import node
 from tests.own import alone, own
 
 __all__ = ["alone", "own"]
-FILES = SimpleNamespace(library=SimpleNamespace(prefix="own"), texts={"own.h": "int a;\n"})
+OWN = SimpleNamespace(prefix="own", own_files=("own.h", "own.c"))
+FILES = SimpleNamespace(library=OWN, texts={"own.h": "int a;\n"})
 
 
 def test_a_file_is_there_whole_or_not_at_all(tmp_path, full_disk):

@@ -42,7 +42,7 @@ def test_a_number_is_as_wide_as_its_range(low, high, name):
 
 
 def test_types_hold_what_they_say():
-    for name, low, high in TYPES:
+    for name, (low, high, _) in TYPES.items():
         bits = 8 * BYTES[name]
         least = 0 if name.startswith("u") else -(1 << (bits - 1))
         assert (low, high) == (least, least + (1 << bits) - 1)

@@ -177,7 +177,7 @@ def test_what_c_could_not_say_alike_is_refused_with_why(tmp_path, monkeypatch, b
 
 @pytest.mark.parametrize("body", TAKEN)
 def test_what_c_can_say_alike_is_taken(tmp_path, monkeypatch, body):
-    assert "own_on_timer" in of_body(tmp_path, monkeypatch, body).source("own.h")
+    assert "own_on_timer" in of_body(tmp_path, monkeypatch, body).source()
 
 
 @pytest.mark.parametrize(("name", "takes"), [
@@ -188,7 +188,7 @@ def test_who_changes_what_it_is_given_says_so(tmp_path, monkeypatch, name, takes
     call = f"{name}(state.list, 0)" if name == "bump" else f"{name}(state)"
     text = f"{BEGIN}    state.r[0] = {call}\n{HELPERS}"
     made = Library(role_of(tmp_path, monkeypatch, f"own_gives_{name}", text), {})
-    assert f" own_{name}({takes})" in made.source("own.h")
+    assert f" own_{name}({takes})" in made.source()
 
 
 LOOKS = '''"""Doc."""
@@ -211,7 +211,7 @@ def test_what_is_made_for_two_kinds_of_records_is_called_after_them(tmp_path, mo
     text = LOOKS.replace("from {other} import on_input\n\n\n", "").replace(" + on_input(state)", "")
     text += '\n\ndef on_input(state, params, now, kind, item, out):\n    """Doc."""\n'
     role = role_of(tmp_path, monkeypatch, "own_kinds", text + "    state.b = look(item)\n")
-    source = Library(role._replace(item=FRAME[:1]), {}).source("own.h")
+    source = Library(role._replace(item=FRAME[:1]), {}).source()
     assert "own_look_frame(const own_frame_t *record)" in source
     assert "own_look_item(const own_item_t *record)" in source
     assert "own_look_item(item);" in source
@@ -220,7 +220,7 @@ def test_what_is_made_for_two_kinds_of_records_is_called_after_them(tmp_path, mo
 def test_a_function_of_its_own_goes_before_one_of_pythons(tmp_path, monkeypatch):
     text = BEGIN + '    state.b = max(state)\n\n\ndef max(state):\n    """Doc."""\n'
     role = role_of(tmp_path, monkeypatch, "own_max", text + "    return state.a\n")
-    assert "own_max(const own_state_t *state)" in Library(role, {}).source("own.h")
+    assert "own_max(const own_state_t *state)" in Library(role, {}).source()
 
 
 def test_handlers_are_those_of_the_module_itself(tmp_path, monkeypatch):
@@ -231,7 +231,7 @@ def test_handlers_are_those_of_the_module_itself(tmp_path, monkeypatch):
     role = role_of(tmp_path, monkeypatch, "own_calls", LOOKS.format(other="own_other"))
     made = Library(role, {})
     assert [one.name for one in made.program.handlers] == ["on_frame"]
-    assert "static int32_t own_on_input(const own_state_t *state)" in made.source("own.h")
+    assert "static int32_t own_on_input(const own_state_t *state)" in made.source()
 
 
 def test_functions_that_call_themselves_and_handlers_of_other_arguments_are_refused(

@@ -303,7 +303,7 @@ def of_state(text, arrow):
 
 def made(tmp_path, monkeypatch, name, text):
     """The C behind what every protocol has."""
-    source = Library(role_of(tmp_path, monkeypatch, name, text), {}).source("own.h")
+    source = Library(role_of(tmp_path, monkeypatch, name, text), {}).source()
     return source[source.index("/* Doc.") :]
 
 

@@ -9,9 +9,8 @@ from innervate.networks.skin.run import trail
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.running import RunError, compare, run
 from innervate.running.compare import differences
-from innervate.running.trail import FIELDS, first_difference
-from innervate.sim.cables.world import TRAIL
-from innervate.sim.tables import row_dtype
+from innervate.running.trail import first_difference
+from innervate.sim.tables import TRAIL, row_dtype
 
 DEEP = "[" * 100_000 + "]" * 100_000
 
@@ -125,7 +124,7 @@ def test_the_trail_in_pieces_is_the_trail(four):
     plan = scenario.plan(scenario.from_dict(four(duration_s=2.0)))
     whole = simulate(plan, trail=True).trail
     pieces = np.concatenate(list(trail(plan, plan.duration_us)))
-    for name in FIELDS:
+    for name in TRAIL:
         assert (whole[name] == pieces[name]).all()
 
 
@@ -149,7 +148,7 @@ def test_pieces_of_any_length(cuts):
     assert (a, b["time"]) == (None, 3)
 
 
-@pytest.mark.parametrize("name", FIELDS)
+@pytest.mark.parametrize("name", TRAIL)
 @pytest.mark.parametrize("place", [0, 3, 4])
 def test_one_word_of_one_call_makes_trails_differ(name, place):
     one, other = (np.zeros(5, row_dtype(TRAIL)) for _ in range(2))

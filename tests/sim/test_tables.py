@@ -11,9 +11,9 @@ from innervate.sim.tables import (
     TAP,
     WIDE,
     Tables,
-    _longer,
     get,
     hand_over,
+    longer,
     move_rows,
     put,
     row_dtype,
@@ -83,10 +83,10 @@ def test_a_table_grows_and_keeps_what_is_in_it(tables):
     made = tables.records(NAMES, 2)
     for i in range(2):
         put(made, i, node=i + 1)
-    longer = _longer(made, 5)
-    put(longer, 3, node=9)
-    assert [int(get(longer, i, "node")) for i in range(5)] == [1, 2, 0, 9, 0]
-    assert numbers(_longer(tables.numbers(2, 7), 4)) == [7, 7, 0, 0]
+    grown = longer(made, 5)
+    put(grown, 3, node=9)
+    assert [int(get(grown, i, "node")) for i in range(5)] == [1, 2, 0, 9, 0]
+    assert numbers(longer(tables.numbers(2, 7), 4)) == [7, 7, 0, 0]
 
 
 class World(NamedTuple):

@@ -58,7 +58,7 @@ def test_what_was_sent_by_hand_is_saved_and_replayed():
     assert told[1]["cell"] == {"patch": 0, "row": 4, "column": 5}
     done = run(tomllib.loads(toml))
     assert done.summary["commands"]["sent"] == 3
-    assert done.summary["fingerprint"] == made.engine.fingerprint
+    assert done.summary["fingerprint"] == made.engine.running.fingerprint
 
 
 def test_wrong_commands_are_refused():

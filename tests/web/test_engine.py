@@ -25,18 +25,18 @@ def view_of(engine, history):
 
 def ready(kind, **more):
     engine = engine_of(plan_of(KINDS[kind], **more))
-    engine.prepare()
+    engine.running.prepare()
     return engine
 
 
 def go(engine, until_us, budget=5_000):
-    while engine.now_us < until_us and not engine.is_complete():
+    while engine.now_us < until_us and not engine.running.is_complete():
         engine.advance(until_us, budget)
 
 
 def to_end(engine, budget=5_000):
     go(engine, engine.plan.duration_us, budget)
-    return engine.fingerprint
+    return engine.running.fingerprint
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -57,14 +57,14 @@ def test_it_stops_after_its_budget_at_what_it_came_to(kind):
 def test_one_event_after_the_other_is_the_same_network(kind):
     engine, whole = ready(kind), ready(kind)
     steps = 0
-    while (at := engine.next_us()) is not None and at < 200_000 and steps < 400:
+    while (at := engine.running.next_us()) is not None and at < 200_000 and steps < 400:
         assert at >= engine.now_us
         engine.advance(at + 1, 1)
         assert engine.now_us == at + 1
         steps += 1
     go(whole, engine.now_us)
     assert steps > 5
-    assert engine.fingerprint == whole.fingerprint
+    assert engine.running.fingerprint == whole.running.fingerprint
 
 
 # Commands with their moments, by kind; links and nodes by number.
@@ -106,16 +106,18 @@ def watched(kind, events=(), go_back=False):
 def test_a_saved_network_is_replayed(kind, events):
     engine, view = watched(kind, OWN[kind] if events else ())
     again = run(scenario.loads(saved(view)))
-    assert again.result.fingerprint == engine.fingerprint
+    assert again.result.fingerprint == engine.running.fingerprint
     planned = [replace(fault, index=0) for fault in again.plan.faults]
     assert [fault for fault in engine.given if replace(fault, index=0) not in planned] == []
     untouched = run({**KINDS[kind], "event": OWN[kind] if events else []})
-    assert untouched.result.fingerprint != engine.fingerprint
+    assert untouched.result.fingerprint != engine.running.fingerprint
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_taken_back_and_gone_on_it_is_the_same_network(kind):
-    assert watched(kind, go_back=True)[0].fingerprint == watched(kind)[0].fingerprint
+    assert (
+        watched(kind, go_back=True)[0].running.fingerprint == watched(kind)[0].running.fingerprint
+    )
 
 
 def test_what_is_saved_without_commands_is_the_scenario():
@@ -188,11 +190,11 @@ def test_a_copy_keeps_views_of_the_same_memory():
 def test_a_team_that_is_done_goes_on_when_somebody_dies():
     engine = ready("radio")
     to_end(engine)
-    assert engine.is_complete()
+    assert engine.running.is_complete()
     assert engine.now_us < engine.plan.duration_us
     view = view_of(engine, History())
     engine.add(view.fault(Kill(3)))
-    assert not engine.is_complete()
+    assert not engine.running.is_complete()
     to_end(engine)
     assert engine.now_us == engine.plan.duration_us
-    assert run(scenario.loads(saved(view))).result.fingerprint == engine.fingerprint
+    assert run(scenario.loads(saved(view))).result.fingerprint == engine.running.fingerprint

@@ -3,7 +3,7 @@
 import pytest
 
 from innervate import scenario
-from innervate.web.live_scene import FILE, drawn
+from innervate.web.live_scene import FILE, UNKNOWN, drawn
 
 MESH = """
 kind = "mesh"
@@ -64,9 +64,9 @@ def test_a_team_has_its_scenarios_name(tmp_path):
 
 
 def test_without_a_scenario_of_theirs_nodes_are_drawn_by_who_hears_whom(tmp_path):
-    assert drawn(beside(tmp_path, "", ("n0",)), "mesh") is None
-    assert drawn(beside(tmp_path, SKIN, ("n0",)), "mesh") is None
+    assert drawn(beside(tmp_path, "", ("n0",)), "mesh") is UNKNOWN
+    assert drawn(beside(tmp_path, SKIN, ("n0",)), "mesh") is UNKNOWN
     elsewhere = [*beside(tmp_path, MESH, ("n0",)), tmp_path / "other" / "n1.sock"]
-    assert drawn(elsewhere, "mesh") is None
+    assert drawn(elsewhere, "mesh") is UNKNOWN
     (tmp_path / FILE).write_text("kind = ")
-    assert drawn([tmp_path / "n0.sock"], "mesh") is None
+    assert drawn([tmp_path / "n0.sock"], "mesh") is UNKNOWN

@@ -10,7 +10,7 @@ from innervate.web.errors import Refused
 from innervate.web.history import LOG, SERIES
 from innervate.web.live import EXPECTED_S, POLL_S, SOON_S, Live
 from innervate.web.live_poll import Poller
-from innervate.web.live_scene import Drawn
+from innervate.web.live_scene import UNKNOWN, Drawn
 from innervate.web.messages import Cut, Heal, Kill, Revive
 
 RING = [(0, 1), (1, 2), (2, 0)]
@@ -268,6 +268,6 @@ def test_metres_and_a_fence_are_of_nodes_that_stand_where_their_scenario_has_the
     assert [(node["x"], node["y"]) for node in whole["nodes"]] == list(places.values())
     assert (whole["name"], whole["fence"], whole["metres"]) == ("yard", fence, True)
     assert (part["name"], part["fence"], part["metres"]) == ("yard", None, False)
-    nodes.source._drawn = None
+    nodes.source._drawn = UNKNOWN
     alone = nodes.source.scene()
     assert (alone["name"], alone["fence"], alone["metres"]) == ("live", None, False)

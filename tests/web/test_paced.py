@@ -17,13 +17,16 @@ SLOW = 0.05
 
 
 class MadeUp:
-    """An engine in which nothing happens but at times; `costs` are the seconds of every call."""
+    """An engine in which nothing happens but at times, and the simulation that it is running.
+
+    `costs` are the seconds of every call.
+    """
 
     now_us, next_at, size, complete, breaks_us = 0, None, 1, False, None
 
     def __init__(self):
         self.calls, self.costs, self.spent, self.short, self.back = [], [], 0.0, 0, []
-        self.edges = []
+        self.edges, self.running = [], self
 
     @property
     def edge_us(self):

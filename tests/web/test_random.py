@@ -48,7 +48,7 @@ def abuse(kind, seed):
     assert not made.broken
     assert done > 10
     again = run(scenario.loads(saved(made.view)))
-    assert again.result.fingerprint == made.engine.fingerprint
+    assert again.result.fingerprint == made.engine.running.fingerprint
     return made, again
 
 

@@ -89,7 +89,7 @@ def test_what_a_page_saves_is_replayed():
             answer = await page.ask("save")
             again = run(scenario.loads(answer["toml"]))
             engine = served.hub.source.engine
-            assert again.result.fingerprint == engine.fingerprint
+            assert again.result.fingerprint == engine.running.fingerprint
             assert (
                 again.summary["recoveries"][0]["routed_ms"]
                 == (page.state["recovery"]["recovered_ms"])

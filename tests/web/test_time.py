@@ -49,30 +49,30 @@ def test_what_was_done_stays_done_when_one_goes_back():
     go_to(made, 0.6)
     made.carry_out(messages.Cut(0))
     made.run_to_end()
-    end = made.engine.fingerprint
+    end = made.engine.running.fingerprint
     go_to(made, 0.3)
     assert made.fields()["link_up"][0] == 1
     made.run_to_end()
     assert made.fields()["link_up"][0] == 0
-    assert made.engine.fingerprint == end
+    assert made.engine.running.fingerprint == end
     go_to(made, 0.3)
     made.carry_out(messages.Cut(5))  # something else before it
     made.run_to_end()
     again = run(scenario.loads(saved(made.view)))
-    assert again.result.fingerprint == made.engine.fingerprint != end
+    assert again.result.fingerprint == made.engine.running.fingerprint != end
 
 
 def test_a_step_is_one_event():
     made = simulated(SKIN)
     go_to(made, 0.4)
     for _ in range(20):
-        due, handled = made.engine.next_us(), handled_by(made)
+        due, handled = made.engine.running.next_us(), handled_by(made)
         made.carry_out(messages.Step())
         assert made.playback.paused
         made.work()
         assert made.engine.now_us == due + 1  # right behind it
         assert handled_by(made) > handled
-        assert made.engine.next_us() > due
+        assert made.engine.running.next_us() > due
 
 
 def handled_by(made):
@@ -125,7 +125,7 @@ def test_a_run_folder_is_shown_as_it_was(kind, tmp_path):
     assert made.scene()["source"] == "run"
     assert made.scene()["report"]
     made.run_to_end()
-    assert made.engine.fingerprint == done.summary["fingerprint"]
+    assert made.engine.running.fingerprint == done.summary["fingerprint"]
     if kind == "skin":
         shown = made.fields()["recovery"]
         assert shown["recovered_ms"] == done.summary["recoveries"][0]["routed_ms"]
@@ -237,7 +237,7 @@ def test_a_touch_by_hand_is_felt_and_replayed(touch):
     assert made.fields()["touch"][20] > 200
     made.run_to_end()
     again = run(scenario.loads(saved(made.view)))
-    assert again.result.fingerprint == made.engine.fingerprint
+    assert again.result.fingerprint == made.engine.running.fingerprint
     assert again.result.fingerprint != run({**SKIN, **touch}).result.fingerprint
 
 

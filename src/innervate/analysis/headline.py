@@ -8,6 +8,8 @@ sweeps show what that function says; none of them judges by itself.
 from collections.abc import Iterable
 from typing import Any, NamedTuple, TypedDict
 
+from innervate.kernel.words import number_of
+
 OK, DEGRADED, DOWN, NO_DATA = "ok", "degraded", "down", "no data"
 LEVELS = (OK, DEGRADED, DOWN, NO_DATA)  # from well to worst; no data: nobody answers
 
@@ -65,6 +67,13 @@ def every(count: int, what: str) -> str:
     if count > 2:
         return f"all {count:,} {what}s"
     return f"both {what}s" if count == 2 else f"the only {what}"
+
+
+def part_of(part: int, whole: int, what: str) -> str:
+    """So many of them: "1 of 91 messages"; all of them as every() says it."""
+    if part < whole:
+        return f"{part:,} of {number_of(whole, what)}"
+    return every(whole, what)
 
 
 def silent(count: int, what: str) -> Headline:

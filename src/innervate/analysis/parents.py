@@ -9,9 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from innervate.analysis.ways import NOWHERE as NOWHERE
+from innervate.analysis.ways import follow
+from innervate.topology.placement import distances, neighbours
+
 Cable = tuple[int, int, int, int]
 Change = tuple[int, int, int]  # when (us), who, its port from then on; -1 none
-NOWHERE = -1
 
 
 class Ways:
@@ -86,47 +91,23 @@ class Ways:
     def _settle(self, at: int) -> None:
         """Work out anew who has a way, from next hops and cables."""
         self._hop = [self._far.get((n, self._port[n]), NOWHERE) for n in range(self.nodes)]
-        self._children: list[set[int]] = [
-            set() for _ in range(self.nodes + 1)
-        ]  # the last: of nowhere
+        # The last: of nowhere.
+        self._children: list[set[int]] = [set() for _ in range(self.nodes + 1)]
         for node, hop in enumerate(self._hop):
             self._children[hop].add(node)
         self._routed = [root != NOWHERE for root in self.roots()]
-        self._joined = self._reached()
-        self._without = sum(not self._routed[node] for node in self._joined)
+        live = [(node, other) for (node, _), other in self._far.items()]
+        joined = distances(neighbours(self.nodes, live), self.sink)
+        self._without = sum(
+            far > 0 and not routed for far, routed in zip(joined, self._routed, strict=True)
+        )
         self._note(at)
-
-    def _reached(self) -> set[int]:
-        """Nodes that live cables join with the sink."""
-        beside: dict[int, list[int]] = {}
-        for (node, _), other in self._far.items():
-            beside.setdefault(node, []).append(other)
-        found, waiting = {self.sink}, [self.sink]
-        while waiting:
-            fresh = [one for one in beside.get(waiting.pop(), ()) if one not in found]
-            found.update(fresh)
-            waiting += fresh
-        return found - {self.sink}
 
     def roots(self) -> list[int]:
         """The last node before the sink of every node's way; NOWHERE without one."""
-        root = [NOWHERE] * self.nodes
-        known = [False] * self.nodes
-        for start in range(self.nodes):
-            way: list[int] = []
-            node = start
-            while node not in (NOWHERE, self.sink) and not known[node] and len(way) <= self.nodes:
-                known[node] = True
-                way.append(node)
-                node = self._hop[node]
-            end = NOWHERE
-            if node == self.sink and way:
-                end = way[-1]
-            elif node not in (NOWHERE, self.sink) and known[node]:
-                end = root[node]
-            for one in way:
-                root[one] = end
-        return root
+        hop = np.array(self._hop, np.int64)
+        found: list[int] = follow(hop, hop == self.sink)[0].tolist()
+        return found
 
     def _note(self, at: int) -> None:
         if not self.steps or self.steps[-1][1] != self._without:

@@ -18,7 +18,7 @@ from innervate.analysis.headline import (
     every,
     verb,
 )
-from innervate.analysis.percentiles import percentiles
+from innervate.analysis.percentiles import usual
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.folders import blamed
 from innervate.kernel.words import number_of
@@ -182,9 +182,7 @@ def known_latencies_us(deliveries: Any) -> Any:
 
 def latency_ms(deliveries: Any) -> Percentiles:
     """Median, 99th percentile and maximum of deliveries' latencies, ms."""
-    known = known_latencies_us(deliveries) / 1e3
-    p50, p99, most = percentiles(known, (50, 99, 100), nearest=True)
-    return {"p50": p50, "p99": p99, "max": most}
+    return usual(known_latencies_us(deliveries) / 1e3, nearest=True)
 
 
 def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:

@@ -8,8 +8,8 @@ noise took it; elsewhere if nothing came in within a second.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -84,7 +84,7 @@ def measure(path: Path) -> Measured:
         raise ExportError(f"{path} holds no packets; capture for longer")
     made = _reader(path, capture)
     last = first
-    for packet in _all(first, packets):
+    for packet in chain([first], packets):
         made.take(packet)
         made.found.packets += 1
         last = packet
@@ -108,11 +108,6 @@ def _reader(path: Path, capture: Capture) -> Reader:
     if kind is not None:
         raise ExportError(f"{path}: {networks()[kind].unfit}")
     raise ExportError(f"{path} is no capture of a {' or a '.join(able)} by innervate")
-
-
-def _all(first: Packet, rest: Iterator[Packet]) -> Iterable[Packet]:
-    yield first
-    yield from rest
 
 
 class Reader:

@@ -120,13 +120,11 @@ def texts_of(role: Role, coded: Coded | None, key: str) -> dict[str, str]:
     from innervate.firmware.wire import Wire
 
     library = Library(role, {})
-    name = library.prefix
-    texts = {f"{name}.h": library.header(), f"{name}.c": library.source(f"{name}.h")}
+    texts = library.texts()
     if coded is not None:
-        wire = Wire(library, coded)
-        texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
+        texts |= Wire(library, coded).texts()
         texts |= {file: shipped(file, "", QUICK) for file in SHIPPED}
-    texts["node.c"] = _entries(role, name, key)
+    texts["node.c"] = _entries(role, library.prefix, key)
     return texts
 
 

@@ -159,8 +159,12 @@ class Library:
             constant = False
         return f"const {text}" if constant else text
 
-    def source(self, header: str) -> str:
-        """The text of the source; `header` is the name of the header's file."""
+    def texts(self) -> dict[str, str]:
+        """The texts of the two files that a library is, by file."""
+        return dict(zip(self.own_files, (self.header(), self.source()), strict=True))
+
+    def source(self) -> str:
+        """The text of the source."""
         prefix = self.prefix
         helpers = [shipped("made/helpers.c", prefix, frozenset({name})) for name in HELPERS
                    if name in self.helpers]  # fmt: skip
@@ -171,7 +175,8 @@ class Library:
             functions.append("\n".join(lines))
         beginning = [*self._defaults(), own(self.prefix, self.records), self.outbox.text("own")]
         text = "\n".join([*helpers, *beginning, *functions])
-        return self._filled("made/protocol.c", {"@header": header, "@functions\n": text}, set())
+        words = {"@header": self.own_files[0], "@functions\n": text}
+        return self._filled("made/protocol.c", words, set())
 
     def _defaults(self) -> list[str]:
         small = self.prefix

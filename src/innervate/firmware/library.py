@@ -135,9 +135,7 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
     Raises:
         FirmwareError: its frames are too long for a line, or it has no lines to seal on.
     """
-    name = library.prefix
-    header = f"{name}.h"
-    texts = {header: library.header(), f"{name}.c": library.source(header)}
+    texts = library.texts()
     coded = coded_of(library.role, network)
     driver = library.role.driver if network.medium == CABLES or library.role.coded else ""
     if sealed and (coded is None or driver != "node"):
@@ -153,8 +151,7 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
         )
     if driver and (why := not_for_boards(network)):
         raise FirmwareError(why)
-    wire = Wire(library, coded, most)
-    texts |= {f"{name}_wire.h": wire.header(), f"{name}_wire.c": wire.source()}
+    texts |= Wire(library, coded, most).texts()
     having = _sections(library, sealed)
     texts |= {file: shipped(file, "", having) for file in (*BESIDE, *BARE)}
     if driver:
@@ -221,7 +218,7 @@ def write(files: Files, folder: Path) -> dict[str, int]:
     Raises:
         FirmwareError: the folder has something else in it, or a file cannot be written.
     """
-    named = f"{files.library.prefix}.h"
+    named, _ = files.library.own_files
     if folder.exists() and not folder.is_dir():
         raise FirmwareError(f"{folder}: a file lies here; name a folder")
     if folder.exists() and not (folder / named).exists() and any(folder.iterdir()):

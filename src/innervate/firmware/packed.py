@@ -5,9 +5,7 @@ from array import array
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from innervate.firmware.records import Field, layout
-
-CODES = {"uint8_t": "B", "int8_t": "b", "uint16_t": "H", "int16_t": "h", "int32_t": "i"}
+from innervate.firmware.records import BYTES, CODES, Field, layout
 
 
 def _packing(code: str) -> Callable[[Iterable[int]], bytes]:
@@ -24,7 +22,7 @@ class Packed:
         places, self.size = layout(fields)
         code, at = "<", 0
         for _name, (offset, kind, length) in places:
-            width = struct.calcsize(CODES[kind])
+            width = BYTES[kind]
             code += f"{offset - at}x" + (f"{length * width}s" if length else CODES[kind])
             at = offset + max(1, length) * width
         self.struct = struct.Struct(f"{code}{self.size - at}x")

@@ -149,7 +149,7 @@ def _passed(kind: Type) -> Type:
     """An argument's type: of arrays that are passed, only the type of the numbers matters."""
     if kind.field is None:
         return kind
-    low, high = next((low, high) for name, low, high in TYPES if name == kind.field.type)
+    low, high, _ = TYPES[kind.field.type]
     return Type("array", Field(kind.field.type, kind.field.type, 0, low, high, "", ""))
 
 

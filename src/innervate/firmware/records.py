@@ -1,18 +1,20 @@
 """Records as C has them: structs from declarations, each number as wide as its range."""
 
+from struct import calcsize
 from typing import Any, NamedTuple
 
 from innervate.firmware.errors import FirmwareError
 from innervate.live.board import Declaration, Role
 
-# C types, narrowest first, with their ranges.
-TYPES = (
-    ("uint8_t", 0, 255), ("int8_t", -128, 127), ("uint16_t", 0, 65_535),
-    ("int16_t", -32_768, 32_767), ("int32_t", -(1 << 31), (1 << 31) - 1),
-)  # fmt: skip
-BYTES = {"uint8_t": 1, "int8_t": 1, "uint16_t": 2, "int16_t": 2, "int32_t": 4}
+# C types, narrowest first: their ranges, and their codes as `struct` and `array` have them.
+TYPES = {
+    "uint8_t": (0, 255, "B"), "int8_t": (-128, 127, "b"), "uint16_t": (0, 65_535, "H"),
+    "int16_t": (-32_768, 32_767, "h"), "int32_t": (-(1 << 31), (1 << 31) - 1, "i"),
+}  # fmt: skip
+CODES = {name: code for name, (_low, _high, code) in TYPES.items()}
+BYTES = {name: calcsize(code) for name, code in CODES.items()}
+WIDE = "int32_t"
 # Words of C and C++ that would be no names of fields or variables there.
-WIDE = TYPES[-1][0]
 WORDS = frozenset((
     "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
     "char", "class", "compl", "const", "constexpr", "continue", "default", "delete", "do",
@@ -40,7 +42,7 @@ class Field(NamedTuple):
 
 def type_of(low: int, high: int) -> str:
     """The narrowest C type for a range."""
-    return next(name for name, least, most in TYPES if least <= low and high <= most)
+    return next(name for name, (least, most, _) in TYPES.items() if least <= low and high <= most)
 
 
 def name_of(name: str) -> str:

@@ -5,12 +5,9 @@ from collections.abc import Iterable
 from operator import attrgetter
 from typing import Any
 
-from innervate.firmware.records import Field, initial
+from innervate.firmware.records import TYPES, Field, initial
 
-NUMBERS = {
-    "uint8_t": ctypes.c_uint8, "int8_t": ctypes.c_int8, "uint16_t": ctypes.c_uint16,
-    "int16_t": ctypes.c_int16, "int32_t": ctypes.c_int32,
-}  # fmt: skip
+NUMBERS = {name: getattr(ctypes, f"c_{name.removesuffix('_t')}") for name in TYPES}
 Fields = dict[str, Field]
 
 

@@ -54,6 +54,11 @@ class Wire:
         """Bytes of a frame of this form, but for arrays of variable number."""
         return (self.head_bits + width(form.fields) + 7) // 8 + CRC_BYTES
 
+    def texts(self) -> dict[str, str]:
+        """The texts of the coder's two files, by file."""
+        name = f"{self.prefix}_wire"
+        return {f"{name}.h": self.header(), f"{name}.c": self.source()}
+
     def header(self) -> str:
         """The text of the coder's header."""
         names = ["OK", *(f"BAD_{word.upper()}" for word in self.coded.reasons[1:])]

@@ -18,10 +18,9 @@ from innervate.dialect.outbox import DELIVER, REPORT
 from innervate.kernel.clock import wall_s
 from innervate.network import Network, networks
 from innervate.scenario.declared.shared import cabled, script_of
-from innervate.sim.cables.world import DELIVERY, ROW
 from innervate.sim.counts import Counts
 from innervate.sim.driver import InvariantBroken
-from innervate.sim.tables import row_dtype
+from innervate.sim.tables import DELIVERY, ROW, row_dtype
 from innervate.verify.declared import net_of
 from innervate.verify.net import Net
 from innervate.verify.scripts import Unplayable, begins, played

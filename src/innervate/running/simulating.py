@@ -136,7 +136,7 @@ def columns(table: Table, result: Any) -> dict[str, Any]:
 
 
 def trail(plan: Any, until_us: int) -> Iterator[Any]:
-    """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
+    """The trail of a plan: structured arrays with the fields of tables.TRAIL."""
     return simulation(plan, checks=False, observe=False, trail=True).pieces("trail", until_us)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-FIELDS = ("time", "node", "handler", "port", "fingerprint")
+from innervate.sim.tables import TRAIL
 
 
 def first_difference(one: Iterator[Any], other: Iterator[Any]) -> tuple[Any, Any] | None:
@@ -21,7 +21,7 @@ def first_difference(one: Iterator[Any], other: Iterator[Any]) -> tuple[Any, Any
             return None if row_a is None and row_b is None else (row_a, row_b)
         count = min(len(a), len(b))
         differs = np.zeros(count, np.bool_)
-        for name in FIELDS:
+        for name in TRAIL:
             differs |= a[name][:count] != b[name][:count]
         places = np.flatnonzero(differs)
         if len(places):

@@ -23,7 +23,11 @@ WIDE = frozenset(
 # station); who sent it (mesh, radio); 1 = it left, 0 = it came in; why it got no further.
 TAP = ("time", "start", "at", "sender", "out", "why")
 ACTION = ("kind", "a", "b", "c")
-DELIVERY = ("time", "node", "port", "kind", "latency")  # of what a node's user got
+# Rows that every kind of run keeps (see rows.py): what nodes report, what their users got, and
+# all handler calls.
+ROW = ("time", "node", "code", "a", "b")
+DELIVERY = ("time", "node", "port", "kind", "latency")
+TRAIL = ("time", "node", "handler", "port", "fingerprint")
 ROWS = 1 << 16  # that a table holds before the loop stops for them to be moved out
 PLAIN_ROWS = 1 << 11  # objects: dear to make
 
@@ -166,13 +170,14 @@ def put(table: Any, place: int, /, **values: int | Sequence[int]) -> None:
             table[name][place] = value
 
 
-def _longer(table: Any, length: int) -> Any:
+def longer(table: Any, length: int) -> Any:
+    """A table of so many records, the first ones those of `table`, the others 0."""
     if isinstance(table, list):
         make = (lambda: 0) if isinstance(table[0], int) else type(table[0])
         return table + [make() for _ in range(length - len(table))]
-    longer = np.zeros(length, table.dtype)
-    longer[: len(table)] = table
-    return longer
+    made = np.zeros(length, table.dtype)
+    made[: len(table)] = table
+    return made
 
 
 def hand_over(world: Any, tap: taps.Tap | None, now: int) -> None:

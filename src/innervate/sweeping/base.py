@@ -6,7 +6,7 @@ import hashlib
 import os
 import shlex
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -116,16 +116,25 @@ def _as_word(value: Any) -> str:
     return inline(value)
 
 
-def _moved(plain: Any, full: Any, key: str = "") -> list[tuple[str, str]]:
+def _moved(plain: Any, full: Any) -> list[tuple[str, str]]:
     """Texts that a dump writes otherwise than they were given, by dotted key."""
-    if isinstance(plain, dict) and isinstance(full, dict):
-        pairs = [(name, plain[name], full[name]) for name in plain if name in full]
-    elif isinstance(plain, list) and isinstance(full, list) and len(plain) == len(full):
-        pairs = [(str(i), a, b) for i, (a, b) in enumerate(zip(plain, full, strict=True))]
-    elif isinstance(plain, str) and isinstance(full, str) and plain != full:
-        return [(key, full)]
-    else:
-        return []
-    return [
-        found for name, a, b in pairs for found in _moved(a, b, f"{key}.{name}" if key else name)
-    ]
+    written = dict(leaves(full))
+    return [(key, written[key]) for key, given in leaves(plain)
+            if isinstance(given, str) and isinstance(written.get(key), str)
+            and written[key] != given]  # fmt: skip
+
+
+def leaves(
+    value: Any, key: str = "", into: type | tuple[type, ...] = (Mapping, list, tuple)
+) -> Iterator[tuple[str, Any]]:
+    """(dotted key, value) of everything in nested tables and lists, or `into` tables alone.
+
+    a.b = 1 and "a.b" = 1 are the same.
+    """
+    if not isinstance(value, into):
+        yield key, value
+        return
+    nested: Any = value
+    pairs = nested.items() if isinstance(value, Mapping) else enumerate(nested)
+    for name, inner in pairs:
+        yield from leaves(inner, f"{key}.{name}" if key else str(name), into)

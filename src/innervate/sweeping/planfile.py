@@ -28,7 +28,6 @@ by = "protocol.beacon_hz"
 """
 
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -39,6 +38,7 @@ from innervate.scenario.emit import to_toml
 from innervate.scenario.explain import convert
 from innervate.scenario.lines import key_lines
 from innervate.scenario.source import Source, check_plain
+from innervate.sweeping.base import leaves
 from innervate.sweeping.errors import SweepError
 from innervate.sweeping.vary import Axis, Named, axis, plain, split, values_of
 
@@ -109,11 +109,11 @@ def axes_of(plan: PlanFile, path: str) -> tuple[Axis, ...]:
     """What a plan file varies, [vary] first; a SweepError where that is no list of values."""
     made = [
         axis((key,), [(value,) for value in listed(value, f"{path}: {key}")], f"{path}: {key}")
-        for key, value in leaves(plan.vary)
+        for key, value in leaves(plan.vary, into=dict)
     ]
     for number, table in enumerate(plan.zip):
         where = f"{path}: [[zip]] {number}"
-        lists = {key: listed(value, f"{where}: {key}") for key, value in leaves(table)}
+        lists = {key: listed(value, f"{where}: {key}") for key, value in leaves(table, into=dict)}
         made.append(together(lists, where))
     return tuple(made)
 
@@ -155,16 +155,6 @@ def listed(value: Any, where: str) -> list[Any]:
         else item
         for item in value
     ]
-
-
-def leaves(tables: dict[str, Any], key: str = "") -> Iterator[tuple[str, Any]]:
-    """(dotted key, value) of everything in nested tables: a.b = 1 and "a.b" = 1 are the same."""
-    for name, value in tables.items():
-        whole = f"{key}.{name}" if key else name
-        if isinstance(value, dict):
-            yield from leaves(value, whole)
-        else:
-            yield whole, value
 
 
 def dump(plan: Any) -> str:

@@ -12,6 +12,7 @@ from innervate import folders
 from innervate import scenario as scenarios
 from innervate.network import networks
 from innervate.scenario import Scenario
+from innervate.sweeping.base import leaves
 from innervate.trace.sources import stamp
 
 
@@ -55,11 +56,4 @@ def files_named(made: Scenario, folder: str, varied: Mapping[str, Any]) -> dict[
 
 def texts(value: Any) -> Iterator[str]:
     """All texts in nested tables."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, Mapping):
-        for inner in value.values():
-            yield from texts(inner)
-    elif isinstance(value, list | tuple):
-        for inner in value:
-            yield from texts(inner)
+    return (text for _, text in leaves(value) if isinstance(text, str))

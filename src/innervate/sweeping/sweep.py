@@ -16,7 +16,7 @@ from innervate import scenario as scenarios
 from innervate.running.showing import Bar
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
-from innervate.sweeping.base import PLAN_FILE, Source, base_of, of_vary
+from innervate.sweeping.base import PLAN_FILE, Source, base_of, leaves, of_vary
 from innervate.sweeping.derive import Formula
 from innervate.sweeping.engines import engine
 from innervate.sweeping.errors import DamagedError, SweepError
@@ -166,9 +166,9 @@ def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
         axes = tuple(
             one for one in planfile.axes_of(file, label) if given.isdisjoint(one.keys)
         ) + axes  # fmt: skip
-        kept = tuple((k, v) for k, v in planfile.leaves(file.set) if k not in given)
+        kept = tuple((k, v) for k, v in leaves(file.set, into=dict) if k not in given)
         base = replace(base, settings=(*kept, *base.settings))
-        derived = {k: str(v) for k, v in planfile.leaves(file.derive) if k not in given} | derived
+        derived = {k: str(v) for k, v in leaves(file.derive, into=dict) if k not in given} | derived
         rules = rules or _texts(file.until)
         pairs = pairs or _texts(file.paired)
     for key in derived:

@@ -1,13 +1,20 @@
 """A simulated network of cables as pages have it: who is joined to whom, and what is on its way."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from innervate.scenario.actions.action import Action
+from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE, TABLE
+from innervate.scenario.cables import Fault
 from innervate.sim import wheel
 from innervate.sim.cables.wires import DELAYED
+from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
+from innervate.web.errors import Refused
+from innervate.web.messages import number
+from innervate.web.view import View
 
 FLIGHTS_MAX = 2_000
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
@@ -72,3 +79,43 @@ class Cables:
             {"a": a, "b": b, "kind": self._kinds.get(kind, self._otherwise), "p": p}
             for a, b, kind, p in zip(*(column.tolist() for column in columns), strict=True)
         ]
+
+
+class CabledView(View):
+    """Nodes that `cables` join, and what pages can do to both."""
+
+    speed: ClassVar[float] = 0.1
+    slow: ClassVar[float] = 0.05
+    actions: ClassVar[tuple[Action, ...]] = TABLE
+    fault_type: ClassVar[Any] = Fault
+    noun: ClassVar[str] = "node"
+    cables: Cables
+
+    def takes(self, fault: Any) -> bool:
+        """True if a fault takes something away, false if it gives it back."""
+        return super().takes(fault) and not (fault.action == LOOSE and fault.loss_q15 == 0)
+
+    def cut(self, link: int, heal: bool) -> dict[str, int]:
+        """The fault that cuts a link, or puts it back."""
+        a, b = self.cables.ends[number("link", link, len(self.cables.ends))].tolist()
+        reasons = int(self.engine.world.ends["impaired"][a]) >> 2
+        dead = sum(self.is_dead(self.cables.node_of[end]) for end in (a, b))
+        if heal and reasons <= dead:
+            off = f"its {self.noun} is switched off"
+            raise Refused(off if reasons else "this cable is not cut")
+        if not heal and reasons > dead:
+            raise Refused("this cable is cut already")
+        # As a scenario names it: an interface's cable by the PC's end.
+        end = b if b >= PORTS * self.plan.graph.cells else a
+        return {"action": RESTORE if heal else CUT, "end": end, "node": -1}
+
+    def is_dead(self, node: int) -> bool:
+        """True if a node is switched off; interface ports, behind the others, never are."""
+        return node < self.plan.graph.cells and int(self.engine.world.alive[node]) == DEAD
+
+    def kill(self, node: int, revive: bool) -> dict[str, int]:
+        """The fault that switches a node off, or on."""
+        if self.is_dead(number("node", node, self.plan.graph.cells)) != revive:
+            state = "on" if revive else "off already"
+            raise Refused(f"this {self.noun} is {state}")
+        return {"action": REVIVE if revive else KILL, "end": -1, "node": node}

@@ -5,19 +5,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from innervate.network import networks
 from innervate.scenario.actions.action import Action
 from innervate.scenario.actions.channel import JOIN, KILL, TABLE
 from innervate.scenario.declared.channel import Fault
-from innervate.web.declared_view import DeclaredView, shown_by
-from innervate.web.engine import Engine
+from innervate.web.declared_view import DELIVERED, Declared
 from innervate.web.errors import Refused
-from innervate.web.history import History
 from innervate.web.messages import number
-from innervate.web.view import Memory, View
 
 
-class ChannelView(DeclaredView):
+class ChannelView(Declared):
     """Nodes in a circle, as all hear each other; who is off is apart from the others."""
 
     can: tuple[str, ...] = ("kill", "revive")
@@ -25,16 +21,9 @@ class ChannelView(DeclaredView):
     fault_type: ClassVar[Any] = Fault
     series: ClassVar[list[dict[str, Any]]] = [
         {"id": "lost", "label": "receptions lost so far", "unit": "receptions"},
-        DeclaredView.series[1],
+        DELIVERED,
     ]
     around: ClassVar[float] = 1.5  # from one node to the next, in their diameters
-
-    def __init__(self, engine: Engine, history: History) -> None:
-        View.__init__(self, engine, history)
-        network = networks()[self.plan.kind]
-        self.saves = network.writes_events
-        self.shown, self.own = shown_by(network)
-        self.memory = Memory()
 
     def scene(self) -> dict[str, Any]:
         """Nodes, and the fields that they can be coloured by."""

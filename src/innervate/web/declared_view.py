@@ -1,4 +1,4 @@
-"""What pages show of any simulated network of cables: its nodes by the fields that they declare."""
+"""What pages show of any simulated network: its nodes by the fields that they declare."""
 
 from typing import Any, ClassVar
 
@@ -10,59 +10,33 @@ from innervate.analysis.summary import headline
 from innervate.analysis.ways import reach
 from innervate.network import Network, networks
 from innervate.plot.happened import event_words
-from innervate.scenario.actions.action import Action
-from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE, TABLE
-from innervate.scenario.cables import Fault
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
 from innervate.topology.layout import PITCH_MM, cell_places
-from innervate.web.cables import Cables
+from innervate.web.cables import CabledView, Cables
 from innervate.web.engine import Engine, Rows
-from innervate.web.errors import Refused, WatchError
+from innervate.web.errors import WatchError
 from innervate.web.history import History
 from innervate.web.live_view import shown_fields
-from innervate.web.messages import number
 from innervate.web.view import Memory, View
 
 NODES_MAX = 1_000
+DELIVERED = {"id": "delivered", "label": "messages delivered so far", "unit": ""}
 
 
-class DeclaredView(View):
-    """Nodes and cables; who is cut off has no cables that lead to the first node that is on."""
+class Declared(View):
+    """Nodes whose protocol is declared, on any medium."""
 
     speed: ClassVar[float] = 0.1
     slow: ClassVar[float] = 0.05
-    series: ClassVar[list[dict[str, Any]]] = [
-        {"id": "lost", "label": "frames lost so far", "unit": "frames"},
-        {"id": "delivered", "label": "messages delivered so far", "unit": ""},
-    ]
-    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
-    actions: ClassVar[tuple[Action, ...]] = TABLE
-    fault_type: ClassVar[Any] = Fault
+    series: ClassVar[list[dict[str, Any]]]
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
         network = networks()[self.plan.kind]
-        if not hasattr(self.plan, "graph"):
-            raise WatchError(f"a {self.plan.kind} has no cables, and no view of its own")
-        if self.plan.graph.cells > NODES_MAX:
-            many = f"{self.plan.graph.cells:,} nodes are too many to be drawn"
-            raise WatchError(f"{many}; at most {NODES_MAX:,}")
         self.saves = network.writes_events
-        layouts = network.frames.LAYOUTS if network.has("frames") else ()
-        self.graph = self.plan.graph
-        self.cables = Cables(self.plan, {kind: name for kind, name, _fields in layouts}, "data")
         self.shown, self.own = shown_by(network)
         self.memory = Memory()
-
-    def scene(self) -> dict[str, Any]:
-        """Nodes, links, and the fields that nodes can be coloured by."""
-        nodes = [
-            {"id": i, "label": self.graph.label(i), "x": x, "y": y, "role": "node"}
-            for i, (x, y) in enumerate(self._places())
-        ]
-        return {"nodes": nodes, "links": self.cables.scene(), "ports": 0, "fence": None,
-                "series": self.series, "fields": self.shown, "recovers": False}  # fmt: skip
 
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
@@ -72,19 +46,6 @@ class DeclaredView(View):
         """A point of every plot, for now."""
         counts = self.engine.running.counts()
         return {"lost": float(sum(counts.lost_by.values())), "delivered": float(counts.delivered)}
-
-    def arrays(self, flights: bool) -> dict[str, Any]:
-        """The state's fields for nodes and links."""
-        world = self.engine.world
-        cells, apart = world.cells[: self.graph.cells], int(np.count_nonzero(self._apart()))
-        return {
-            "node_up": self._on().astype(np.int64),
-            "link_up": self.cables.up(world),
-            "unconnected": apart,
-            "apart": apart,
-            "fields": self.coloured(cells),
-            "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
-        }
 
     def coloured(self, states: Any) -> dict[str, list[float]]:
         """Per node, every field that they can be coloured by."""
@@ -109,31 +70,53 @@ class DeclaredView(View):
         """What a fault does, as "node n3 switched off"."""
         return event_words(self.plan, fault)
 
-    def takes(self, fault: Any) -> bool:
-        """True if a fault takes something away, false if it gives it back."""
-        return super().takes(fault) and not (fault.action == LOOSE and fault.loss_q15 == 0)
-
-    def cut(self, link: int, heal: bool) -> dict[str, int]:
-        """The fault that cuts a link, or puts it back."""
-        a, b = self.cables.ends[number("link", link, len(self.cables.ends))].tolist()
-        reasons = int(self.engine.world.ends["impaired"][a]) >> 2
-        dead = sum(not self._on()[self.cables.node_of[end]] for end in (a, b))
-        if heal and reasons <= dead:
-            raise Refused("this cable is not cut" if not reasons else "its node is switched off")
-        if not heal and reasons > dead:
-            raise Refused("this cable is cut already")
-        return {"action": RESTORE if heal else CUT, "end": a, "node": -1}
-
-    def kill(self, node: int, revive: bool) -> dict[str, int]:
-        """The fault that switches a node off, or on."""
-        if bool(self._on()[number("node", node, self.graph.cells)]) == revive:
-            raise Refused("this node is on" if revive else "this node is off already")
-        return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
-
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time, as the network writes it."""
         found: dict[str, Any] = networks()[self.plan.kind].event(self.plan, fault)
         return found
+
+
+class DeclaredView(Declared, CabledView):
+    """Nodes and cables; who is cut off has no cables that lead to the first node that is on."""
+
+    series: ClassVar[list[dict[str, Any]]] = [
+        {"id": "lost", "label": "frames lost so far", "unit": "frames"},
+        DELIVERED,
+    ]
+
+    def __init__(self, engine: Engine, history: History) -> None:
+        super().__init__(engine, history)
+        network = networks()[self.plan.kind]
+        if not hasattr(self.plan, "graph"):
+            raise WatchError(f"a {self.plan.kind} has no cables, and no view of its own")
+        if self.plan.graph.cells > NODES_MAX:
+            many = f"{self.plan.graph.cells:,} nodes are too many to be drawn"
+            raise WatchError(f"{many}; at most {NODES_MAX:,}")
+        layouts = network.frames.LAYOUTS if network.has("frames") else ()
+        self.graph = self.plan.graph
+        self.cables = Cables(self.plan, {kind: name for kind, name, _fields in layouts}, "data")
+
+    def scene(self) -> dict[str, Any]:
+        """Nodes, links, and the fields that nodes can be coloured by."""
+        nodes = [
+            {"id": i, "label": self.graph.label(i), "x": x, "y": y, "role": "node"}
+            for i, (x, y) in enumerate(self._places())
+        ]
+        return {"nodes": nodes, "links": self.cables.scene(), "ports": 0, "fence": None,
+                "series": self.series, "fields": self.shown, "recovers": False}  # fmt: skip
+
+    def arrays(self, flights: bool) -> dict[str, Any]:
+        """The state's fields for nodes and links."""
+        world = self.engine.world
+        cells, apart = world.cells[: self.graph.cells], int(np.count_nonzero(self._apart()))
+        return {
+            "node_up": self._on().astype(np.int64),
+            "link_up": self.cables.up(world),
+            "unconnected": apart,
+            "apart": apart,
+            "fields": self.coloured(cells),
+            "flights": self.cables.flights(world, self.engine.now_us) if flights else [],
+        }
 
     def _on(self) -> Any:
         """Per node, true while it is not switched off."""

@@ -1,6 +1,7 @@
 """A simulation that can be held at any microsecond, changed there, and gone on with."""
 
 from bisect import bisect_left, insort
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,39 +45,31 @@ class Engine:
         """The tables of the simulation as they are now."""
         return self.running.world
 
-    def prepare(self) -> None:
-        """Compile the loop, or load what was compiled; nothing happens yet."""
-        self.running.prepare()
-
     def advance(self, until_us: int, budget: int) -> None:
         """Go on to `until_us`, or, after about `budget` events, to some whole microsecond before.
 
         Raises:
             InvariantBroken: a checker found what must not happen.
         """
-        if until_us <= self.now_us or self.is_complete():
+        if until_us <= self.now_us or self.running.is_complete():
             return
         running = self.running
         if running.advance(until_us, budget) != DONE:
             until_us = min(until_us, max(running.clock_us(), self.now_us) + 1)
             while running.advance(until_us, budget) != DONE:
                 pass
-        self.now_us = running.clock_us() + 1 if self.is_complete() else until_us
-
-    def take(self) -> Rows:
-        """The rows that were made since the last call, by table."""
-        return self.running.take()
+        self.now_us = running.clock_us() + 1 if self.running.is_complete() else until_us
 
     def mark(self) -> Mark:
         """A copy of everything at this moment, to come back to."""
-        world, size = twin(self.world, self._rows)
+        world, size = twin(self.world, self.running.tables)
         return Mark(self.now_us, world, size)
 
     def back_to(self, mark: Mark) -> None:
         """Go back to a moment that was remembered; what was given for later happens again."""
-        self.running.world = twin(mark.world, self._rows)[0]
+        self.running.world = twin(mark.world, self.running.tables)[0]
         self.now_us = mark.now_us
-        self.take()
+        self.running.take()
         for fault in self.given:
             if fault.at_us >= self.now_us:
                 self.running.schedule(fault)
@@ -105,23 +98,6 @@ class Engine:
         """When something can be done at the earliest: the network begins at 0, by itself."""
         return max(self.now_us, 1)
 
-    def is_complete(self) -> bool:
-        """True if it ended before its time because there was no more to do."""
-        return self.running.is_complete()
-
-    @property
-    def fingerprint(self) -> str:
-        """Of everything that has happened, as in a run's summary."""
-        return self.running.fingerprint
-
-    def next_us(self) -> int | None:
-        """When something happens next; None = never."""
-        return self.running.next_us()
-
-    @property
-    def _rows(self) -> tuple[str, ...]:
-        return tuple(self.running.tables)
-
 
 def engine_of(plan: Any) -> Engine:
     """The engine of a plan.
@@ -137,7 +113,7 @@ def engine_of(plan: Any) -> Engine:
     return made
 
 
-def twin(world: Any, shared: tuple[str, ...]) -> tuple[Any, int]:
+def twin(world: Any, shared: Collection[str]) -> tuple[Any, int]:
     """(a copy of a tuple of tables, how many bytes it takes).
 
     Tables that are views of the same memory are so in the copy, too. Those named in `shared` are

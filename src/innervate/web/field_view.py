@@ -1,5 +1,6 @@
 """What pages show of any simulated network in a field: nodes where they lie, who hears whom."""
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,6 +13,7 @@ from innervate.sim.field.states import ALIVE, OFF
 from innervate.web.channel_view import ChannelView
 from innervate.web.errors import Refused
 from innervate.web.messages import number
+from innervate.web.view import View
 
 
 class FieldView(ChannelView):
@@ -52,11 +54,7 @@ class FieldView(ChannelView):
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or restores it."""
-        a, b = self.plan.good[number("link", link, len(self.plan.good))]
-        is_cut = bool(self.engine.world.cut[a * self.plan.nodes + b])
-        if is_cut != heal:
-            raise Refused("this link is not cut" if heal else "this link is cut already")
-        return {"action": RESTORE if heal else CUT, "node": a, "other": b}
+        return cut_of(self, self.plan.good, link, heal)
 
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """The fault that switches a node off, or on."""
@@ -72,3 +70,11 @@ class FieldView(ChannelView):
         """Per node, true while it is yet to come."""
         state = self.engine.world.radios["state"][: self.plan.nodes]
         return (state == OFF) & (np.array(self.plan.absent) != 0)
+
+
+def cut_of(view: View, links: Sequence[tuple[int, int]], link: int, heal: bool) -> dict[str, int]:
+    """The fault that cuts one of the links in a field, or restores it; Refused if it is so."""
+    a, b = links[number("link", link, len(links))]
+    if bool(view.engine.world.cut[a * view.plan.nodes + b]) != heal:
+        raise Refused("this link is not cut" if heal else "this link is cut already")
+    return {"action": RESTORE if heal else CUT, "node": a, "other": b}

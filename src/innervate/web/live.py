@@ -14,8 +14,7 @@ from innervate.web.errors import Refused, WatchError
 from innervate.web.history import LOSS, RETURN, SERIES, Logbook
 from innervate.web.live_map import Link, Place, Status
 from innervate.web.live_poll import Poller
-from innervate.web.live_scene import Place as Spot
-from innervate.web.live_scene import drawn
+from innervate.web.live_scene import Spot, drawn
 from innervate.web.live_state import State
 from innervate.web.live_view import LiveView
 from innervate.web.messages import Command, Cut, Give, Heal, Kill, Revive, number
@@ -108,7 +107,7 @@ class Live(Source):
             node = {
                 "id": at,
                 "label": names[at],
-                "also": known.labels.get(names[at], "") if known is not None else "",
+                "also": known.labels.get(names[at], ""),
                 "x": x,
                 "y": y,
                 "role": self._role(place),
@@ -126,29 +125,26 @@ class Live(Source):
             {"id": "dropped", "label": "frames dropped, all nodes", "unit": "per s"},
         ]
         return {
-            "kind": self._kind, "name": known.name if known is not None else "live",
+            "kind": self._kind, "name": known.name,
             "source": "live", "version": __version__,
             "can": list(self.can), "duration_s": None, "t_s": self._now_us() / 1e6,
             "nodes": nodes, "links": links, "series": series,
-            "fence": known.fence if known is not None and as_drawn else None,
+            "fence": known.fence if as_drawn else None,
             **self._view.scene(self._kind),
-            "metres": known is not None and as_drawn and known.metres,
+            "metres": as_drawn and known.metres,
             "ports": sum(place.port >= 0 for place in self._map.places),
         }  # fmt: skip
 
     def _as_drawn(self, names: list[str]) -> list[Spot] | None:
         """The scenario's places of all that are on the map; None if it does not have them all."""
-        known = self._drawn
-        if known is None or not all(name in known.places for name in names):
-            return None
-        return [known.places[name] for name in names]
+        known = self._drawn.places
+        return [known[name] for name in names] if known.keys() >= {*names} else None
 
     def _moved(self) -> dict[str, Any]:
         """The field with everybody's place, where some say that they are elsewhere now."""
-        known = self._drawn
-        if self._places is None or known is None or not known.metres:
+        if self._places is None or not self._drawn.metres:
             return {}
-        moved = self._view.moved(self._told, known)
+        moved = self._view.moved(self._told, self._drawn)
         if not moved:
             return {}
         spots = zip(self._map.places, self._places, strict=True)

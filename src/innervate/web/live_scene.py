@@ -7,7 +7,7 @@ from pathlib import Path
 from innervate.network import networks
 
 FILE = "scenario.toml"
-Place = tuple[float, float]
+Spot = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,30 +16,31 @@ class Drawn:
 
     name: str  # the scenario's
     # x and y, y down, by a node's name or a port's, like "n3", "c12", "pc.0".
-    places: dict[str, Place]
+    places: dict[str, Spot]
     # What the scenario calls them, where that is another name.
     labels: dict[str, str] = field(default_factory=dict)
     fence: list[list[list[float]]] | None = None  # rings of places; None without one
     metres: bool = False  # places are metres
-    origin_m: Place = (0.0, 0.0)  # the place from which nodes say where they are
+    origin_m: Spot = (0.0, 0.0)  # the place from which nodes say where they are
 
 
-def drawn(sockets: Sequence[Path], kind: str) -> Drawn | None:
-    """The map of nodes whose sockets lie beside their scenario; None without one of that kind."""
+UNKNOWN = Drawn("live", {})  # of nodes whose scenario is not there
+
+
+def drawn(sockets: Sequence[Path], kind: str) -> Drawn:
+    """The map of nodes whose sockets lie beside their scenario, of that kind; else UNKNOWN."""
     from innervate import scenario as scenarios
 
     folders = {path.parent for path in sockets}
     file = min(folders, default=Path()) / FILE
     if len(folders) != 1 or not file.is_file():
-        return None
+        return UNKNOWN
     try:
         plan = scenarios.plan(scenarios.load(file))
         if plan.kind != kind:
-            return None
+            return UNKNOWN
         found: Drawn = networks()[kind].live_view().drawn(plan)
         return found
-    except (
-        scenarios.ScenarioError,
-        ImportError,
-    ):  # files it names lie elsewhere, or no simulator is here
-        return None
+    # Files it names lie elsewhere, or no simulator is here.
+    except (scenarios.ScenarioError, ImportError):
+        return UNKNOWN

@@ -7,8 +7,7 @@ from innervate.live.declared import HIDDEN
 from innervate.network import Network, networks
 from innervate.web.errors import Refused
 from innervate.web.live_map import Map, Place, Status
-from innervate.web.live_scene import Drawn
-from innervate.web.live_scene import Place as Spot
+from innervate.web.live_scene import Drawn, Spot
 from innervate.web.live_state import State
 from innervate.web.messages import Give
 

@@ -1,7 +1,7 @@
 """What a page may send: every command with its fields, checked before anything is done."""
 
 import math
-from typing import Annotated
+from typing import Annotated, get_args
 
 import msgspec
 
@@ -86,7 +86,7 @@ class Save(_Command, frozen=True, tag="save"):
 
 
 Command = Cut | Heal | Kill | Revive | Touch | Give | Pause | Go | Step | Speed | Seek | Save
-NAMES = "cut, heal, kill, revive, touch, command, pause, go, step, speed, seek, save"
+NAMES = ", ".join(str(one.__struct_config__.tag) for one in get_args(Command))
 _DECODER = msgspec.json.Decoder(Command)
 
 

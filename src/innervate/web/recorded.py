@@ -61,7 +61,7 @@ class Recorded(Simulated):
         self.run_to_end(progress)
         if self.broken:
             raise WatchError(f"{self._run.folder}: simulated again, {self.broken}")
-        was, now = self._run.summary.get("fingerprint"), self.engine.fingerprint
+        was, now = self._run.summary.get("fingerprint"), self.engine.running.fingerprint
         interrupted_s = self._run.interrupted_s
         if interrupted_s is None and was != now:
             raise WatchError(

@@ -64,13 +64,13 @@ class Simulated(Source):
 
     def prepare(self) -> None:
         """Compile what has to be compiled: up to a minute, once on a machine."""
-        self.engine.prepare()
+        self.engine.running.prepare()
         self._keep()
 
     @property
     def at_end(self) -> bool:
         """True if nothing more can happen."""
-        done = self.engine.now_us >= self.plan.duration_us or self.engine.is_complete()
+        done = self.engine.now_us >= self.plan.duration_us or self.engine.running.is_complete()
         return done or bool(self.broken)
 
     def scene(self) -> dict[str, Any]:
@@ -176,7 +176,7 @@ class Simulated(Source):
                 self._budget = max(BUDGET, self._budget // 2)
             elif took < SLICE_S / 4 and self.engine.now_us < edge:
                 self._budget *= 2
-            self.view.note(self.engine.take())
+            self.view.note(self.engine.running.take())
             if self.view.is_open and self.engine.now_us >= edge:
                 self.view.check()
             is_point = self.engine.now_us >= self._next_point_us
@@ -243,7 +243,7 @@ class Simulated(Source):
 
     def _step(self) -> None:
         self.playback.hold(self.engine.now_us)
-        at_us = self.engine.next_us()
+        at_us = self.engine.running.next_us()
         if at_us is None or at_us >= self.plan.duration_us or self.at_end:
             raise Refused("nothing more happens")
         self._pass(at_us)

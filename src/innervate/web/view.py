@@ -33,7 +33,7 @@ class View(ABC):
     # frames on their way can.
     speed: ClassVar[float]
     slow: ClassVar[float]
-    can: tuple[str, ...]
+    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     # `check` is called at multiples of this time, us, while somebody has no way; 0 = never.
     check_us: ClassVar[int] = 0
     actions: ClassVar[tuple[Action, ...]] = ()  # of the medium, by the numbers that faults have

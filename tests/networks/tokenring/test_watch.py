@@ -70,7 +70,7 @@ def test_what_is_watched_is_what_is_run(source):
     plan = source.plan
     running = engine_of(plan).running
     running.finish()
-    assert source.engine.fingerprint == running.fingerprint
+    assert source.engine.running.fingerprint == running.fingerprint
 
 
 @pytest.mark.flaky(reruns=1)  # as all that a browser looks at

@@ -48,7 +48,7 @@ def columns(table: Table, result: Any) -> dict[str, Any]:
 
 
 def trail(plan: Any, until_us: int) -> Iterator[Any]:
-    """The trail of a plan: structured arrays with the fields of trail.FIELDS."""
+    """The trail of a plan: structured arrays with the fields of tables.TRAIL."""
     return iter(()) if _is_slotted(plan) else simulating.trail(plan, until_us)
 
 

@@ -58,7 +58,7 @@ def samples(plan: Any) -> int:
 
 
 def trail(plan: Plan, until_us: int) -> Iterator[Any]:
-    """Pieces of the trail of a plan, in order: structured arrays with the fields of trail.FIELDS.
+    """Pieces of the trail of a plan, in order: structured arrays with the fields of tables.TRAIL.
 
     Each belongs to the caller; together they are what `simulate(plan, trail=True)` keeps.
     """

@@ -14,7 +14,18 @@ from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH, PUSHED_PER_EVENT, ROWS_PER_EVENT
 from innervate.sim.cables.wires import COUNTERS, LOSSY
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import TAP, Names, Tables, _longer, get, put, uniform
+from innervate.sim.tables import (
+    DELIVERY,
+    ROW,
+    TAP,
+    TRAIL,
+    Names,
+    Tables,
+    get,
+    longer,
+    put,
+    uniform,
+)
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
 CACHE_LINE = 64
@@ -38,7 +49,7 @@ class Records(NamedTuple):
     params: Declaration
     item: Declaration
     sink: Declaration = ()
-    delivery: Names = w.DELIVERY
+    delivery: Names = DELIVERY
     numbers: tuple[str, ...] = ()
     outbox: int = 16
 
@@ -111,11 +122,11 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         watch=added.watch,
         carrier=added.carrier,
         commands=tables.records(w.COMMAND, len(plan.faults) + len(added.inputs) + 1),
-        rows=tables.records(w.ROW, tables.rows + beyond, fresh=True),
+        rows=tables.records(ROW, tables.rows + beyond, fresh=True),
         deliveries=tables.records(
             of.delivery, tables.rows + beyond if kept.deliveries else 1, fresh=True
         ),
-        trail=tables.records(w.TRAIL, tables.rows if kept.trail else 1, fresh=True),
+        trail=tables.records(TRAIL, tables.rows if kept.trail else 1, fresh=True),
         taps=tables.records(TAP, size.tapped, fresh=True),
         tapped=tables.states(of.frame, size.tapped),
         delays=tables.records(w.DELAY, added.ways, wide=w.WIDE),
@@ -186,11 +197,11 @@ def grow_pool(world: w.World) -> w.World:
     """The same world with twice the room for frames on their way."""
     pool = world.wheel.pool
     first, last = int(get(world.run, 0, "pool_slots")), int(pool[LAST])
-    events = _longer(world.wheel.events, first + 2 * last)
-    links = _longer(world.wheel.links, BUCKETS + first + 2 * last)
+    events = longer(world.wheel.events, first + 2 * last)
+    links = longer(world.wheel.links, BUCKETS + first + 2 * last)
     pool[LAST] = 2 * last
     return world._replace(
-        frames=_longer(world.frames, 2 * last),
+        frames=longer(world.frames, 2 * last),
         wheel=world.wheel._replace(events=events, links=links),
     )
 

@@ -15,7 +15,7 @@ from innervate.sim.driver import Ended, Left, Simulation
 from innervate.sim.queue import with_command
 from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import Names, get, put
+from innervate.sim.tables import DELIVERY, ROW, TRAIL, Names, get, put
 
 
 @dataclass(slots=True, kw_only=True)
@@ -44,7 +44,7 @@ class Cables(Simulation):
     """
 
     tables: ClassVar[Mapping[str, Names]] = {
-        "rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL,
+        "rows": ROW, "deliveries": DELIVERY, "trail": TRAIL,
     }  # fmt: skip
     broken_words: ClassVar[Mapping[int, str]] = {
         w.BROKEN_RANGE: "a value of {node} is out of its declared range",

@@ -8,7 +8,6 @@ fields where the simulator keeps true time.
 from typing import Any, NamedTuple
 
 from innervate.sim import tables
-from innervate.sim.tables import DELIVERY as DELIVERY
 from innervate.sim.tables import Out
 
 # All fields have 32 bits, those named in WIDE and all of RUN 64.
@@ -26,9 +25,7 @@ RUN = (
     "broken", "broken_at", "broken_node", "broken_other",
 )  # fmt: skip
 COMMAND = ("at", "action", "end", "node", "value", "index")
-ROW = ("time", "node", "code", "a", "b")
 DELAY = ("count", "sum", "high")
-TRAIL = ("time", "node", "handler", "port", "fingerprint")
 WIDE = frozenset({*tables.WIDE, *RUN, *DELAY})
 
 # States of a node.

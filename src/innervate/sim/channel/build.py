@@ -12,7 +12,7 @@ from innervate.sim.channel.loop import BATCH, ROWS_PER_EVENT
 from innervate.sim.channel.medium import NEVER
 from innervate.sim.heap import AIRS, COMMAND, OFFER, key_of, push
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import TAP, Names, Tables, put, uniform
+from innervate.sim.tables import ROW, TAP, TRAIL, Names, Tables, longer, put, uniform
 
 OUTBOX = 16
 
@@ -79,10 +79,10 @@ def build(
         item=tables.states(of.packet, 1),
         out=tables.outbox(of.outbox, of.frame),
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
-        rows=tables.records(r.ROW, rows, fresh=True, wide=r.WIDE),
+        rows=tables.records(ROW, rows, fresh=True, wide=r.WIDE),
         sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
         packets=tables.records(of.delivered, rows, fresh=True, wide=r.WIDE),
-        trail=tables.records(r.TRAIL, trail, fresh=True, wide=r.WIDE),
+        trail=tables.records(TRAIL, trail, fresh=True, wide=r.WIDE),
         taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
         tapped=tables.states(of.frame, tapped),
     )
@@ -95,12 +95,7 @@ def build(
 def grow_heap(world: Any) -> Any:
     """The same world, of the radio or of a mesh, with twice the room for events."""
     keys = world.heap.keys
-    if isinstance(keys, list):
-        keys.extend([0] * len(keys))
-        return world
-    longer = np.zeros(2 * len(keys), np.int64)
-    longer[: len(keys)] = keys
-    return world._replace(heap=r.Heap(longer, world.heap.size))
+    return world._replace(heap=world.heap._replace(keys=longer(keys, 2 * len(keys))))
 
 
 def _packets(tables: Tables, plan: Any) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from innervate.sim.handlers import handlers
 from innervate.sim.own import Unfit, check_of, frames_of, modules_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import look_of, parts_of
-from innervate.sim.tables import DELIVERY, Names, Tables, get, put
+from innervate.sim.tables import DELIVERY, ROW, TRAIL, Names, Tables, get, put
 
 # What the medium itself looks at, besides what a protocol declares.
 OF_FRAME = (
@@ -143,7 +143,7 @@ class DeclaredChannel(heard.Heard, Channel):
     """Nodes on a channel whose protocol is declared; packets that are handed up are deliveries."""
 
     tables: ClassVar[Mapping[str, Names]] = {
-        "rows": w.ROW, "packets": DELIVERY, "trail": w.TRAIL,
+        "rows": ROW, "packets": DELIVERY, "trail": TRAIL,
     }  # fmt: skip
 
     def take(self) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from innervate.sim.channel import build, listening, world
 from innervate.sim.driver import Simulation
 from innervate.sim.queue import first_of
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import _longer, get
+from innervate.sim.tables import get, longer
 
 
 class Channel(Simulation):
@@ -37,6 +37,6 @@ class Channel(Simulation):
     def schedule(self, fault: Any) -> None:
         """Something is to be done to the network."""
         place = len(self.world.commands)
-        longer = _longer(self.world.commands, place + 1)
-        self.world = self.world._replace(commands=longer)
+        commands = longer(self.world.commands, place + 1)
+        self.world = self.world._replace(commands=commands)
         build.put_command(self.world, place, fault)

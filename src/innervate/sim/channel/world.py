@@ -1,4 +1,4 @@
-"""Everything a running radio simulation holds, as tuples of tables (see sim/world.py)."""
+"""Everything a running radio simulation holds, as tuples of tables (see sim/tables.py)."""
 
 from typing import Any, NamedTuple
 
@@ -21,10 +21,8 @@ RADIO = (
 )  # fmt: skip
 AIR = ("start", "end", "spoilt", "at_start", "at_end")
 COMMAND = ("action", "node", "value", "index")
-ROW = ("time", "node", "code", "a", "b")
 SENT = ("time", "end", "node", "kind", "slots", "pos", "next", "handle", "count", "more")
 PACKET = ("offered", "end", "time", "node", "handle", "slots", "receivers", "listeners", "tries")
-TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
 # All fields have 32 bits, these and all of RUN 64.
 WIDE = frozenset({"time", "start", "end", "offered", "data_end", "offset", "fingerprint",

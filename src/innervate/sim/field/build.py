@@ -15,7 +15,7 @@ from innervate.sim.field import world as w
 from innervate.sim.field.loop import BOOT, NEVER
 from innervate.sim.field.medium import NONE
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import ACTION, TAP, Names, Tables, get, put, uniform
+from innervate.sim.tables import ACTION, DELIVERY, ROW, TAP, TRAIL, Names, Tables, get, put, uniform
 
 OUTBOX = 16
 PLACES_PER_NODE = 4
@@ -50,7 +50,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
     waiting = n * plan.air.queue_frames
     # In one event all may be given a frame, and all be told that a carrier has gone.
-    margin, rows = 2 * n * (room + 1), {"rows": w.ROW, "deliveries": w.DELIVERY}
+    margin, rows = 2 * n * (room + 1), {"rows": ROW, "deliveries": DELIVERY}
     world = w.World(
         run=tables.records(w.RUN, 1, wide=w.WIDE),
         heap=heap_of(tables, n),
@@ -184,7 +184,7 @@ def kept_tables(
     trail = tables.rows + margin if kept.trail else 1
     return {
         **{name: tables.records(names, room, True, wide) for name, names in rows.items()},
-        "trail": tables.records(w.TRAIL, trail, True, wide),
+        "trail": tables.records(TRAIL, trail, True, wide),
         "taps": tables.records(TAP, tapped, True, wide),
         "tapped": tables.states(frame, tapped),
     }

@@ -33,7 +33,7 @@ from innervate.sim.own import Unfit, check_of, frames_of, modules_of
 from innervate.sim.recorded import Recorded
 from innervate.sim.sent import look_of, parts_of
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import Names, get
+from innervate.sim.tables import DELIVERY, ROW, TRAIL, Names, get
 
 BELOW = (
     access.power_on, access.power_off, access.expire_below, access.dispatch_below, access.short,
@@ -179,7 +179,7 @@ class DeclaredField(heard.Heard, Field):
 
     wide = w.WIDE
     tables: ClassVar[Mapping[str, Names]] = {
-        "rows": w.ROW, "deliveries": w.DELIVERY, "trail": w.TRAIL,
+        "rows": ROW, "deliveries": DELIVERY, "trail": TRAIL,
     }  # fmt: skip
 
     def grow(self, status: int) -> None:

@@ -4,7 +4,6 @@ from typing import Any, NamedTuple
 
 from innervate.sim.came import Came
 from innervate.sim.channel.world import Heap
-from innervate.sim.tables import DELIVERY as DELIVERY
 from innervate.sim.tables import Out
 
 RUN = (
@@ -21,8 +20,6 @@ RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "
 AIR = ("node", "state", "start", "end", "digest", "receivers")
 COMMAND = ("time", "action", "node", "other", "value")
 OFFER = ("time", "node", "kind")
-ROW = ("time", "node", "code", "a", "b")
-TRAIL = ("time", "node", "handler", "port", "fingerprint")
 
 # All fields have 32 bits, these and all of RUN 64.
 WIDE = frozenset({"time", "start", "end", "offset", "noise", "value", "digest", "fingerprint",

@@ -224,11 +224,7 @@ def test_reasons_of_those_given_up_and_refused_are_counted():
         "no_route": 1, "no_ack": 2, "put_out": 1, "no_room": 1, "reason_99": 1}  # fmt: skip
 
 
-def test_percentiles_shares_and_deaths():
-    assert messages.percentiles([4000, 1000, 2000], 1e-3) == pytest.approx(
-        {"p50": 2.0, "p99": 3.96, "max": 4.0}
-    )
-    assert messages.percentiles([]) == {"p50": None, "p99": None, "max": None}
+def test_shares_and_deaths():
     assert messages.ratio(1, 4) == 0.25
     assert messages.ratio(0, 0) is None
     happened = [fault(3 * S, KILL, 1), fault(4 * S, RESTART, 2), fault(5 * S, KILL, 2)]

@@ -35,6 +35,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.scenario.plan import MeshFault, Offer, Walk
 from innervate.networks.mesh.sim import world as w
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
+from innervate.sim.tables import ROW
 from innervate.topology.placement import UNREACHABLE, distances
 
 S = 1_000_000
@@ -60,7 +61,7 @@ def made(rows=(), sent=(), delivered=(), rounds=(), ended_us=100 * S, **plan):
     }  # fmt: skip
     return SimpleNamespace(
         plan=SimpleNamespace(**(known | plan)),
-        rows=table(w.ROW, rows),
+        rows=table(ROW, rows),
         sent=table(w.SENT, sent),
         delivered=table(w.DELIVERED, delivered),
         rounds=table(w.ROUND, rounds),

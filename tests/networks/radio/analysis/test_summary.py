@@ -20,7 +20,7 @@ from innervate.plot import report
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from innervate.sim.channel import world as w
 from innervate.sim.channel.loop import ON_CARRIER
-from innervate.sim.tables import put
+from innervate.sim.tables import ROW, put
 from tests.networks.radio.runs import radio_plan, run
 
 SLOT = 208
@@ -46,7 +46,7 @@ def made(packets=(), sent=(), rows=(), ended_us=100_000, **plan):
         world=build(plan, plain=True, checks=False, observe=False),
         packets=table(w.PACKET, *packets),
         sent=table(w.SENT, *sent),
-        rows=table(w.ROW, *rows),
+        rows=table(ROW, *rows),
         counts=dict.fromkeys(COUNTS, 0)
         | {
             "handled": 7,

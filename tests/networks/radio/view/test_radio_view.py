@@ -10,7 +10,7 @@ from innervate.dialect.access import REPORT_LEFT
 from innervate.networks.radio.protocol.constants import DATA, REPORT_BOUNDS, REPORT_STOPPED
 from innervate.networks.radio.view.view import RadioView
 from innervate.sim.channel import world as w
-from innervate.sim.tables import row_dtype
+from innervate.sim.tables import ROW, row_dtype
 from innervate.web.history import LOG, History
 
 TEAM = {"kind": "radio", "stations": 3, "duration_s": 1.0,
@@ -33,7 +33,7 @@ def view():
 
 def note(view, sent=(), rows=(), packets=(), now_us=0):
     view.engine.now_us = now_us
-    made = {"sent": table(w.SENT, *sent), "rows": table(w.ROW, *rows)}
+    made = {"sent": table(w.SENT, *sent), "rows": table(ROW, *rows)}
     view.note({**made, "packets": table(w.PACKET, *packets)})
 
 

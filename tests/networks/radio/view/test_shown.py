@@ -12,6 +12,7 @@ from innervate.networks.radio.view.view import RadioView
 from innervate.scenario.actions.channel import JOIN, KILL, LEAVE
 from innervate.sim.channel import world as w
 from innervate.sim.heap import AIRS
+from innervate.sim.tables import ROW
 from innervate.web.engine import engine_of
 from innervate.web.errors import Refused
 from innervate.web.history import LOG, TIMELINE, History
@@ -32,7 +33,7 @@ def view():
 
 
 def note(view, now_us=0, **rows):
-    fields = {"sent": w.SENT, "rows": w.ROW, "packets": w.PACKET}
+    fields = {"sent": w.SENT, "rows": ROW, "packets": w.PACKET}
     view.engine.now_us = now_us
     view.note({name: table(columns, *rows.get(name, ())) for name, columns in fields.items()})
 
@@ -188,7 +189,7 @@ def test_switches_and_what_is_refused(view):
 def test_a_headline_is_of_what_is_known_now(view, monkeypatch, now_us, complete, ended):
     seen = []
     monkeypatch.setattr("innervate.networks.radio.view.view.headline", seen.append)
-    view.engine.now_us, view.engine.is_complete = now_us, lambda: complete
+    view.engine.now_us, view.engine.running.is_complete = now_us, lambda: complete
     view.headline()
     view.memory.wrong = {3, 1}
     view.headline()

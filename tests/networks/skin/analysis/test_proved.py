@@ -4,8 +4,7 @@ import numpy as np
 
 from innervate.networks.skin.analysis.proved import outside
 from innervate.networks.skin.sim.proved import HOLD, NUMBERS, ORDER, OUTSIDE, RESTART
-from innervate.sim.cables.world import ROW
-from innervate.sim.tables import row_dtype
+from innervate.sim.tables import ROW, row_dtype
 
 
 def test_each_row_is_a_sentence_that_names_who_it_is_about():

@@ -10,8 +10,7 @@ from innervate.networks.skin.protocol.constants import REPORT_BALANCE, REPORT_BR
 from innervate.networks.skin.sim.observer import APART, CUT_OFF, JOINED, UNROUTED
 from innervate.scenario.actions.cables import KILL, LOOSE
 from innervate.sim.cables.simulation import Result
-from innervate.sim.cables.world import ROW
-from innervate.sim.tables import row_dtype
+from innervate.sim.tables import ROW, row_dtype
 
 # A line of three: pc.0 - 0 - 1 - 2 - pc.1; end = 4 * cell + port, W 0, E 1.
 BEGIN = [(0, -1, CUT_OFF, -1, 0), (0, -1, UNROUTED, 3, 0)]

@@ -4,8 +4,7 @@ import pytest
 from innervate.networks.skin.analysis import rows
 from innervate.networks.skin.analysis.summary import loops
 from innervate.networks.skin.sim.observer import LOOP_CLOSED, LOOP_OPEN
-from innervate.sim.cables.world import ROW
-from innervate.sim.tables import row_dtype
+from innervate.sim.tables import ROW, row_dtype
 
 
 class Recorded:

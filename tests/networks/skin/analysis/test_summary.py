@@ -6,8 +6,8 @@ import pytest
 
 from innervate.networks.skin.analysis.summary import broken_ports, summarize
 from innervate.networks.skin.protocol.constants import ONE, REPORT_BROKEN
-from innervate.sim.cables.world import ALIVE, DEAD, ROW
-from innervate.sim.tables import row_dtype
+from innervate.sim.cables.world import ALIVE, DEAD
+from innervate.sim.tables import ROW, row_dtype
 from tests.networks.skin.runs import line as cells_in_a_line
 from tests.networks.skin.runs import plan_of
 

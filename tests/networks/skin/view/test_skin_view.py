@@ -11,8 +11,7 @@ from innervate.networks.skin.sim.observer import APART, CUT_OFF, LOOP_OPEN, UNRO
 from innervate.networks.skin.sim.simulate import simulate
 from innervate.networks.skin.view.view import SkinView
 from innervate.scenario.actions.cables import CUT as EVENT_CUT
-from innervate.sim.cables.world import ROW
-from innervate.sim.tables import row_dtype
+from innervate.sim.tables import ROW, row_dtype
 from innervate.web.history import LOG, History
 from tests.networks.skin.runs import line
 

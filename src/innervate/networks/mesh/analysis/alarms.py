@@ -4,8 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from innervate.analysis.percentiles import usual
 from innervate.networks.mesh.analysis.fence import Edge, crossings, edges_of, margin_cm, overrun_cm
-from innervate.networks.mesh.analysis.messages import NEVER, percentiles, timeout_us
+from innervate.networks.mesh.analysis.messages import NEVER, timeout_us
 from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
 from innervate.networks.mesh.scenario.plan import position_cm
@@ -142,11 +143,11 @@ def alarms(found: list[Crossing]) -> Alarms:
     return {
         "sent": len(decided),
         "delivered": len(came),
-        "latency_ms": percentiles(waited, 1e-3),
-        "overrun_m": percentiles([crossing.overrun_m for crossing in decided]),
+        "latency_ms": usual(waited, 1e-3),
+        "overrun_m": usual([crossing.overrun_m for crossing in decided]),
         "noticed": sum(crossing.raised_us != NEVER for crossing in decided),
         "by_witness": sum(c.raised_by not in (NEVER, c.robot) for c in decided),
         "by_flood": sum(crossing.flooded for crossing in came),
         "warned": len(warned),
-        "warning_ms": percentiles([c.crossed_us - c.warned_us for c in warned], 1e-3),
+        "warning_ms": usual([c.crossed_us - c.warned_us for c in warned], 1e-3),
     }

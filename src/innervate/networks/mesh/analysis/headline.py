@@ -5,7 +5,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
+from innervate.analysis.headline import (
+    DEGRADED,
+    DOWN,
+    NO_DATA,
+    OK,
+    Headline,
+    part_of,
+    sentence,
+    verb,
+)
 from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
@@ -98,14 +107,14 @@ def _undelivered(traffic: Traffic) -> list[str]:
             f"the monitor learned of none of {number_of(crossings, 'crossing')} of the fence"
         )
     elif unheard:
-        which = _part(unheard, crossings, "crossing")
+        which = part_of(unheard, crossings, "crossing")
         found.append(f"the monitor never learned of {which} of the fence")
     if lost == decided > 1:
         found.append(f"none of {number_of(decided, 'message')} was delivered")
     elif lost:
-        found.append(f"{_part(lost, decided, 'message')} {verb(lost, 'was')} not delivered")
+        found.append(f"{part_of(lost, decided, 'message')} {verb(lost, 'was')} not delivered")
     if traffic.partial:
-        which = _part(traffic.partial, traffic.broadcasts, "broadcast")
+        which = part_of(traffic.partial, traffic.broadcasts, "broadcast")
         found.append(f"{which} did not reach every node that was on")
     return found
 
@@ -125,15 +134,16 @@ def _apart(ways: Ways, absent: str, elsewhere: Elsewhere) -> list[str]:
             )
         cut, astray = int(ways.cut_off.sum()), int(ways.astray.sum())
         if cut:
-            found.append(f"{_part(cut, count, 'node')} {verb(cut, 'is')} cut off from the gateway: "
+            who = f"{part_of(cut, count, 'node')} {verb(cut, 'is')}"
+            found.append(f"{who} cut off from the gateway: "
                          f"no link that works leads to {'it' if cut == 1 else 'them'}")  # fmt: skip
         if astray:
             found.append(
-                f"{_part(astray, count, 'node')} {verb(astray, 'has')} no way to the gateway"
+                f"{part_of(astray, count, 'node')} {verb(astray, 'has')} no way to the gateway"
             )
     off = int(ways.off.sum())
     if off:
-        found.append(f"{_part(off, count, 'node')} {verb(off, 'is')} {absent}")
+        found.append(f"{part_of(off, count, 'node')} {verb(off, 'is')} {absent}")
     return found
 
 
@@ -150,13 +160,13 @@ def _came(traffic: Traffic, nodes: int) -> list[str]:
     """What came, as far as it all did; where there is nobody else, no broadcast did."""
     said = []
     if traffic.crossings and traffic.crossings == traffic.learned:
-        which = _part(traffic.crossings, traffic.crossings, "crossing")
+        which = part_of(traffic.crossings, traffic.crossings, "crossing")
         said.append(f"the monitor learned of {which} of the fence")
     if traffic.decided and traffic.decided == traffic.delivered:
-        which = _part(traffic.decided, traffic.decided, "message")
+        which = part_of(traffic.decided, traffic.decided, "message")
         said.append(f"{which} {verb(traffic.decided, 'was')} delivered")
     if traffic.broadcasts and not traffic.partial and nodes > 1:
-        which = _part(traffic.broadcasts, traffic.broadcasts, "broadcast")
+        which = part_of(traffic.broadcasts, traffic.broadcasts, "broadcast")
         said.append(f"{which} reached every node that was on")
     return said
 
@@ -168,7 +178,7 @@ def _reached(ways: Ways, leads_elsewhere: bool) -> str:
         return "every node that is on has a way to the gateway"
     if count == 1 and not leads_elsewhere:
         return "the only node leads"
-    return f"{_part(count, count, 'node')} {verb(count, 'has')} a way to the gateway"
+    return f"{part_of(count, count, 'node')} {verb(count, 'has')} a way to the gateway"
 
 
 def _afar(elsewhere: Elsewhere) -> list[str]:
@@ -207,10 +217,3 @@ def traffic(
         flows=bool(late.any()),
         about=tuple(sorted({*unheard, *missing})),
     )
-
-
-def _part(part: int, whole: int, what: str) -> str:
-    """'1 of 91 messages', 'the only crossing', 'both robots', 'all 30 nodes'."""
-    if part < whole:
-        return f"{part:,} of {number_of(whole, what)}"
-    return every(whole, what)

@@ -6,12 +6,11 @@ to one node alone and therefore left out of ratios and latencies.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from innervate.analysis.percentiles import percentiles as percentiles_of
-from innervate.analysis.summary_common import Percentiles
 from innervate.analysis.ways import Flags, Numbers
 from innervate.networks.mesh.analysis.broadcasts import missed
 from innervate.networks.mesh.protocol import constants as const
@@ -127,18 +126,11 @@ def _key(time: Any, node: Any, handle: Any) -> Numbers:
 
 def _offers_of(given: Any, at: Numbers, node: Numbers, seq: Numbers) -> Numbers:
     """Per delivery of a message the offer that it is of, NEVER if of none."""
-    found = np.full(len(given), NEVER, np.int64)
     offered = np.flatnonzero(seq >= 0)
-    if len(offered):
-        # The newest offer of that number which was there before it: numbers come round again.
-        name = node[offered] << 16 | seq[offered]
-        order = offered[np.lexsort((at[offered], name))]
-        names = node[order] << 16 | seq[order]
-        mine = given["origin"].astype(np.int64) << 16 | given["seq"]
-        last = _rank(names, at[order], mine, given["time"].astype(np.int64)) - 1
-        fits = last >= 0
-        fits[fits] = names[last[fits]] == mine[fits]
-        found[fits] = order[last[fits]]
+    names = node[offered] << 16 | seq[offered]
+    mine = given["origin"].astype(np.int64) << 16 | given["seq"]
+    last = newest_before(names, at[offered], mine, given["time"].astype(np.int64))
+    found: Numbers = np.append(offered, NEVER)[last]  # the last place is also that of NEVER
     return found
 
 
@@ -164,11 +156,21 @@ def _first_deliveries(
     return found
 
 
-def _rank(names: Numbers, times: Numbers, name: Numbers, time: Numbers) -> Numbers:
-    """How many of the pairs (name, time), sorted, are not behind each of the others."""
-    # Both halves of a key fit into 63 bits: 24 of a name, 37 of a time.
-    rank: Numbers = np.searchsorted(names << 37 | times, name << 37 | time, "right")
-    return rank
+def newest_before(names: Numbers, times: Numbers, name: Numbers, time: Numbers) -> Numbers:
+    """For each name and time, where the newest of that name stands that was there by then.
+
+    NEVER without one. Numbers of packets, which are part of a name, come round again.
+    """
+    found = np.full(len(name), NEVER, np.int64)
+    if len(names):
+        order = np.lexsort((times, names))
+        # Both halves of a key fit into 63 bits: 24 of a name, 37 of a time.
+        key = names[order] << 37 | times[order]
+        last = np.searchsorted(key, name << 37 | time, "right") - 1
+        fits = last >= 0
+        fits[fits] = names[order[last[fits]]] == name[fits]
+        found[fits] = order[last[fits]]
+    return found
 
 
 def _states(result: Any, at: Numbers, came: Flags, answer: Numbers) -> Numbers:
@@ -222,8 +224,6 @@ def duplicates(result: Any) -> int:
     The same: receiver, origin, type and number, while the origin was not switched on again.
     """
     rows = result.delivered
-    if len(rows) == 0:
-        return 0
     boots = {node: [0] for node in range(result.plan.nodes)}
     for fault in result.plan.faults:
         if fault.action in (REVIVE, RESTART):
@@ -233,12 +233,20 @@ def duplicates(result: Any) -> int:
         mine = rows["origin"] == node
         boot[mine] = np.searchsorted(np.array(starts), rows["time"][mine], "right")
     fields = [rows[name] for name in ("node", "origin", "kind", "seq")]
-    order = np.lexsort((rows["time"], boot, *fields))
-    same = np.ones(len(rows) - 1, np.bool_)
-    for column in (*fields, boot):
-        same &= column[order][1:] == column[order][:-1]
-    same &= np.diff(rows["time"][order]) < SAME_US
+    _, same = repeats(rows["time"], [boot, *fields], SAME_US)
     return int(np.count_nonzero(same))
+
+
+def repeats(times: Any, fields: Sequence[Any], within_us: int) -> tuple[Numbers, Flags]:
+    """(rows in order of fields and time, of each but the first if it repeats the one before).
+
+    It repeats that if all fields are the same, less than so long after.
+    """
+    order = np.lexsort((times, *fields))
+    again = np.diff(times[order]) < within_us
+    for column in fields:
+        again &= column[order][1:] == column[order][:-1]
+    return order, again
 
 
 def give_ups(result: Any) -> dict[str, int]:
@@ -250,13 +258,6 @@ def give_ups(result: Any) -> dict[str, int]:
             name = REASONS.get(reason, f"reason_{reason}")
             found[name] = found.get(name, 0) + 1
     return found
-
-
-def percentiles(values: Any, scale: float = 1.0) -> Percentiles:
-    """Median, 99th percentile and maximum; None where there is nothing."""
-    found = percentiles_of(np.asarray(values, np.float64), (50, 99, 100))
-    p50, p99, most = (None if value is None else scale * value for value in found)
-    return {"p50": p50, "p99": p99, "max": most}
 
 
 def ratio(part: int, whole: int) -> float | None:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from innervate.analysis.ways import Numbers
+from innervate.networks.mesh.analysis.messages import NEVER, newest_before
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.summary_keys import Airtime, Discovery, Gateway, Suspects
 from innervate.networks.mesh.protocol import constants as const
@@ -30,17 +31,10 @@ def acked_kinds(sent: Any) -> Numbers:
     """
     kinds: Numbers = sent["kind"].astype(np.int64)
     name = sent["origin"].astype(np.int64) << 16 | sent["seq"]
-    packets = np.flatnonzero(kinds != const.ACK)
-    acks = np.flatnonzero(kinds == const.ACK)
-    if len(packets) == 0 or len(acks) == 0:
-        return kinds
-    order = packets[np.lexsort((sent["end"][packets], name[packets]))]
-    key = name[order] << 37 | sent["end"][order]
-    # The newest packet of that name on the air before: numbers come round again.
-    last = np.searchsorted(key, name[acks] << 37 | sent["time"][acks], "right") - 1
-    fits = last >= 0
-    fits[fits] = name[order[last[fits]]] == name[acks[fits]]
-    kinds[acks[fits]] = kinds[order[last[fits]]]
+    packets, acks = np.flatnonzero(kinds != const.ACK), np.flatnonzero(kinds == const.ACK)
+    last = newest_before(name[packets], sent["end"][packets], name[acks], sent["time"][acks])
+    known = last != NEVER
+    kinds[acks[known]] = kinds[packets[last[known]]]
     return kinds
 
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from innervate.analysis.percentiles import usual
 from innervate.analysis.summary_common import measured
 from innervate.networks.mesh.analysis import messages
 from innervate.networks.mesh.analysis import network as network
@@ -37,7 +38,7 @@ def summarize(result: Any) -> keys.MeshSummary:
         "links": len(plan.good),
         "discovery": network.discovery(result, kinds),
         "delivery_ratio": messages.delivery_ratio(found),
-        "latency_ms": messages.percentiles(messages.latencies_us(found), 1e-3),
+        "latency_ms": usual(messages.latencies_us(found), 1e-3),
         "alarms": alarms(crossings),
         "duplicates": again,
         "looped": met,
@@ -139,7 +140,7 @@ def flows(found: messages.Messages, plan: Any) -> list[keys.Flow]:
             "flow": flow,
             **_counts(mine),
             "delivery_ratio": messages.delivery_ratio(mine),
-            "latency_ms": messages.percentiles(messages.latencies_us(mine), 1e-3),
+            "latency_ms": usual(messages.latencies_us(mine), 1e-3),
         })  # fmt: skip
     return rows
 
@@ -155,13 +156,10 @@ def looped(result: Any) -> int:
     sent = sent[routed & (sent["link_dst"] != ALL)]
     parity = sent["flags"] & PARITY
     fields = [sent[name] for name in ("origin", "seq", "kind", "node")] + [parity]
-    order = np.lexsort((sent["time"], *fields))
-    again = np.ones(max(len(sent) - 1, 0), np.bool_)
-    for column in fields:
-        again &= column[order][1:] == column[order][:-1]
+    within_us = result.plan.params["e2e_us"]
+    order, again = messages.repeats(sent["time"], fields, within_us)
     again &= np.diff(sent["path_len"][order].astype(np.int64)) != 0
-    again &= np.diff(sent["time"][order]) < result.plan.params["e2e_us"]
-    met = sent[order][1:][again] if len(sent) else sent
+    met = sent[order[1:][again]]
     told = result.delivered[result.delivered["looped"] == 1]
     return len({
         (int(row["origin"]), int(row["kind"]), int(row["seq"]))
@@ -183,7 +181,7 @@ def stretch(found: messages.Messages, ground: Ground) -> keys.Stretch:
             shares.append(hops / least)
     mean = float(np.mean(shares)) if shares else None
     hops = float(came.hops.mean()) if len(came.hops) else None
-    return {"mean": mean, "p99": messages.percentiles(shares)["p99"], "hops_mean": hops}
+    return {"mean": mean, "p99": usual(shares)["p99"], "hops_mean": hops}
 
 
 def alternates(result: Any) -> float | None:

@@ -16,8 +16,9 @@ from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.sim.field import build as field
 from innervate.sim.field import powers, queue
 from innervate.sim.field.loop import NEVER
+from innervate.sim.field.world import COMMAND
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import ACTION, Tables, get, put, uniform
+from innervate.sim.tables import ACTION, ROW, Tables, get, put, uniform
 
 OUTBOX = 32
 DUPLICATES = 1 << 15
@@ -61,7 +62,7 @@ def build(plan: Any, plain: bool, **kept: bool) -> m.World:
         duplicate_at=tables.numbers(DUPLICATES, 0, np.int64),
         **field.kept_tables(
             tables, asked, _margin(n), frame, m.WIDE,
-            rows=m.ROW, sent=m.SENT, delivered=m.DELIVERED, rounds=m.ROUND,
+            rows=ROW, sent=m.SENT, delivered=m.DELIVERED, rounds=m.ROUND,
         ),
     )  # fmt: skip
     field.set_limits(world, tables.rows, asked, *LIMITS)
@@ -120,7 +121,7 @@ def _script(tables: Tables, plan: Any) -> dict[str, Any]:
     offers = [(o.at_us, o.node, o.dest, o.flags, o.length) for o in plan.offers]
     walks, points = _walks(plan)
     return {
-        "commands": field.timed(tables, m.COMMAND, field.events_of(plan)),
+        "commands": field.timed(tables, COMMAND, field.events_of(plan)),
         "offers": field.timed(tables, m.OFFER, sorted(offers, key=lambda offer: offer[0])),
         "walks": field.timed(tables, m.WALK, walks),
         "points": field.timed(tables, m.POINT, points),

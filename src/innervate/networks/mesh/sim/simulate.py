@@ -23,7 +23,7 @@ from innervate.sim.field import calls, loop, medium, motion, powers
 from innervate.sim.field.simulation import Field
 from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
-from innervate.sim.tables import get
+from innervate.sim.tables import ROW, TRAIL, get
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
@@ -33,7 +33,7 @@ PLAIN_SLICE_EVENTS = 2_000
 class MeshResult(Left):
     """What a mesh simulation leaves.
 
-    Structured arrays with the fields of `world.ROW`, `SENT`, `DELIVERED`, `ROUND` and `TRAIL`;
+    Structured arrays with the fields of `ROW`, `TRAIL`, `world.SENT`, `DELIVERED` and `ROUND`;
     times in us.
 
     Attributes:
@@ -137,8 +137,8 @@ class MeshSimulation(Field):
 
     wide = w.WIDE
     tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "rows": w.ROW, "sent": w.SENT, "delivered": w.DELIVERED, "rounds": w.ROUND,
-        "trail": w.TRAIL,
+        "rows": ROW, "sent": w.SENT, "delivered": w.DELIVERED, "rounds": w.ROUND,
+        "trail": TRAIL,
     }  # fmt: skip
     broken_words: ClassVar[Mapping[int, str]] = {
         **Field.broken_words, recorder.BROKEN_TWICE: "{node} delivered a packet twice",

@@ -1,14 +1,10 @@
-"""Everything a running mesh simulation holds, as tuples of tables (see sim/world.py)."""
+"""Everything a running mesh simulation holds, as tuples of tables (see sim/tables.py)."""
 
 from typing import Any, NamedTuple
 
 from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma
 from innervate.sim.channel.world import Heap
-from innervate.sim.field.world import AIR as AIR
-from innervate.sim.field.world import COMMAND as COMMAND
-from innervate.sim.field.world import ROW as ROW
-from innervate.sim.field.world import TRAIL as TRAIL
 from innervate.sim.tables import Out
 
 RUN = (

@@ -11,8 +11,7 @@ from innervate.networks.mesh.analysis.headline import headline
 from innervate.networks.mesh.analysis.reach import Choices, Ways, ways
 from innervate.networks.mesh.view.elsewhere import elsewhere, hand_on, without_it
 from innervate.web.live_map import Link, Map, Place, Status
-from innervate.web.live_scene import Drawn
-from innervate.web.live_scene import Place as Spot
+from innervate.web.live_scene import Drawn, Spot
 from innervate.web.live_state import State
 from innervate.web.live_view import LiveView
 

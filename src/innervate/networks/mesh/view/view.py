@@ -20,6 +20,7 @@ from innervate.sim.field.states import ALIVE, DEAD, OFF, ON_AIR
 from innervate.topology.placement import neighbours
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
+from innervate.web.field_view import cut_of
 from innervate.web.history import History
 from innervate.web.messages import number
 from innervate.web.view import Memory, View
@@ -53,7 +54,6 @@ class MeshView(View):
 
     speed: ClassVar[float] = 1.0
     slow: ClassVar[float] = 0.2
-    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
     actions = TABLE
     fault_type = MeshFault
     check_us: ClassVar[int] = 10_000
@@ -241,10 +241,7 @@ class MeshView(View):
 
     def cut(self, link: int, heal: bool) -> dict[str, int]:
         """The fault that cuts a link, or puts it back."""
-        a, b = self.field.pairs[number("link", link, len(self.field.pairs))]
-        if bool(self.engine.world.cut[a * self.plan.nodes + b]) != heal:
-            raise Refused("this link is not cut" if heal else "this link is cut already")
-        return {"action": RESTORE if heal else CUT, "node": a, "other": b}
+        return cut_of(self, self.field.pairs, link, heal)
 
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """The fault that switches a node off, or on."""

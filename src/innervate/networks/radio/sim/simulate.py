@@ -15,7 +15,7 @@ from innervate.sim.channel import listening, loop, medium, traffic
 from innervate.sim.channel import world as w
 from innervate.sim.channel.simulation import Channel
 from innervate.sim.driver import Left, Progress
-from innervate.sim.tables import get, put
+from innervate.sim.tables import ROW, TRAIL, get, put
 
 
 @dataclass(slots=True, kw_only=True)
@@ -24,7 +24,7 @@ class RadioResult(Left):
 
     `rows` are what stations reported, `sent` all transmissions, `packets` all packets that their
     sender takes for delivered, `trail` all handler calls: structured arrays with the fields of
-    `world.ROW`, `world.SENT`, `world.PACKET` and `world.TRAIL`, times in us.
+    `ROW`, `TRAIL`, `world.SENT` and `world.PACKET`, times in us.
     `counts` holds the numbers of the run by name.
     """
 
@@ -94,7 +94,7 @@ class RadioSimulation(Channel):
     """A radio team under way."""
 
     tables: ClassVar[Mapping[str, tuple[str, ...]]] = {
-        "rows": w.ROW, "sent": w.SENT, "packets": w.PACKET, "trail": w.TRAIL,
+        "rows": ROW, "sent": w.SENT, "packets": w.PACKET, "trail": TRAIL,
     }  # fmt: skip
 
     broken_words: ClassVar[Mapping[int, str]] = {

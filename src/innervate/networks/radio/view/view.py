@@ -206,7 +206,7 @@ class RadioView(View):
             memory.delivered_us,
             faults=engine.given,
             # A recording that was interrupted is shorter than its scenario, and has not ended.
-            ended=engine.now_us >= duration_us(plan.scenario.model) or engine.is_complete(),
+            ended=engine.now_us >= duration_us(plan.scenario.model) or engine.running.is_complete(),
         )
         wrong = tuple(sorted(memory.wrong))
         believed = {"believed_us": [plan.params["dmin_us"], plan.params["dmax_us"]]}

@@ -6,7 +6,17 @@ From plain facts, so that a finished run, a simulation under way and running nod
 from collections.abc import Callable, Collection
 from typing import NamedTuple
 
-from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, Headline, every, sentence, verb
+from innervate.analysis.headline import (
+    DEGRADED,
+    DOWN,
+    NO_DATA,
+    OK,
+    Headline,
+    every,
+    part_of,
+    sentence,
+    verb,
+)
 from innervate.analysis.words import share_words
 from innervate.kernel.words import number_of
 
@@ -132,8 +142,7 @@ def _them(nodes: Collection[int]) -> str:
 def _before(facts: SkinFacts) -> list[str]:
     if not facts.cut_off_before:
         return []
-    few = f"{facts.cut_off_before:,} of {facts.cells:,} cells"
-    who = every(facts.cells, "cell") if facts.cut_off_before == facts.cells else few
+    who = part_of(facts.cut_off_before, facts.cells, "cell")
     was = verb(facts.cut_off_before, "was")
     if facts.cut_off:  # of those some still are
         return [f"at the worst moment {who} {was} cut off"]

@@ -12,7 +12,7 @@ from innervate.export.errors import ExportError
 from innervate.export.links import Place
 from innervate.export.measure import Measured, Way
 from innervate.export.reading import Capture, Packet
-from innervate.networks.skin.export.routes import CELL_AT, CELL_BITS
+from innervate.networks.skin.export.routes import CELL_AT, CELL_BITS, end_of
 from innervate.networks.skin.frames import KIND_BITS, SIZES
 from innervate.networks.skin.protocol.constants import BEACON, DATA
 from innervate.wire.bits import get
@@ -44,13 +44,13 @@ class Reader(measure.Reader):
 
     def end_of(self, place: Place) -> str:
         """An end as a scenario names it."""
-        name = "pc" if place.what == "pc" else f"c{place.number}"
-        if place.what not in ("pc", "cell") or place.port < 0 or not place.here:
+        end = end_of(place)
+        if end is None:
             raise ExportError(
                 f"{self.path} does not say which cables join its interfaces; "
                 "captures of runs and of nodes on UDP do"
             )
-        return f"{name}.{place.port}"
+        return f"{end.node}.{end.port}"
 
     def take(self, packet: Packet) -> None:
         """The next packet: the key of a way is (this end, that end), in the capture's words."""

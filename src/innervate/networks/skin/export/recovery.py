@@ -126,14 +126,14 @@ class Watcher:
     def _end(self, interface: int) -> End:
         for one in self.capture.interfaces[len(self._places) :]:
             place = links.place_of(one.description)
-            name = PC if place.what == "pc" else f"c{place.number}"
-            if place.what not in ("pc", "cell") or place.port < 0 or not place.here:
+            end = routes.end_of(place)
+            if end is None:
                 raise ExportError(
                     f"{self.capture.path} does not say which cables join its interfaces; capture "
                     "a skin of `innervate live up`, or nodes with a UDP address for each path"
                 )
-            self._places.append(End(name, place.port))
-            self.net.cable(self._places[-1], place.here, place.there)
+            self._places.append(end)
+            self.net.cable(end, place.here, place.there)
         return self._places[interface]
 
     def _event(self, at_ns: int, end: End, what: str) -> None:

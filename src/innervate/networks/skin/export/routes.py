@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from innervate.export.links import Place
 from innervate.networks.skin import frames as skin
 from innervate.wire.layout import width
 
@@ -24,6 +25,13 @@ class End(NamedTuple):
 
     node: str
     port: int
+
+
+def end_of(place: Place) -> End | None:
+    """The end that an interface of a capture is at; None if its description does not say it all."""
+    if place.what not in ("pc", "cell") or place.port < 0 or not place.here:
+        return None
+    return End(PC if place.what == "pc" else f"c{place.number}", place.port)
 
 
 class Network:

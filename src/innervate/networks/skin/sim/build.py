@@ -14,6 +14,7 @@ from innervate.sim.cables.world import World
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import Tables
 from innervate.sim.wheel import NIL
+from innervate.topology import Graph
 from innervate.topology.layout import cell_places
 
 DELIVERY = (
@@ -109,5 +110,9 @@ def _touch(tables: Tables, plan: Any) -> Touch:
     if not touch:
         return Touch(*map(tables.given, ((), (), (0, 0, 1), ())))
     span = (touch.radius_um, touch.force_mn, touch.step_us)
-    places = [round(1000 * x) for place in cell_places(plan.graph) for x in place]
-    return Touch(*map(tables.given, (touch.x_um, touch.y_um, span, places)))
+    return Touch(*map(tables.given, (touch.x_um, touch.y_um, span, places_um(plan.graph))))
+
+
+def places_um(graph: Graph) -> list[int]:
+    """Where the cells are, um: x and y of each, one after the other."""
+    return [round(1000 * x) for place in cell_places(graph) for x in place]

@@ -15,12 +15,11 @@ from innervate.networks.skin.sim.counters import LOOPED, NO_ROUTE
 from innervate.networks.skin.sim.proved import PC_STAYS
 from innervate.sim import taps
 from innervate.sim.cables import loop
-from innervate.sim.cables import world as w
 from innervate.sim.cables.simulation import Cables, Result
 from innervate.sim.driver import Ended, InvariantBroken, Progress
 from innervate.sim.recorded import Recorded
 from innervate.sim.status import BROKEN
-from innervate.sim.tables import Names, get, move_rows
+from innervate.sim.tables import ROW, TRAIL, Names, get, move_rows
 
 
 def _modules() -> tuple[ModuleType, ...]:
@@ -65,7 +64,7 @@ class SkinSimulation(Cables):
     """A skin that is simulated in slices: its plan, its world, its loop."""
 
     tables: ClassVar[Mapping[str, Names]] = {
-        "rows": w.ROW, "deliveries": builder.DELIVERY, "trail": w.TRAIL,
+        "rows": ROW, "deliveries": builder.DELIVERY, "trail": TRAIL,
     }  # fmt: skip
 
     broken_words: ClassVar[Mapping[int, str]] = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from innervate.networks.skin.scenario.model import TouchTable
 from innervate.networks.skin.scenario.touch import sample
-from innervate.networks.skin.sim.build import Touch
+from innervate.networks.skin.sim.build import Touch, places_um
 from innervate.topology.layout import cell_places
 
 AWAY_MM = -1_000_000.0  # where nobody feels it
@@ -46,13 +46,12 @@ class Finger:
 
     def into(self, world: Any) -> Any:
         """The world with this touch."""
-        place = [round(1000 * x) for spot in cell_places(self._graph) for x in spot]
         return world._replace(
             carrier=Touch(
                 x=self.x_um.copy(),
                 y=self.y_um.copy(),
                 span=self._span.copy(),
-                place=np.array(place, np.int64),
+                place=np.array(places_um(self._graph), np.int64),
             )
         )
 

@@ -23,16 +23,16 @@ from innervate.networks.skin.view import giving
 from innervate.networks.skin.view.engine import SkinEngine
 from innervate.networks.skin.view.scene import places
 from innervate.networks.skin.view.state import SkinCables
-from innervate.scenario.actions.cables import CUT, KILL, LOOSE, RESTORE, REVIVE, TABLE
-from innervate.scenario.cables import Fault
+from innervate.scenario.actions.cables import KILL, REVIVE
 from innervate.sim.cables.wires import LOST_BROKEN, LOST_CUT, OFFERED
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
+from innervate.web.cables import CabledView
 from innervate.web.engine import Engine, Rows
 from innervate.web.errors import Refused
 from innervate.web.history import History
 from innervate.web.messages import Command, Give, Touch, number
-from innervate.web.view import Memory, View
+from innervate.web.view import Memory
 
 HZ_WITHOUT_DATA = 250.0  # load is shown as if cells sampled so often
 FORCE_FULL_MN = 5_000  # shown as 255
@@ -56,14 +56,11 @@ class SkinMemory(Memory):
     waited: tuple[int, int] = (0, 0)  # samples since the last point, the sum of their latencies, us
 
 
-class SkinView(View):
+class SkinView(CabledView):
     """Cells and interface ports; the links are the cables, in order of their lower end."""
 
-    speed: ClassVar[float] = 0.1
-    slow: ClassVar[float] = 0.05
-    can: tuple[str, ...] = ("cut", "heal", "kill", "revive")
-    actions = TABLE
-    fault_type = Fault
+    noun: ClassVar[str] = "cell"
+    cables: SkinCables
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
@@ -307,34 +304,11 @@ class SkinView(View):
         """What a fault does, as "cut 3-4"."""
         return fault_words(self.plan.graph, fault)
 
-    def takes(self, fault: Any) -> bool:
-        """True if a fault takes something away, false if it gives it back."""
-        return super().takes(fault) and not (fault.action == LOOSE and fault.loss_q15 == 0)
-
-    def cut(self, link: int, heal: bool) -> dict[str, int]:
-        """The fault that cuts a link, or puts it back."""
-        a, b = self.cables.ends[number("link", link, len(self.cables.ends))].tolist()
-        reasons = int(self.engine.world.ends["impaired"][a]) >> 2
-        dead = sum(self._is_dead(self.cables.node_of[end]) for end in (a, b))
-        if heal and reasons <= dead:
-            raise Refused("this cable is not cut" if not reasons else "its cell is switched off")
-        if not heal and reasons > dead:
-            raise Refused("this cable is cut already")
-        # As a scenario names it: an interface's cable by the PC's end.
-        end = b if b >= PORTS * self.cells else a
-        return {"action": RESTORE if heal else CUT, "end": end, "node": -1}
-
-    def _is_dead(self, node: int) -> bool:
-        return node < self.cells and int(self.engine.world.alive[node]) == DEAD
-
     def kill(self, node: int, revive: bool) -> dict[str, int]:
         """The fault that switches a node off, or on."""
-        number("node", node, self.cells + self.ports)
-        if node >= self.cells:
+        if number("node", node, self.cells + self.ports) >= self.cells:
             raise Refused("the PC cannot be switched off; cut the cable of this port")
-        if self._is_dead(node) != revive:
-            raise Refused("this cell is on" if revive else "this cell is off already")
-        return {"action": REVIVE if revive else KILL, "end": -1, "node": node}
+        return super().kill(node, revive)
 
     def event(self, fault: Any) -> dict[str, Any]:
         """The [[event]] table of a fault, without its time."""
