@@ -59,16 +59,6 @@ def test_whose_neighbours_did_not_respond_either_stays():
     assert known(bench, 2, 3)
 
 
-def test_what_who_does_not_respond_heard_is_kept():
-    """That responses are lost in a full channel says nothing of links: tables stay as they are."""
-    bench = Bench(4, SQUARE)
-    bench.run(SETTLED)
-    bench.lost = lambda frame, to: frame.kind == RESPONSE and frame.origin == 3
-    bench.run(160 * S)  # rounds after 10, 30, 70 and 130 s
-    assert known(bench, 1, 3)
-    assert known(bench, 2, 3)
-
-
 def test_who_comes_back_is_in_the_next_graph():
     bench = after_a_round(SQUARE, {3})
     bench.dead.clear()
@@ -81,7 +71,7 @@ def test_a_gateway_that_only_faint_links_hear_is_not_gone():
     bench = Bench(4, SQUARE)
     bench.run(SETTLED)
     node, gate = bench.nodes[0], bench.gates[0]
-    begin_round(gate, bench.params, 0)
+    begin_round(gate, bench.params)
     for responds in (1, 2):
         note_heard(gate, bench.params, responds, responds)
     forget_gone(node, gate, bench.params)

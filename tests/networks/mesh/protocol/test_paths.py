@@ -85,29 +85,23 @@ def test_alternates_are_loop_free_and_protect_the_node_where_one_can(graph):
 
 def test_links_count_both_ways_and_for_three_rounds():
     params, gate = gateway_of(nx.path_graph(3))[2], Gate()
-
-    def begin_round():
-        for k in range(3):  # all respond
-            mesh_paths.note_heard(gate, params, k, k)
-        mesh_paths.begin_round(gate, params, 0)
-
     pairs = [(0, 1), (1, 0), (1, 2), (2, 1)]  # of the first four, and in a byte of their own
     for there, back in (pairs[:2], pairs[2:]):
         mesh_paths.note_heard(gate, params, *there)
         mesh_paths.build_graph(gate, params)
         assert gate.links == 0
-        begin_round()
+        mesh_paths.begin_round(gate, params)
         mesh_paths.note_heard(gate, params, *back)
         for links in (1, 1, 0, 0):  # `there` was heard a round before
             mesh_paths.build_graph(gate, params)
             assert gate.links == links
-            begin_round()
+            mesh_paths.begin_round(gate, params)
     for pair in pairs:
         mesh_paths.note_heard(gate, params, *pair)
     for links in (2, 2, 2, 0):
         mesh_paths.build_graph(gate, params)
         assert gate.links == links
-        begin_round()
+        mesh_paths.begin_round(gate, params)
 
 
 def parts_of(node, gate, params, s, room):

@@ -97,7 +97,7 @@ def inherit(node, gate, params, out):
 
 def start_round(node, gate, params, now, out):
     """A discovery round: whoever is there responds."""
-    begin_round(gate, params, node.number)
+    begin_round(gate, params)
     gate.wait = gate.period
     report(out, REPORT_ROUND, (node.round + 1) & MASK16, node.epoch)
     request(node, gate, params, now, COLLECTING, out)
@@ -175,10 +175,10 @@ def on_response(node, gate, params, now, frame, out):
     if frame.table_ver == 0:
         note_lost_table(gate, frame.origin)
     loudest = params.min_rssi - 1
-    note_heard(gate, params, frame.origin, frame.origin)
     if frame.length > 5:
         note_list(gate, params, frame, 4)
         loudest = signed8(frame.body[5])
+        note_heard(gate, params, frame.origin, frame.origin)
     # A faint way counts for who hears nobody well, and tells of one that it hears as faintly.
     if loudest < params.min_rssi or not is_faint(params, frame):
         note_path(gate, params, frame, node.number)

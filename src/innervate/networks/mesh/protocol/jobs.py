@@ -142,10 +142,10 @@ def pump(node, gate, params, now, out):
         for s in range(params.nodes):
             if gate.job[s] == UNDER_WAY:
                 queue_parts(node, gate, params, now, s, out)
+    kick(node, params, now, out)
     if gate.open and not count_jobs(gate, params, UNDER_WAY):
         if not count_jobs(gate, params, TO_SEND):
             finish(node, gate, params, now, out)
-    kick(node, params, now, out)
     wait_for_acks(gate, params, now, out)
 
 
@@ -284,3 +284,4 @@ def finish(node, gate, params, now, out):
             add8(node, i, node.epoch)
             add16(node, i, gate.version)
             node.q_copies[i] = params.copies
+        kick(node, params, now, out)

@@ -11,6 +11,7 @@ from innervate.networks.mesh.protocol.search import BITS
 FAR = 255
 NONE = 255
 ROUNDS_VALID = 3
+LOW_BITS = 85  # of each of four pairs of bits
 
 
 def note_heard(gate, params, who, by):
@@ -25,20 +26,16 @@ def forget_heard(gate, params, who, by):
     gate.heard[at >> 2] = gate.heard[at >> 2] & ~(ROUNDS_VALID << 2 * (at & 3))
 
 
-def rounds_left(gate, params, who, by):
-    """For how many rounds it counts that `by` heard `who`."""
-    at = who * params.width + by
-    return gate.heard[at >> 2] >> 2 * (at & 3) & 3
-
-
 def is_heard(gate, params, who, by):
     """1 if `by` heard `who` in one of the last rounds."""
-    return rounds_left(gate, params, who, by) != 0
+    at = who * params.width + by
+    return gate.heard[at >> 2] >> 2 * (at & 3) & 3 != 0
 
 
 def is_fresh(gate, params, who, by):
     """1 if `by` heard `who` in this round; of one node: it has responded."""
-    return rounds_left(gate, params, who, by) == ROUNDS_VALID
+    at = who * params.width + by
+    return gate.heard[at >> 2] >> 2 * (at & 3) & 3 == ROUNDS_VALID
 
 
 def pair_bytes(params):
@@ -46,19 +43,12 @@ def pair_bytes(params):
     return (params.width * params.width + 3) >> 2
 
 
-def begin_round(gate, params, me):
-    """What was heard counts for one round less: 3 becomes 2, 2 becomes 1, 1 becomes 0.
-
-    The last two only with who responded: that its response was lost says nothing of its links.
-    Where tables are not used nodes list uplinks alone, and all that they heard ends so.
-    """
-    for by in range(params.nodes):
-        told = by == me or params.mode == TABLE_FREE or is_fresh(gate, params, by, by)
-        for who in range(params.nodes):
-            left = rounds_left(gate, params, who, by)
-            if left == ROUNDS_VALID or (told and left):
-                at = who * params.width + by
-                gate.heard[at >> 2] = gate.heard[at >> 2] - (1 << 2 * (at & 3))
+def begin_round(gate, params):
+    """What was heard counts for one round less: 3 becomes 2, 2 becomes 1, 1 becomes 0."""
+    for k in range(pair_bytes(params)):
+        high = gate.heard[k] >> 1 & LOW_BITS
+        low = gate.heard[k] & LOW_BITS
+        gate.heard[k] = (high & low) << 1 | high & ~low
 
 
 def is_link(gate, params, a, b):
