@@ -1,6 +1,16 @@
-"""The next round waits, for less than a period, while tables that it would replace go out."""
+"""The next round waits, for less than a period, while tables that it would replace go out.
 
-from innervate.networks.mesh.protocol.constants import REPORT_ROUND, REPORT_TABLES, TABLE
+Who has none gets one first.
+"""
+
+from innervate.networks.mesh.protocol.constants import (
+    CURRENT,
+    REPORT_ROUND,
+    REPORT_TABLES,
+    TABLE,
+    TO_SEND,
+)
+from innervate.networks.mesh.protocol.jobs import next_job, note_lost_table
 from tests.networks.mesh.bench import Bench
 
 S = 1_000_000
@@ -41,3 +51,19 @@ def test_where_all_have_their_tables_it_does_not_wait():
     bench = slow(0)
     bench.run(12 * S)
     assert rounds(bench) == [0, 5, 11]  # the first tick comes before a second is over
+
+
+def test_who_has_no_table_comes_before_who_has_an_older_one():
+    """Where rounds end before tables are out the nearest would have them anew, the others none."""
+    bench = Bench(5, [(0, 1), (0, 2), (1, 3), (2, 4)])
+    node, gate = bench.nodes[0], bench.gates[0]
+    bench.run(9 * S)
+    assert [gate.job[s] for s in range(1, 5)] == [CURRENT] * 4
+    note_lost_table(gate, 4)
+    for s in range(1, 5):
+        gate.job[s] = TO_SEND
+    assert next_job(node, gate, bench.params) == 4
+    gate.job_tries[4] = 3
+    assert next_job(node, gate, bench.params) == 4, "... whatever it was tried"
+    gate.job[4] = CURRENT
+    assert next_job(node, gate, bench.params) == 1

@@ -54,7 +54,6 @@ def reset(gate, params):
         gate.heard[k] = 0
     for k in range(params.width):
         gate.mark_a[k] = 0
-        gate.mark_b[k] = 0
         gate.job[k] = 0
     gate.step = IDLE
     gate.wait = 0

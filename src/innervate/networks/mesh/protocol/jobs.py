@@ -37,6 +37,7 @@ from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
+HAS_ONE = 1 << 16  # in the order of jobs
 IN_A_ROW = 3  # tries of a table, each with more patience, before it is the others' turn
 PLACES_RESERVED = 3  # of the queue, for what others send through us
 
@@ -80,7 +81,6 @@ def note_lost_table(gate, s):
     """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
     if gate.job[s] == CURRENT:
         gate.mark_a[s] = 0
-        gate.mark_b[s] = 0
         gate.job[s] = GIVEN_UP
 
 
@@ -104,12 +104,17 @@ def give_job(gate, params, s):
 
 
 def next_job(node, gate, params):
-    """Who waits for its table and was tried least, the nearest of them; -1 if nobody does."""
+    """Who waits for its table, -1 if nobody does: who has none before who has an older one.
+
+    Of these who was tried least, and of those the nearest.
+    """
     best = -1
     least = 0
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
             order = gate.job_tries[s] << 8 | depth_of(node, gate, params, s)
+            if gate.mark_a[s]:
+                order = order | HAS_ONE
             if best < 0 or order < least:
                 best = s
                 least = order
