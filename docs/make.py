@@ -33,9 +33,7 @@ from innervate.trace import tables
 from innervate.wire import layout
 
 FOLDER = Path(__file__).resolve().parent
-PICTURE = FOLDER / "images" / "recovery.svg"
-RADIO_PICTURE = FOLDER / "images" / "radio.svg"
-MESH_PICTURE = FOLDER / "images" / "mesh.svg"
+PICTURES = {name: FOLDER / "images" / f"{name}.svg" for name in ("recovery", "radio", "mesh")}
 MESH_CLASS = 32  # nodes: the smallest capacity class
 
 
@@ -186,7 +184,7 @@ def pages() -> dict[Path, str]:
     return made
 
 
-def draw() -> None:
+def draw_recovery() -> None:
     """The README's picture: four moments of the bundled scenario `demo`."""
     import innervate
     from innervate.networks.skin.plot import map as skinmap
@@ -198,7 +196,9 @@ def draw() -> None:
     story = Digest(done.result, done.summary)
     sheet = story.sheet
     step, head = sheet.width - 30, 46.0
-    picture = svg.Drawing(4 * step + 30, sheet.height + head + 26, story.headlines()[0])
+    picture = svg.Drawing(
+        4 * step + 30, sheet.height + head + 26, story.headline(story.incidents[0])
+    )
     for i, (title, time_us) in enumerate(story.moments()):
         inner = skinmap.route_map(sheet, story.history.at(time_us), title, tips=False)
         picture.text((i * step + 28, 20), title, "strong")
@@ -212,8 +212,7 @@ def draw() -> None:
         picture.place(icon, (across, picture.height - 26))
         picture.text((across + 28, picture.height - 13), words)
         across += 7.4 * len(words) + 52
-    PICTURE.parent.mkdir(exist_ok=True)
-    picture.save(PICTURE, theme.drawing_style())
+    picture.save(PICTURES["recovery"], theme.drawing_style())
 
 
 def draw_radio() -> None:
@@ -224,7 +223,7 @@ def draw_radio() -> None:
     from innervate.plot import theme
 
     done = innervate.run("radio-disaster", overrides={"stations": 4, "packet_slots": 12})
-    timeline.draw(scene(done.result)).save(RADIO_PICTURE, theme.drawing_style())
+    timeline.draw(scene(done.result)).save(PICTURES["radio"], theme.drawing_style())
 
 
 def draw_mesh() -> None:
@@ -245,7 +244,7 @@ def draw_mesh() -> None:
     title = "An alarm on its way round dead nodes"
     alarm = mesh_map.Alarmed(sent, way(result, shown, sent), shown.crossed_us)
     picture = mesh_map.field_map(result, sheet, title, crossings, alarm)
-    picture.save(MESH_PICTURE, theme.drawing_style())
+    picture.save(PICTURES["mesh"], theme.drawing_style())
 
 
 # A robot leaves a fenced field while six of its relays are dead and nobody knows it yet.
@@ -275,10 +274,12 @@ def main(arguments: list[str]) -> int:
         return 1 if stale else 0
     for path, text in pages().items():
         path.write_text(text, encoding="utf-8")
-    draw()
-    draw_radio()
-    draw_mesh()
+    for draw in DRAWN.values():
+        draw()
     return 0
+
+
+DRAWN = {"recovery": draw_recovery, "radio": draw_radio, "mesh": draw_mesh}
 
 
 if __name__ == "__main__":

@@ -52,12 +52,13 @@ def test_generated_parts_are_current(capsys):
     assert load_maker().main(["--check"]) == 0, capsys.readouterr().out
 
 
-def test_the_picture_of_a_radio_team_is_as_the_code_draws_it(tmp_path, monkeypatch):
+@pytest.mark.parametrize("name", ["recovery", "radio", "mesh"])
+def test_pictures_of_pages_are_as_the_code_draws_them(name, tmp_path, monkeypatch):
     maker = load_maker()
-    kept = maker.RADIO_PICTURE.read_bytes()
-    monkeypatch.setattr(maker, "RADIO_PICTURE", tmp_path / "radio.svg")
-    maker.draw_radio()
-    assert (tmp_path / "radio.svg").read_bytes() == kept, "python docs/make.py"
+    kept = {which: path.read_bytes() for which, path in maker.PICTURES.items()}
+    monkeypatch.setitem(maker.PICTURES, name, tmp_path / "drawn.svg")
+    maker.DRAWN[name]()
+    assert (tmp_path / "drawn.svg").read_bytes() == kept[name], "python docs/make.py"
 
 
 def test_a_page_without_the_part_is_refused():
