@@ -180,6 +180,28 @@ def test_who_interrupts_between_two_explorations_is_told_that_others_were_to_com
         assert capsys.readouterr().out == f"the first\n{said}{end}\n"
 
 
+@pytest.mark.parametrize("count", [0, 1])
+def test_who_interrupts_while_the_next_is_compiled_has_those_before_it(capsys, count):
+    def first(tell):
+        return Case(["the first"], {"graph": "the first"}, is_broken=False)
+
+    def second(tell):
+        raise KeyboardInterrupt
+
+    explores = [first] * count + [second]
+    room = SimpleNamespace(explorations=lambda *_: explores, notice=lambda _: "")
+    network = SimpleNamespace(verify=room)
+    if not count:
+        with pytest.raises(KeyboardInterrupt):
+            verifying._explore(network, None, as_json=True, out=None)
+        assert capsys.readouterr().out == ""
+        return
+    assert verifying._explore(network, None, as_json=True, out=None) == 130
+    assert json.loads(capsys.readouterr().out) == [{"graph": "the first"}]
+    assert verifying._explore(network, None, as_json=False, out=None) == 130
+    assert capsys.readouterr().out.endswith("completely; interrupted before the others.\n")
+
+
 def test_a_story_in_short_is_written_without_a_picture_of_events(tmp_path, capsys):
     """There was no room for the search that its events need."""
     short = story.in_short(Result(SkinModel(graphs.parse("pair")), Tally(), 1, [b""] * 3))

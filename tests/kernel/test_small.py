@@ -1,5 +1,6 @@
 """What the kernel does besides compiling, by hand: folders, interrupts, hashes, ranges, forms."""
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -167,6 +168,36 @@ def test_an_interrupt_is_asked_for_and_then_as_before():
         assert stop.asked
     assert signal.getsignal(signal.SIGINT) is before
     assert wall_s() <= wall_s()
+
+
+def test_who_interrupts_once_more_waits_no_longer():
+    with Stop() as stop:
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert stop.asked
+
+
+def test_compiling_ends_at_once(monkeypatch, tmp_path):
+    """It takes half a minute in which nobody looks whether an end was asked for."""
+
+    @contextlib.contextmanager
+    def interrupted(_lock):
+        signal.raise_signal(signal.SIGINT)
+        yield
+
+    monkeypatch.setenv("INNERVATE_CACHE", str(tmp_path))
+    monkeypatch.setattr(compilation, "alone", interrupted)
+    doubled = compilation.compiled(lambda number: 2 * number)
+    with Stop() as stop:
+        with pytest.raises(KeyboardInterrupt):
+            doubled(3)
+        assert not stop.asked
+        monkeypatch.undo()
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):  # nor does it begin
+            doubled(3)
+    assert doubled(3) == 6
 
 
 def test_another_thread_catches_none():

@@ -88,7 +88,13 @@ def _explore(network: Network, options: VerifyOptions, as_json: bool, out: Path 
             return stop.asked
 
         for explore in wanted:
-            done.append(explore(tell))
+            try:
+                done.append(explore(tell))
+            except KeyboardInterrupt:  # before it began to look
+                if not done:
+                    raise
+                stop.asked, wanted = True, iter([explore])
+                break
             if not as_json:
                 for line in done[-1].lines:
                     print(line, flush=True)

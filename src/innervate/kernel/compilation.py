@@ -21,6 +21,7 @@ from innervate.kernel import ready
 from innervate.kernel.cache import alone, cache_root
 from innervate.kernel.ready import Loop
 from innervate.kernel.sources import NAME_LENGTH, ROOT, hash_of, homes, source_files
+from innervate.kernel.stop import ends_at_once
 
 CACHE_FOLDERS_MAX = 8
 
@@ -218,7 +219,7 @@ def _compiled(function: Callable[..., Any], way: Callable[[str], Any]) -> Callab
 
     def compile_once(signature: Any) -> Any:
         known = hashlib.blake2b(f"{name} {signature}".encode(), digest_size=10).hexdigest()
-        with alone(folder / f"{known}.lock"), way(function.__qualname__):
+        with ends_at_once(), alone(folder / f"{known}.lock"), way(function.__qualname__):
             try:
                 return compile_or_load(signature)
             except OSError:  # compiled it is; on a full disk it cannot be kept

@@ -109,7 +109,7 @@ class Jobs:
             folder = Path(self._name).parent
             raise SweepError(
                 f"{' and '.join(differs)} changed since the sweep in {folder} was begun; "
-                "undo the change, or begin a new one in another folder"
+                "give it as it was, or choose another folder"
             )
         with self._errors():
             self._db.executemany("INSERT OR IGNORE INTO meta VALUES (?, ?)", fresh.items())

@@ -1,9 +1,11 @@
 """How a skin is explored: which searches follow which, and which of their stories is told."""
 
+import signal
 from types import SimpleNamespace as Of
 
 import pytest
 
+from innervate.kernel.stop import Stop
 from innervate.networks.skin.verify import command, graphs
 from innervate.networks.skin.verify.command import Wanted
 from innervate.networks.skin.verify.system import ANY, Budget, SkinModel
@@ -67,6 +69,13 @@ def test_nothing_is_promised_of_other_rules_and_nothing_played_that_is_not_asked
 ):
     played.searches = [found()]
     assert run(model, **wanted).fair is None
+
+
+def test_who_interrupts_while_reductions_are_proved_does_not_wait_for_a_search(played, monkeypatch):
+    monkeypatch.setattr(command.assumptions, "broken", lambda _: signal.raise_signal(signal.SIGINT))
+    with Stop(), pytest.raises(KeyboardInterrupt):
+        run()
+    assert played.models == []
 
 
 def test_walks_have_a_story_and_no_schedule(played):

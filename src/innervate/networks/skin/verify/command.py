@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from innervate.kernel import compilation
+from innervate.kernel.stop import ends_at_once
 from innervate.kernel.words import number_of
 from innervate.networks.skin.verify import assumptions, fair, graphs, retrace, story
 from innervate.networks.skin.verify import system as system
@@ -173,7 +174,8 @@ def run(model: system.SkinModel, wanted: Wanted, tell: Told) -> SkinCase:
     Raises:
         VerifyError: the protocol does not keep what the reductions rest on.
     """
-    taken = assumptions.broken(model) if model.lean else ""
+    with ends_at_once():
+        taken = assumptions.broken(model) if model.lean else ""
     if taken:
         raise VerifyError(f"{taken}; --no-reduce explores it without resting on the rule")
     cables = graphs.cables(model.graph)
