@@ -166,15 +166,17 @@ def test_a_name_of_which_nothing_is_said_holds_up_no_other():
             await link.open(print)
             took_s = asyncio.get_running_loop().time() - began
             at = [path.address for path in link.paths]
+            said = link.paths[0].trouble
             known.names["moves"] = ["127.0.0.2"]
             await passes(udp.LOOK_S + 0.1)
             link.close()
-            return took_s, at, link.paths[2].address
+            return took_s, at, link.paths[2].address, said
 
-    took_s, at, moved = time_by_hand.run(main())
+    took_s, at, moved, said = time_by_hand.run(main())
     assert took_s == pytest.approx(udp.FIRST_S)
     assert at == [None, (HERE, 8), (HERE, 9)]
     assert moved == ("127.0.0.2", 9)
+    assert said == "udp hung:7: no answer yet; waiting for it"
 
 
 def mesh_of_two(tmp_path, *links, head=""):

@@ -81,10 +81,13 @@ def test_where_a_name_leads_is_shown_and_its_cable_named_once():
         here | {"heard_s": None, "up": True, "counters": {}},
         path("", "udp [fe80::1%eth0]:2", False)
         | {"far": "udp [fe80::1]:2", "heard_s": None, "up": True, "counters": {}, "port": 1},
+        path("", "udp [fe80::1%eth9]:2", False)
+        | {"heard_s": None, "up": True, "counters": {}, "port": 2},
     ]}  # fmt: skip
     lines = live_status.lines(node)
     assert any("udp arm:2 (10.0.0.2:2), heard" in line for line in lines)
     assert any("udp [fe80::1%eth0]:2, heard" in line for line in lines)
+    assert any("udp [fe80::1%eth9]:2, heard" in line for line in lines)
 
 
 def test_nodes_that_hang_are_waited_for_together(tmp_path, monkeypatch, capsys):

@@ -140,8 +140,11 @@ class UdpLink(Link):
             await asyncio.wait(first, timeout=FIRST_S)
         if self._closed:
             return
-        ways = zip(first, named, strict=True)
-        self._asking = [asyncio.ensure_future(self._follow(*way)) for way in ways]
+        self._asking = []
+        for asked, path in zip(first, named, strict=True):
+            if not asked.done():
+                path.trouble = f"{path.name}: no answer yet; waiting for it"
+            self._asking.append(asyncio.ensure_future(self._follow(asked, path)))
         if known(self._named) is None:
             self._asking.append(asyncio.ensure_future(self._follow_own()))
 
