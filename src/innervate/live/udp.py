@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import socket
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 
@@ -281,10 +282,15 @@ class UdpLink(Link):
         return of_peer(path.address, doors) if path.address else b""
 
     def guard(self, *socks: socket.socket) -> None:
-        """Have the system let in what is for our paths; at the least what bears their addresses."""
+        """Have the system let in what is for our paths; at the least what bears their addresses.
+
+        It does not look at interfaces: who has one address on two of them has one door.
+        """
+        hosts = Counter(address[:2] for address in self._by_address)
+        filters = [path.filter if hosts[address[:2]] == 1 else of_peer(address)
+                   for address, path in self._by_address.items()]  # fmt: skip
         for sock in socks or self._sockets():
-            addresses = map(of_peer, self._by_address)
-            only_from(sock, b"".join(path.filter for path in self.paths), b"".join(addresses))
+            only_from(sock, b"".join(filters), b"".join(map(of_peer, self._by_address)))
 
     def _sockets(self) -> list[socket.socket]:
         return [] if self.socket is None else [self.socket, *self._others]
