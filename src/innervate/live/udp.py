@@ -143,7 +143,7 @@ class UdpLink(Link):
             return
         self._asking = []
         for asked, path in zip(first, named, strict=True):
-            if not asked.done():
+            if not asked.done() and path.address is None:
                 path.trouble = f"{path.name}: no answer yet; waiting for it"
             self._asking.append(asyncio.ensure_future(self._follow(asked, path)))
         if known(self._named) is None:
