@@ -13,6 +13,7 @@ from innervate.live.build import build
 from innervate.live.enrolment import Authority, read_list
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
+from innervate.live.notices import Notices
 from innervate.live.state import State
 from innervate.wire import seal
 from tests.live import time_by_hand
@@ -110,6 +111,22 @@ async def line(*numbers):
         begin(own_sealer(number), *ends)
     await settle()
     return wires
+
+
+def test_every_list_of_who_is_put_out_is_said_however_soon_it_follows():
+    async def main():
+        ((_, right),) = await line(1)
+        said = []
+        right.sealer.said = Notices(said.append).tell
+        for version in (1, 2):
+            serials = frozenset(range(200, 200 + 10 * version))
+            assert right.sealer.revoke(identities.revoke(AUTHORITY, version, serials).data)
+        return said
+
+    first, second = time_by_hand.run(main())
+    assert first.endswith("certificate 207 and 2 more, list 1")
+    assert second.startswith("put out: certificate 210, ")
+    assert second.endswith("certificate 217 and 2 more, list 2")
 
 
 def test_a_node_that_leaked_is_put_out_and_the_others_go_on():

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.live import only_from as filters
+from innervate.live import udp
 from innervate.live.errors import LiveError
 from innervate.live.multicast import MulticastLink
 from innervate.live.only_from import Doors, of_peer, only_from, packed, unread
@@ -273,3 +274,18 @@ def test_the_system_is_told_of_changes_alone():
         path.let_in([(0, 9)], dict(known))
     assert [len(doors.known) for doors in made] == [1, 1, 2]
     assert told == [1, 2, 3]
+
+
+def test_who_has_one_address_on_two_interfaces_is_let_in_by_both(monkeypatch):
+    programs = []
+    monkeypatch.setattr(udp, "only_from", lambda _sock, *taken: programs.append(taken))
+    link = UdpLink(("::1", 0), [("fd00::1", 4), ("fe80::1%a", 4), ("fe80::1%b", 4)])
+    for path, number in zip(link.paths[1:], (1, 2), strict=True):
+        path.lead_to(("fe80::1", 4, 0, number))
+        link._by_address[path.address] = path
+    link.socket = link
+    for index, path in enumerate(link.paths):
+        path.let_in([], {index: 0})
+    ours = Doors([], {0: 0})
+    both = [of_peer(path.address) for path in link.paths[1:]]
+    assert programs[-1][0] == of_peer(link.paths[0].address, ours) + b"".join(both)

@@ -87,6 +87,7 @@ def test_a_neighbour_that_is_heard_is_not_looked_up_and_one_that_is_not_is_where
     async def test(known):
         link = UdpLink((HERE, 0), [("near", 9), ("gone", 9)])
         await link.open(print)
+        await passes(0.5)  # looks are between what is looked at
         near, gone = link.paths
         for _ in range(20):
             near.heard_at = udp.clock_us()
@@ -110,7 +111,7 @@ def test_a_neighbour_that_is_heard_is_not_looked_up_and_one_that_is_not_is_where
 
     found = with_names(test, near=["127.0.0.1"], gone=["127.0.0.2"])
     turns = ["127.0.0.3", "127.0.0.2", "127.0.0.3"]  # of which the other neighbour's is none
-    turns += ["127.0.0.2", "127.0.0.3"]
+    turns += ["127.0.0.3", "127.0.0.2"]
     assert found == ({"gone"}, ("127.0.0.2", 9), "", turns, ("127.0.0.1", 9))
 
 
@@ -145,6 +146,130 @@ def test_the_system_looks_names_up_and_nobody_waits_for_it_at_the_end():
         return told
 
     assert asyncio.run(main()) == [("127.0.0.1", 7)]
+
+
+class Hung(Named):
+    """One that is never told anything of the name "hung"."""
+
+    async def addresses(self, host, port, family):
+        if host == "hung":
+            await asyncio.Event().wait()
+        return await super().addresses(host, port, family)
+
+
+def test_a_name_of_which_nothing_is_said_holds_up_no_other():
+    async def main():
+        known = Hung(robot=[HERE], moves=[HERE])
+        with on(known):
+            link = UdpLink((HERE, 0), [("hung", 7), ("robot", 8), ("moves", 9)])
+            began = asyncio.get_running_loop().time()
+            await link.open(print)
+            took_s = asyncio.get_running_loop().time() - began
+            at = [path.address for path in link.paths]
+            said = link.paths[0].trouble
+            known.names["moves"] = ["127.0.0.2"]
+            await passes(udp.LOOK_S + 0.1)
+            link.close()
+            return took_s, at, link.paths[2].address, said
+
+    took_s, at, moved, said = time_by_hand.run(main())
+    assert took_s == pytest.approx(udp.FIRST_S)
+    assert at == [None, (HERE, 8), (HERE, 9)]
+    assert moved == ("127.0.0.2", 9)
+    assert said == "udp hung:7: no answer yet; waiting for it"
+
+
+def mesh_of_two(tmp_path, *links, head=""):
+    """The nodes of two files, each with links of (own address, neighbours)."""
+    for i, own in enumerate(links):
+        tables = [f'[[link]]\nkind = "udp"\nbind = "{bind}"\npeers = {peers!r}\n'
+                  for bind, peers in own]  # fmt: skip
+        (tmp_path / f"n{i}.toml").write_text(
+            f'kind = "mesh"\nnumber = {i}\nnodes = 2\nrole = "{("gateway", "node")[i]}"\n'
+            f"{head}{''.join(tables)}"
+        )
+    return [build(load(tmp_path / f"n{i}.toml")) for i in range(2)]
+
+
+def test_while_names_are_waited_for_a_node_neither_hears_nor_takes_messages(tmp_path):
+    ports = [free_port() for _ in range(3)]
+
+    async def main():
+        with on(Hung()):
+            there, late = mesh_of_two(
+                tmp_path,
+                [(f"{HERE}:{ports[0]}", [f"{HERE}:{ports[1]}"])],
+                [(f"{HERE}:{ports[1]}", [f"{HERE}:{ports[0]}", "hung:7"]),
+                 (f"{HERE}:{ports[2]}", ["hung:8"])],
+            )  # fmt: skip
+            loop = asyncio.get_running_loop()
+            async with there:
+                began, starting = loop.time(), asyncio.ensure_future(late.start())
+                await passes(udp.FIRST_S / 2)
+                early = late.idle(), late.counters().total(), late.send_message(0, b"x").state
+                await starting
+                took_s = loop.time() - began
+                await passes(3)
+                state = late.send_message(0, b"y")
+                await passes(1)
+                await late.stop()
+            starting = asyncio.ensure_future(late.start())
+            await passes(udp.FIRST_S / 2)
+            await late.stop()
+            with pytest.raises(LiveError, match="n1: was stopped before it was started"):
+                await starting
+            return early, took_s, state.state, late.idle()
+
+    early, took_s, state, idle = time_by_hand.run(main())
+    assert early == ("node not started", 0, "refused")
+    assert took_s == pytest.approx(udp.FIRST_S)
+    assert (state, idle) == ("delivered", "node not started")
+
+
+def test_sessions_end_where_names_lead_elsewhere(tmp_path):
+    """Who answers for both names can take nobody's session through addresses of its own."""
+    ports, elsewhere = [free_port(), free_port()], "127.0.0.2"
+
+    def relay(socks, nearer):
+        data, _ = socks[nearer].recvfrom(2048)  # it poses as node `nearer`
+        socks[1 - nearer].sendto(data, (HERE, ports[nearer]))
+
+    async def test(known):
+        nodes = mesh_of_two(
+            tmp_path,
+            [(f"{HERE}:{ports[0]}", [f"b:{ports[1]}"])],
+            [(f"{HERE}:{ports[1]}", [f"a:{ports[0]}"])],
+            head=f'[keys]\nuse = 1\nsecret.1 = "{"ab" * 32}"\n',
+        )
+        socks = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in ports]
+        for nearer, (sock, port) in enumerate(zip(socks, ports, strict=True)):
+            sock.bind((elsewhere, port))
+            asyncio.get_running_loop().add_reader(sock.fileno(), relay, socks, nearer)
+        async with nodes[0], nodes[1]:
+            await passes(5)
+            before = nodes[1].send_message(0, b"x")
+            await passes(1)
+            known.names.update(a=[elsewhere], b=[elsewhere])
+            for what in ("cut", "restore"):
+                for node in nodes:
+                    node.change(0, what)
+                await passes(2.5 * udp.LOOK_S)
+            led = {node.paths[0].address[0] for node in nodes}
+            relayed = nodes[1].send_message(0, b"y")
+            await passes(30)
+            known.names.update(a=[HERE], b=[HERE])
+            await passes(2.5 * udp.LOOK_S)
+            back = nodes[1].send_message(0, b"z")
+            await passes(5)
+            why = nodes[1].counters()["dropped: sealed: from another place"]
+        for sock in socks:
+            asyncio.get_running_loop().remove_reader(sock.fileno())
+            sock.close()
+        return before.state, led, relayed.state, why, back.state
+
+    before, led, relayed, why, back = with_names(test, a=[HERE], b=[HERE])
+    assert (before, led, relayed, back) == ("delivered", {elsewhere}, "expired", "delivered")
+    assert why
 
 
 def sealed_mesh(tmp_path, *binds):

@@ -14,6 +14,7 @@ from innervate.live import status, up
 from innervate.live.build import build
 from innervate.live.channel_radio import MediumRadio
 from innervate.live.errors import LiveError
+from innervate.live.machine import on
 from innervate.live.main import Process
 from innervate.live.nodefile import load
 from innervate.networks.radio.live.node import RadioNode
@@ -21,6 +22,7 @@ from innervate.networks.radio.live.parameters import RADIO
 from innervate.networks.radio.live.stack import StationStack
 from innervate.scenario import load as load_scenario
 from innervate.scenario import plan
+from tests.live.test_names import Hung
 from tests.live.test_udp import free_port
 
 KINDS = {
@@ -148,6 +150,28 @@ def test_a_process_that_cannot_start_takes_its_socket_with_it(tmp_path, monkeypa
     asyncio.run(main())
     assert (tmp_path / "n0.state").read_text() == kept
     assert {path.name for path in tmp_path.iterdir()} == {"n0.toml", "n0.state"}
+
+
+@pytest.mark.parametrize("own", ["hung:4700", f"127.0.0.1:{free_port()}"])
+def test_a_node_that_waits_for_names_stops_when_it_is_told_to(tmp_path, monkeypatch, own):
+    monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
+    link = LINK.replace("127.0.0.1:{}", own).replace("127.0.0.1:9", "hung:9")
+    (tmp_path / "n0.toml").write_text(KINDS["mesh"] + link)
+
+    async def main():
+        with on(Hung()):
+            process = Process(load(tmp_path / "n0.toml"))
+            running = asyncio.ensure_future(process.run())
+            await asyncio.sleep(0.2)
+            process.ending.set()
+            began = asyncio.get_running_loop().time()
+            await asyncio.wait_for(running, 10.0)
+            return asyncio.get_running_loop().time() - began, len(asyncio.all_tasks())
+
+    took_s, tasks = asyncio.run(main())
+    assert took_s < 1.0
+    assert tasks == 1
+    assert {path.name for path in tmp_path.iterdir()} == {"n0.toml"}
 
 
 def test_a_status_socket_that_cannot_listen_is_removed(tmp_path, monkeypatch):

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from innervate import scenario as scenarios
-from innervate.cli import app, live, live_status
+from innervate.cli import app, live, live_enrol, live_status
 from innervate.live import status
 from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
@@ -81,24 +81,32 @@ def test_where_a_name_leads_is_shown_and_its_cable_named_once():
         here | {"heard_s": None, "up": True, "counters": {}},
         path("", "udp [fe80::1%eth0]:2", False)
         | {"far": "udp [fe80::1]:2", "heard_s": None, "up": True, "counters": {}, "port": 1},
+        path("", "udp [fe80::1%eth9]:2", False)
+        | {"heard_s": None, "up": True, "counters": {}, "port": 2},
     ]}  # fmt: skip
     lines = live_status.lines(node)
     assert any("udp arm:2 (10.0.0.2:2), heard" in line for line in lines)
     assert any("udp [fe80::1%eth0]:2, heard" in line for line in lines)
+    assert any("udp [fe80::1%eth9]:2, heard" in line for line in lines)
 
 
-def test_nodes_that_hang_are_waited_for_together(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("what", ["status", "revoke"])
+def test_nodes_that_hang_are_waited_for_together(tmp_path, monkeypatch, capsys, what):
     monkeypatch.setenv("INNERVATE_RUN", str(tmp_path))
     monkeypatch.setattr(status, "ANSWER_S", 0.5)
+    (tmp_path / "revoked.list").write_text("00")
     with ExitStack() as stack:
         for i in range(6):
             sock = stack.enter_context(socket.socket(socket.AF_UNIX))
             sock.bind(str(tmp_path / f"n{i}.sock"))
             sock.listen()
         began = time.monotonic()
-        assert live.show() == 1
+        asked = live.show() if what == "status" else live_enrol.revoke(tmp_path / "revoked.list")
+        assert asked == 1
         assert time.monotonic() - began < 2
-    assert capsys.readouterr().err.count("does not answer") == 6
+    said = capsys.readouterr()
+    words = {"status": "does not answer", "revoke": "no node answers here"}[what]
+    assert (said.out + said.err).count(words) == 6
 
 
 def test_nodes_that_have_one_number_are_named():

@@ -175,3 +175,9 @@ def test_a_station_alone_on_its_machine_that_hears_others_is_not_alone():
     assert "is alone" in RadioState(Map(told), told).headline().text
     path["heard_s"] = 4.0
     assert RadioState(Map(told), told).headline().level == "ok"
+
+
+def test_a_look_collects_paths_to_others_once():
+    told = skin_of_three()
+    state = SkinState(SkinMap(told), told)
+    assert state.paths_beyond is state.paths_beyond

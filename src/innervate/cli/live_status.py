@@ -86,8 +86,10 @@ def lines(told: dict[str, Any]) -> list[str]:
         lost = "".join(f", {what} {count}" for what, count in path["counters"].items()
                        if count and what.startswith(LOSSES))  # fmt: skip
         is_up = "  BROKEN" if path["broken"] else "" if path["up"] else "  CUT HERE"
-        far = path.get("far", path["name"])  # where a name leads
-        leads = "" if far == without_interface(path["name"]) else f" ({far.removeprefix('udp ')})"
+        far = path.get("far", "")  # where a name leads
+        leads = f" ({far.removeprefix('udp ')})"
+        if far in ("", without_interface(path["name"])):
+            leads = ""
         found.append(f"  port {name}: {path['name']}{leads}, heard {heard}{lost}{is_up}")
     counts = ", ".join(f"{what} {count}" for what, count in told["counters"].items())
     return [*found, f"  {counts}"]

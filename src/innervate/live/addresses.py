@@ -66,10 +66,13 @@ async def look_up(host: str, port: int, family: int) -> list[Address]:
             found = [(str(one[4][0]).partition("%")[0], *one[4][1:]) for one in told]
         except OSError as error:
             found = error
-        except UnicodeError as error:
+        except ValueError as error:  # no such name can be
             found = OSError(str(error))
         with suppress(RuntimeError):  # the loop is closed: nobody asks any more
             loop.call_soon_threadsafe(settle, found)
 
-    Thread(target=ask, daemon=True).start()
+    try:
+        Thread(target=ask, daemon=True).start()
+    except RuntimeError as error:
+        raise OSError(str(error)) from None
     return await answer

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 from pathlib import Path
+from socket import AF_INET6
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from innervate.live import private
@@ -87,7 +88,7 @@ def _link(table: Any, where: str, port: int) -> Link:
     if isinstance(table, UdpTable):
         from innervate.live.udp import UdpLink
 
-        bind = udp_address(table.bind, f"{where}.bind")
+        bind = _of_one_kind(table.bind, f"{where}.bind")
         peers = [_peer(peer, f"{where}.peers.{i}", bind) for i, peer in enumerate(table.peers)]
         if twice := next((one for one in peers if peers.count(one) > 1), None):
             raise LiveError(f"{where}.peers: {as_written(twice)} stands there twice")
@@ -126,7 +127,7 @@ def _interface(text: str, where: str) -> str:
 
 def _peer(text: str, where: str, bind: Peer) -> Peer:
     """An address at which a neighbour can be sent to and comes from, or a name for one."""
-    host, port = udp_address(text, where)
+    host, port = _of_one_kind(text, where)
     try:
         one = ipaddress.ip_address(host)
     except ValueError:
@@ -138,8 +139,22 @@ def _peer(text: str, where: str, bind: Peer) -> Peer:
             f"{where}: {text} cannot be reached from bind {as_written(bind)}: one is of IPv4, the "
             "other of IPv6; give those of either a link of their own"
         )
-    if one.is_link_local and one.version == 6 and "%" not in host:
-        raise LiveError(f"{where}: {text} is on every interface; say which: [{host}%eth0]:{port}")
+    return host, port
+
+
+def _of_one_kind(text: str, where: str) -> Peer:
+    """An address of UDP that says its interface where it has to, and only there; or a name."""
+    host, port = udp_address(text, where)
+    if family_of(host) == AF_INET6:
+        one = ipaddress.IPv6Address(host)
+        if one.ipv4_mapped is not None:
+            raise LiveError(f"{where}: {text} is of IPv4; write {one.ipv4_mapped}:{port}")
+        if one.is_link_local and not one.scope_id:
+            raise LiveError(
+                f"{where}: {text} is on every interface; say which: [{host}%eth0]:{port}"
+            )
+        if one.scope_id and not one.is_link_local:
+            raise LiveError(f"{where}: {text} is on one interface alone; leave %{one.scope_id} out")
     return host, port
 
 

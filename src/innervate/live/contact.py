@@ -254,7 +254,7 @@ class Contact:
         gone = [session for session in self._by_index.values() if is_out(session.who)]
         for session in gone:
             self.forget(session)
-        if gone:
+        if gone or not self.sessions:
             self._answered.clear()
             self._asked.clear()
             self.hurry()

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, NamedTuple
 
 from innervate.live.contact import REVOKED, TWIN, Contact
@@ -97,6 +98,7 @@ class Sealer:
         for path in paths:
             made = (GroupContact if path.is_group else Contact)(self, path)
             self._contacts[path.port] = made
+            path.moved = partial(made.put_out, lambda _: True)  # ends have to agree anew
             made.start()
 
     def stop(self) -> None:

@@ -26,6 +26,7 @@ class Path:
         trouble: why it carries nothing now, for its user; "" = it does, or nothing is known.
         again: what is to be known of the end of its last trouble besides.
         heard_at: when a good frame came in last, us of the driver's clock; 0 never.
+        moved: is called when it leads to another address than before.
         counters: frames and bytes out and in, and why frames were not sent.
     """
 
@@ -41,6 +42,7 @@ class Path:
         self.loss = 0.0
         self.trouble = ""
         self.heard_at = 0
+        self.moved: Callable[[], object] = lambda: None
         self.counters: Counter[str] = Counter()
 
     def bound_ends(self) -> tuple[str, str]:
@@ -73,6 +75,9 @@ class Link:
 
     paths: list[Any]
     frame_max = 1472
+
+    async def find(self) -> None:
+        """Find what has to be known before it is opened, and takes time; LiveError if it cannot."""
 
     async def open(self, receive: Receiver) -> None:
         """Start to receive; LiveError if it cannot be opened as written."""

@@ -85,7 +85,8 @@ class Process:
             with self._named():
                 if self.page is not None:
                     await self.page.start()
-                await self.node.start()
+                if not await self._start():
+                    return
             self._say(self._ready())
             for path in open_keys(self.loaded):
                 self._say(f"{path}: other users can read this key; chmod 600 it, or draw another")
@@ -104,6 +105,18 @@ class Process:
                 await self.page.stop()
             await self.server.stop()
         self._look()
+
+    async def _start(self) -> bool:
+        """Start the node; False if we are to stop before it has found out what it needs."""
+        starting = asyncio.ensure_future(self.node.start())
+        ending = asyncio.ensure_future(self.ending.wait())
+        await asyncio.wait((starting, ending), return_when=asyncio.FIRST_COMPLETED)
+        ending.cancel()
+        if self.ending.is_set() and starting.cancel():
+            await asyncio.wait((starting,))
+            return False
+        await starting
+        return True
 
     @contextmanager
     def _named(self) -> Iterator[None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections import Counter
 from collections.abc import Callable
 from typing import IO, TYPE_CHECKING, Any
@@ -97,11 +98,20 @@ class LiveNode:
             raise LiveError(f"{self.name}: runs already; stop it before it is started anew")
         self.is_stopped = False
         try:
+            await self._find_links()
             await self._switch_on()
         except BaseException:
             await self.stop()
             self.engine = None
             raise
+
+    async def _find_links(self) -> None:
+        """Nothing is heard or said until all are found."""
+        found = await asyncio.gather(*(link.find() for link in self.links), return_exceptions=True)
+        if wrong := next((one for one in found if one is not None), None):
+            raise wrong
+        if self.is_stopped:
+            raise LiveError(f"{self.name}: was stopped before it was started")
 
     async def _switch_on(self) -> None:
         self.engine = self.engine_of(

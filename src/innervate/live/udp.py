@@ -5,8 +5,9 @@ from __future__ import annotations
 import asyncio
 import socket
 import sys
-from collections.abc import Mapping
-from contextlib import closing, suppress
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager, suppress
 
 from innervate.live.addresses import ANY, Address, Peer, as_written, family_of, known, text
 from innervate.live.engine import clock_us
@@ -120,26 +121,49 @@ class UdpLink(Link):
         self.strangers = 0
         self._unread = 0
         self._by_address = {path.address: path for path in self.paths if path.address}
-        self._asking: asyncio.Task[None] | None = None
+        self._asking: list[asyncio.Future[None]] = []
         self._receive: Receiver = lambda _path, _data: None  # until one is known
         self._closed = False
         self._again: asyncio.TimerHandle | None = None
 
+    async def find(self) -> None:
+        """Have names lead somewhere: what is known after `FIRST_S` is used, the rest when it comes.
+
+        Our own is waited for; a wrong one is the user's mistake.
+        """
+        self._closed = False
+        with self._own_is_right():
+            await self._find_own()
+        named = [path for path in self.paths if known(path.peer) is None]
+        first = [asyncio.ensure_future(self._find(path)) for path in named]
+        self._asking = [*first]
+        if first:
+            await asyncio.wait(first, timeout=FIRST_S)
+        if self._closed:
+            return
+        self._asking = []
+        for asked, path in zip(first, named, strict=True):
+            if not asked.done() and path.address is None:
+                path.trouble = f"{path.name}: no answer yet; waiting for it"
+            self._asking.append(asyncio.ensure_future(self._follow(asked, path)))
+        if known(self._named) is None:
+            self._asking.append(asyncio.ensure_future(self._follow_own()))
+
     async def open(self, receive: Receiver) -> None:
         """Bind the socket; a wrong address is the user's mistake."""
+        if not self._asking:
+            await self.find()
         self._receive = receive
-        self._closed = False
-        try:
-            await self._find_own()
+        with self._own_is_right():
             self._open()
+
+    @contextmanager
+    def _own_is_right(self) -> Iterator[None]:
+        try:
+            yield
         except OSError as error:
             why = error.strerror or error
             raise LiveError(f"cannot use UDP address {self.where}: {why}") from None
-        named = [path for path in self.paths if known(path.peer) is None]
-        if named or known(self._named) is None:
-            first = asyncio.ensure_future(self._look_up(named))
-            await asyncio.wait({first}, timeout=FIRST_S)
-            self._asking = asyncio.ensure_future(self._go_on_looking(first, named))
 
     async def _find_own(self) -> bool:
         """What the name of our own address leads to; True = elsewhere than before.
@@ -156,39 +180,35 @@ class UdpLink(Link):
                 path.lead_to(path.address)
         return self.bind != before
 
-    async def _go_on_looking(self, first: asyncio.Future[None], named: list[UdpPath]) -> None:
-        """Names that led nowhere, and those of neighbours who may have moved."""
+    async def _follow(self, first: asyncio.Future[None], path: UdpPath) -> None:
+        """Look again where a name leads, as long as its neighbour is silent."""
         await first
         while True:
             await asyncio.sleep(LOOK_S)
-            since = clock_us() - round(LOOK_S * 1e6)
-            if silent := [path for path in self.paths if path.heard_at < since]:
-                await self._look_up([path for path in named if path in silent])
+            if _is_silent(path):
+                await self._find(path)
 
-    async def _look_up(self, named: list[UdpPath]) -> None:
-        """Ask where names lead; to what they do not lead any more nobody listens."""
-        asked = (machine().addresses(*path.peer, self.family) for path in named)
-        found = await asyncio.gather(*asked, return_exceptions=True)
-        is_elsewhere = False
-        with suppress(OSError):
-            is_elsewhere = await self._find_own()
-        for path, told in zip(named, found, strict=True):
-            if isinstance(told, BaseException):
-                self._lead(path, [], getattr(told, "strerror", None) or str(told))
-            else:
-                self._lead(path, told, "leads to another neighbour's address")
-        if self._closed:
-            return
-        self._by_address = {path.address: path for path in self.paths if path.address}
-        if is_elsewhere:
-            if self._again is not None:
-                self._again.cancel()
-            self._drop()
-            self._reopen()
-        elif self.socket is not None:
-            self.guard()
-            with suppress(OSError):
-                keep_apart(self._sockets(), self._by_address)
+    async def _follow_own(self) -> None:
+        while True:
+            await asyncio.sleep(LOOK_S)
+            is_elsewhere = False
+            if any(map(_is_silent, self.paths)):
+                with suppress(OSError):
+                    is_elsewhere = await self._find_own()
+            if is_elsewhere:
+                if self._again is not None:
+                    self._again.cancel()
+                self._drop()
+                self._reopen()
+
+    async def _find(self, path: UdpPath) -> None:
+        """Ask where a name leads; to what it does not lead any more nobody listens."""
+        try:
+            found = await machine().addresses(*path.peer, self.family)
+        except OSError as error:
+            self._lead(path, [], error.strerror or str(error))
+        else:
+            self._lead(path, found, "leads to another neighbour's address")
 
     def _lead(self, path: UdpPath, found: list[Address], why: str) -> None:
         """Have a path lead to one of the addresses found, of those that are nobody else's.
@@ -203,6 +223,12 @@ class UdpLink(Link):
         if free and free[at % len(free)] != path.address:
             path.lead_to(free[at % len(free)])
             path.trouble, path.again = "", f"leads to {path.far.removeprefix('udp ')}"
+            self._by_address = {one.address: one for one in self.paths if one.address}
+            if self.socket is not None:
+                self.guard()
+                with suppress(OSError):
+                    keep_apart(self._sockets(), self._by_address)
+            path.moved()
         elif path.address is None:
             path.trouble = f"{path.name}: {why}; trying again"
 
@@ -256,10 +282,15 @@ class UdpLink(Link):
         return of_peer(path.address, doors) if path.address else b""
 
     def guard(self, *socks: socket.socket) -> None:
-        """Have the system let in what is for our paths; at the least what bears their addresses."""
+        """Have the system let in what is for our paths; at the least what bears their addresses.
+
+        It does not look at interfaces: who has one address on two of them has one door.
+        """
+        hosts = Counter(address[:2] for address in self._by_address)
+        filters = [path.filter if hosts[address[:2]] == 1 else of_peer(address)
+                   for address, path in self._by_address.items()]  # fmt: skip
         for sock in socks or self._sockets():
-            addresses = map(of_peer, self._by_address)
-            only_from(sock, b"".join(path.filter for path in self.paths), b"".join(addresses))
+            only_from(sock, b"".join(filters), b"".join(map(of_peer, self._by_address)))
 
     def _sockets(self) -> list[socket.socket]:
         return [] if self.socket is None else [self.socket, *self._others]
@@ -278,9 +309,11 @@ class UdpLink(Link):
     def close(self) -> None:
         """Close the socket, and do not open it again."""
         self._closed = True
-        for waiting in (self._again, self._asking):
-            if waiting is not None:
-                waiting.cancel()
+        if self._again is not None:
+            self._again.cancel()
+        for asking in self._asking:
+            asking.cancel()
+        self._asking = []
         self._drop()
 
     def _drop(self) -> None:
@@ -326,3 +359,8 @@ class UdpLink(Link):
             self._open()
         except OSError as error:
             self._lost(error)
+
+
+def _is_silent(path: UdpPath) -> bool:
+    """True if nothing was heard for so long that its neighbour may be elsewhere."""
+    return path.heard_at < clock_us() - round(LOOK_S * 1e6)
