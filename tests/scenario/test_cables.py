@@ -119,6 +119,7 @@ def test_more_than_a_million_inputs_are_refused():
         ({"event": [{"at_s": 0, "action": "cut"}]}, 'cut needs a link; add link = "n0-n1"'),
         ({"event": [{"at_s": 0, "action": "kill"}]}, "kill needs a node; add node = 0"),
         ({"event": [{"at_s": 0, "action": "cut", "link": "n0-n1", "node": 1}]}, "has no node"),
+        ({"event": [{"at_s": 0, "action": "cut", "node": 9}]}, "cut needs a link"),
         ({"event": [{"at_s": 0, "action": "kill", "link": "n0-n1", "node": 1}]}, "has no link"),
         ({"event": [{"at_s": 0, "action": "cut", "link": "n0-n2"}]}, 'no cable "n0-n2"'),
         ({"event": [{"at_s": 0, "action": "cut", "link": "n0-n1-n2"}]}, "no cable"),

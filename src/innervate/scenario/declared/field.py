@@ -191,6 +191,7 @@ def _check_other(source: Source, nodes: int, key: Key, event: EventTable) -> Non
     if event.action not in PAIRS and event.other is not None:
         raise source.error((*key, "other"), f"{event.action} has no other; leave it out")
     if event.other is not None:
+        shared.check_node(source, (*key, "node"), event.node, nodes)
         _check_pair(source, (*key, "other"), (event.node, event.other), nodes)
 
 

@@ -76,7 +76,8 @@ def check(
         model: the scenario.
         nodes: how many there are.
         actions: of the medium; an event's is one of them, or the network's own.
-        target: refuses what an event at a key cannot happen to; None = it is a node.
+        target: refuses what an event at a key cannot happen to, before its node is looked at;
+            None = it is a node.
         graph: over cables, of the nodes.
 
     Raises:
@@ -94,13 +95,13 @@ def check(
     known = [*actions, *(network.happenings if network.has("happenings") else ())]
     for place, event in enumerate(model.event):
         key: Key = ("event", place)
-        check_node(source, (*key, "node"), event.node, nodes)
         if event.action not in known:
             what = f"action must be {alternatives(known)}, not {shown(event.action)}"
             raise source.error((*key, "action"), what)
         refuse(source, in_time(place, event.at_s, model.duration_s))
         if target is not None:
             target(key, event)
+        check_node(source, (*key, "node"), event.node, nodes)
 
 
 def script_of(plan: Any) -> ScriptTable | None:
