@@ -37,7 +37,7 @@ from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
-HAS_ONE = 1 << 16  # in the order of jobs
+HAS_ONE = 1 << 8  # in the order of jobs: more than the farthest
 IN_A_ROW = 3  # tries of a table, each with more patience, before it is the others' turn
 PLACES_RESERVED = 3  # of the queue, for what others send through us
 
@@ -79,8 +79,8 @@ def hold_off(params):
 
 def note_lost_table(gate, s):
     """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
+    gate.mark_a[s] = 0
     if gate.job[s] == CURRENT:
-        gate.mark_a[s] = 0
         gate.job[s] = GIVEN_UP
 
 
@@ -91,7 +91,7 @@ def give_job(gate, params, s):
         b = gate.sum_a
     else:
         make_table(gate, params, s)
-        a = mark_table(gate, params, 1)
+        a = mark_table(gate, params, 1) | 1  # 0: it has none
         b = mark_table(gate, params, 2)
     if a == gate.mark_a[s] and b == gate.mark_b[s]:
         gate.job[s] = CURRENT
@@ -104,15 +104,15 @@ def give_job(gate, params, s):
 
 
 def next_job(node, gate, params):
-    """Who waits for its table, -1 if nobody does: who has none before who has an older one.
+    """Who waits for its table, -1 if nobody does: who was tried least.
 
-    Of these who was tried least, and of those the nearest.
+    Of these who has none before who has an older one, and of those the nearest.
     """
     best = -1
     least = 0
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
-            order = gate.job_tries[s] << 8 | depth_of(node, gate, params, s)
+            order = gate.job_tries[s] << 9 | depth_of(node, gate, params, s)
             if gate.mark_a[s]:
                 order = order | HAS_ONE
             if best < 0 or order < least:
@@ -150,13 +150,17 @@ def pump(node, gate, params, now, out):
 
 
 def start_job(node, gate, params, now, s):
-    """Node s is next; its table is divided into parts."""
+    """Node s is next; its table is divided into parts.
+
+    Until it acknowledges this one, nobody knows which it has: no table is its mark's.
+    """
     make_table(gate, params, s)
     room = room_at(node, gate, params, s)
     count = pack(node, gate, params, s, room, -1, -1)
     gate.job_next[s] = 0
     gate.job_count[s] = min(count, PARTS_MAX)
     gate.job[s] = UNDER_WAY
+    gate.mark_b[s] = gate.job_b[s]
     if count > PARTS_MAX or room <= GROUP_BYTES or depth_of(node, gate, params, s) > PATH_MAX:
         gate.job[s] = GIVEN_UP
     gate.job_due[s] = job_due(node, gate, params, now, s)
@@ -232,7 +236,6 @@ def on_ack(node, gate, params, now, frame, out):
     if whole and gate.job_parts[s] & whole == whole:
         gate.job[s] = CURRENT
         gate.mark_a[s] = gate.job_a[s]
-        gate.mark_b[s] = gate.job_b[s]
     elif gate.job[s] == UNDER_WAY:
         gate.job_next[s] = 0
     pump(node, gate, params, now, out)
