@@ -95,13 +95,16 @@ def check(
     known = [*actions, *(network.happenings if network.has("happenings") else ())]
     for place, event in enumerate(model.event):
         key: Key = ("event", place)
-        if event.action not in known:
-            what = f"action must be {alternatives(known)}, not {shown(event.action)}"
-            raise source.error((*key, "action"), what)
+        _check_action(source, (*key, "action"), event.action, known)
         refuse(source, in_time(place, event.at_s, model.duration_s))
         if target is not None:
             target(key, event)
         check_node(source, (*key, "node"), event.node, nodes)
+
+
+def _check_action(source: Source, key: Key, action: str, known: list[str]) -> None:
+    if action not in known:
+        raise source.error(key, f"action must be {alternatives(known)}, not {shown(action)}")
 
 
 def script_of(plan: Any) -> ScriptTable | None:

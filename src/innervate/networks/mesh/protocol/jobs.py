@@ -37,7 +37,6 @@ from innervate.networks.mesh.protocol.search import set_edge
 from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
-HAS_ONE = 1 << 8  # in the order of jobs: more than the farthest
 IN_A_ROW = 3  # tries of a table, each with more patience, before it is the others' turn
 PLACES_RESERVED = 3  # of the queue, for what others send through us
 
@@ -112,9 +111,10 @@ def next_job(node, gate, params):
     least = 0
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
-            order = gate.job_tries[s] << 9 | depth_of(node, gate, params, s)
+            behind = 2 * gate.job_tries[s]
             if gate.mark_a[s]:
-                order = order | HAS_ONE
+                behind = behind + 1
+            order = behind << 8 | depth_of(node, gate, params, s)
             if best < 0 or order < least:
                 best = s
                 least = order
