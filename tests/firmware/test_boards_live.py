@@ -24,6 +24,8 @@ from innervate.networks.radio.live.stack import StationStack
 from tests.live.net import until
 from tests.networks.radio.live.test_radio import SLOW
 
+pytestmark = pytest.mark.flaky(reruns=1)  # boards in real time, as in test_boards_sealed.py
+
 FIRST_S = 60.0
 BAUD = 1_000_000
 PATIENT = {"ack_us": 30_000, "e2e_us": 300_000}  # a busy machine is no dead neighbour
