@@ -37,7 +37,7 @@ def free_ports(count):
     return ports
 
 
-def ours(folder, count, sealed=False, settings=None, engine="python", shape="line"):
+def ours(folder, count, sealed=False, settings=None, engine="python", shape="line", warm=False):
     """Commands that start nodes of ours; node 1 is the gateway.
 
     `shape` is "line", "star" (all are neighbours of node 1 alone) or the address of a group.
@@ -53,6 +53,7 @@ def ours(folder, count, sealed=False, settings=None, engine="python", shape="lin
         lines = ['kind = "mesh"', f"number = {i}", f"nodes = {count}",
                  f'role = "{"gateway" if i == 1 else "node"}"',
                  f'socket = "{folder / f"n{i}.sock"}"', f'engine = "{engine}"',
+                 f"warm = {json.dumps(warm)}",
                  *(["[keys]", "use = 1", f'secret.1 = "{KEY}"'] if sealed else []),
                  "[protocol]", *(f"{k} = {v}" for k, v in (settings or {}).items()),
                  "[[link]]", *link]  # fmt: skip
@@ -135,6 +136,7 @@ def main():
     parser.add_argument("--engines", nargs="+", default=["python", "c"], metavar="ENGINE")
     parser.add_argument("--realtime", action="store_true", help="before other work (as root)")
     parser.add_argument("--awake", action="store_true", help="no processor sleeps (Linux, as root)")
+    parser.add_argument("--warm", action="store_true", help="nodes of ours keep warm")
     args = parser.parse_args()
     awake = machine().keep_awake() if args.awake else nullcontext()
     with awake:
@@ -156,7 +158,9 @@ def compare(args):
                 line = Line(bare())
             else:
                 how, engine = side.split()
-                line = Line(ours(Path(folder), args.hops + 1, how == "sealed", settings, engine))
+                nodes = ours(Path(folder), args.hops + 1, how == "sealed", settings, engine,
+                             warm=args.warm)  # fmt: skip
+                line = Line(nodes)
             for plan in ("r50", "w64") if side in PACKAGES else ("r50", "w1", "w64"):
                 tell(side, plan, line.measure(args.size, args.seconds, plan))
             line.stop()

@@ -42,7 +42,7 @@ SERIAL = {"kind": "serial", "device": "none", "far": "none", "baud": 115_200}
 KEYS = {"use": 1, "secret": {"1": "ab" * 32}, "ends": True, "grace_s": 1.0}
 # What any node's file can have, and what is particular to a kind: values that a node starts with.
 ALL = {"number": 1, "name": "n", "nodes": 3, "socket": "n.sock", "state": "n.state",
-       "engine": "python", "awake": False, "metrics": "127.0.0.1:0"}  # fmt: skip
+       "engine": "python", "awake": False, "warm": False, "metrics": "127.0.0.1:0"}  # fmt: skip
 FILES = {
     "mesh": {"role": "standby", "rank": 2, "robot": True, "keys": KEYS,
              "deliver": {"in_order": True, "wait_ms": 100, "buffer": 8},

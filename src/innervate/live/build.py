@@ -42,7 +42,7 @@ def build(loaded: Loaded, engine: str = "") -> LiveNode:
     """
     network = networks()[loaded.table.kind]
     node: LiveNode = network.live_node(loaded)
-    node.is_awake = loaded.table.awake
+    node.is_awake, node.is_warm = loaded.table.awake, loaded.table.warm
     wanted = engine or loaded.table.engine
     if wanted != PYTHON:
         node.not_in_c = why = network.in_c(node.stack, network)

@@ -3,6 +3,7 @@
 import asyncio
 from collections import Counter
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from typing import Any, Protocol
 
 from innervate.dialect.arith import HALF30, MASK30
@@ -105,6 +106,8 @@ class Engine:
         self._wake: asyncio.TimerHandle | None = None
         self._wake_at = NEVER
         self._at_once: asyncio.Handle | None = None
+        self._taken = b""  # the last frame that was taken
+        self._rehearsed = 0  # how many had come at the last rehearsal
         self._loop = asyncio.get_running_loop()
         self._stopped = False
         self.now = 0
@@ -139,7 +142,23 @@ class Engine:
         why = self.stack.reasons[reason] if reason else self.stack.objection(sender)
         if why:
             self.counters["dropped: " + why] += 1
+        else:
+            self._taken = data
         return why
+
+    def rehearse(self) -> None:
+        """Go once more through what the last frame took; nothing comes of it.
+
+        Not where frames came since: they did as much.
+        """
+        frames, self._rehearsed = self._rehearsed, self.counters["frames"]
+        if self._stopped or frames != self._rehearsed:
+            return
+        if self._taken and not self.stack.decode(self._taken):
+            self.stack.objection(None)
+            with suppress(ValueError):  # no coder has to say again what it reads
+                self.stack.encode(self.stack.inbox)
+        self._drain(clock_us())
 
     def receive(self, port: int, at: int | None = None) -> None:
         """The frame in the inbox came in on a port.

@@ -197,6 +197,8 @@ class Process:
             text += f", not in C: {why}" if why else ", in C"
         if self.node.is_awake:
             text += ", keeps processors awake"
+        if self.node.is_warm:
+            text += ", keeps warm"
         if self.node.sealer is None:
             text += "; no key: frames can be read and forged by anybody in reach"
         return text

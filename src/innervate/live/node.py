@@ -16,6 +16,7 @@ from innervate.live.nodefile import PYTHON, C
 from innervate.live.receipts import STOPPED, Receipt
 from innervate.live.state import State
 from innervate.live.streams import Arrivals, Stream
+from innervate.live.warm import Warmth
 
 if TYPE_CHECKING:  # it brings ciphers with it, which only nodes with keys need
     from innervate.live.keys import Sealer
@@ -50,13 +51,15 @@ class LiveNode:
         ended: is told why, if what runs the stack ends by itself; then nothing moves any more.
         not_in_c: why its protocol does not run as C; "" = it does.
         is_awake: True = the machine's processors do not sleep while it runs.
+        is_warm: True = it rehearses what a frame takes: see warm.py.
         requests: what may be asked of it on its status socket besides what all nodes answer.
     """
 
     is_stopped = False
-    is_awake = False
+    is_awake = is_warm = False
     _is_open = False
     _wakefulness: IO[bytes] | None = None
+    _warmth: Warmth | None = None
 
     def __init__(
         self,
@@ -128,6 +131,8 @@ class LiveNode:
         self.state.check_place()
         if self.sealer is not None:
             self.sealer.start(self.paths)
+        if self.is_warm:
+            self._warmth = Warmth(self.engine.rehearse)
         self.engine.start(0 if self.state.fresh else 1)
 
     async def stop(self) -> None:
@@ -139,9 +144,11 @@ class LiveNode:
             self.sealer.stop()
         for link in self.links:
             link.close()
+        if self._warmth is not None:
+            self._warmth.stop()
         if self._wakefulness is not None:
             self._wakefulness.close()
-            self._wakefulness = None
+        self._warmth = self._wakefulness = None
         if self._is_open:  # else another may run that keeps its state there
             self._is_open = False
             self.save()

@@ -78,6 +78,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
         roles: what `role` can be.
         nodes_max: most nodes that a network can have.
         awake: the machine's processors do not sleep while the node runs.
+        warm: it goes through what a frame takes 500 times a second, for caches.
     """
 
     roles: ClassVar[tuple[str, ...]] = ("node",)
@@ -94,6 +95,7 @@ class NodeFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     state: str | None = None
     engine: Literal["python", "c", "auto"] = "python"
     awake: bool = False
+    warm: bool = False
     metrics: str | None = None
     keys: KeysTable | None = None
     protocol: dict[str, int] = {}

@@ -185,13 +185,17 @@ class MeshStack:
 
         On a serial line of 115,200 baud that would be longer than the neighbour waits for them.
         """
-        out = self.out
-        sent = [i for i in range(count) if out.action[i].kind == SEND]
-        if len(sent) < 2:
+        acks, ways = {}, set()
+        for i in range(count):
+            if self.out.action[i].kind == SEND:
+                frame = self.out.frame[i]
+                if frame.kind == const.ACK:
+                    acks[i] = frame.link_dst
+                else:
+                    ways.add(frame.link_dst)
+        if len(acks) + len(ways) < 2 or const.ALL in ways:
             return ()
-        acks = [i for i in sent if out.frame[i].kind == const.ACK]
-        ways = {out.frame[i].link_dst for i in sent if i not in acks} if acks else ()
-        return [i for i in acks if const.ALL not in ways and out.frame[i].link_dst not in ways]
+        return [i for i, way in acks.items() if way not in ways]
 
     def ports_of(self, port: int, frame: Any, attempt: int) -> list[int] | None:
         """Where a frame leaves: on the path its receiver was heard on last; None = on all.

@@ -168,13 +168,17 @@ class Places:
         self._most = most
         kinds = node.wait_kind[:]
         self._free = kinds.count(FREE)
-        self._held = list(compress(node.wait_dest[:], kinds))  # recipients
-        self._tries = list(compress(node.wait_tries[:], kinds))
-        self._tries_most = max(self._tries, default=0)
+        self._held: list[int] = []  # recipients
+        self._tries: list[int] = []
+        self._tries_most, self._is_near = 0, True
+        if self._free < len(kinds):
+            self._held = list(compress(node.wait_dest[:], kinds))
+            self._tries = list(compress(node.wait_tries[:], kinds))
+            self._tries_most = max(self._tries)
+            after = node.seq + 1
+            ages = [(after - seq) & MASK16 for seq in compress(node.wait_seq[:], kinds)]
+            self._is_near = max(ages) <= AHEAD_MAX
         self._is_calm = self._tries_most <= SURE_AFTER and UNREACHABLE not in node.bad_neighbour[:]
-        after = node.seq + 1
-        ages = [(after - seq) & MASK16 for seq in compress(node.wait_seq[:], kinds)]
-        self._is_near = max(ages, default=0) <= AHEAD_MAX
         self._all_wait = all_wait  # one to all waits, which cannot go while one is long under way
 
     def takes(self, item: Any) -> bool:
