@@ -175,8 +175,7 @@ def _steps(
     checked: list[Checked],
     lines: dict[Way, str],
 ) -> str:
-    """Try one step after the other, adding to `checked` and to the `lines` of branches; how it
-    ended."""
+    """Try its steps in turn, adding to `checked` and to branches' `lines`; how it ended."""
     reach = not (first_only or theory.is_example)
     for number, make in enumerate(theory.steps):
         step = make()
