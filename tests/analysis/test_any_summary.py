@@ -65,8 +65,10 @@ CASES = [
     (counts(nodes=0), 1, OK, "All 4 messages are delivered once, none of 10 frames is lost."),
     (counts(sent=12_345, lost=1_000), 1, DEGRADED, "1,000 of 12,345 frames are lost."),
     # On the air a message is there or not, whoever else did not hear a copy of it.
-    (counts(is_shared=True), 1, OK, "All 4 messages are delivered once, none of 10 receptions is lost."),
-    (counts(is_shared=True, sent=1), 1, OK, "All 4 messages are delivered once, no reception is lost."),
+    (counts(is_shared=True), 1, OK,
+     "All 4 messages are delivered once, none of 10 receptions is lost."),
+    (counts(is_shared=True, sent=1), 1, OK,
+     "All 4 messages are delivered once, no reception is lost."),
     (counts(is_shared=True, lost=3), 1, OK,
      "All 4 messages are delivered once, 3 of 10 receptions are lost."),
     (counts(is_shared=True, lost=3, off=(1,)), 1, DEGRADED, "1 of 3 nodes is off."),
