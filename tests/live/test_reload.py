@@ -1,16 +1,15 @@
 """SIGHUP on real processes: keys change while messages run, and nobody is shut out."""
 
 import asyncio
-import os
 import signal
 import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
+from innervate import cli
 from innervate import scenario as scenarios
 from innervate.live import hangup, status
 from innervate.live.up import Processes
@@ -122,29 +121,6 @@ def test_what_cannot_be_reloaded_is_said_and_nothing_changes(tmp_path):
     asyncio.run(main())
 
 
-def waits(pid):
-    """True if hanging up on a process waits until it listens."""
-    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
-    blocked = next(line.split()[1] for line in lines if line.startswith("SigBlk"))
-    return bool(int(blocked, 16) >> signal.SIGHUP - 1 & 1)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="no /proc")
-@pytest.mark.parametrize("more", [[], ["--engine", "python"], ["--engine", "auto"]])
-def test_a_node_holds_hanging_up_before_it_reads_its_file(tmp_path, more):
-    """A named pipe is its file: as long as nobody writes there, it has not begun."""
-    path = tmp_path / "n0.toml"
-    os.mkfifo(path)
-    command = [sys.executable, "-m", "innervate.cli", "live", "node", str(path), *more]
-    node = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    try:
-        with path.open("w"):  # it reads now
-            assert waits(node.pid)
-    finally:
-        node.kill()
-        node.communicate()
-
-
 def test_nobody_can_hang_up_on_a_node_that_is_starting(tmp_path):
     path = tmp_path / "n0.toml"
     path.write_text(ALONE.format(folder=tmp_path))
@@ -162,3 +138,21 @@ def test_nobody_can_hang_up_on_a_node_that_is_starting(tmp_path):
         node.kill()
     assert node.returncode == 0
     assert "keys reloaded" in said
+
+
+@pytest.mark.parametrize("more", [[], ["--engine", "auto"], ["--firmware", "n0.elf"]])
+def test_whatever_it_is_told_to_run_on_a_node_holds_hangups_before_it_loads_commands(
+    monkeypatch, more
+):
+    blocked = []
+
+    def look(*_):
+        blocked.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+        return 0
+
+    monkeypatch.setattr("innervate.cli.app.main", look)
+    monkeypatch.setattr("innervate.live.main.run", look)
+    with hangup.held():
+        hangup.let_in()
+        assert cli.main(["live", "node", "n0.toml", *more]) == 0
+    assert [signal.SIGHUP in one for one in blocked] == [True]

@@ -19,8 +19,8 @@ def main(tokens: Sequence[str] | None = None) -> int:
             from innervate.live.hangup import hold
 
             hold()  # until the node listens for it
-        if len(words) == 3 and words[:2] == ["live", "node"] and not words[2].startswith("-"):
-            return _node(words[2])  # a node on a small computer needs no other command
+            if len(words) == 3 and not words[2].startswith("-"):
+                return _node(words[2])  # a node on a small computer needs no other command
         from innervate.cli import app
 
         return app.main(tokens)
