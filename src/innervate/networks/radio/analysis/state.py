@@ -9,9 +9,7 @@ from innervate.sim.channel.world import RING
 from innervate.sim.tables import get
 
 
-def _overdue(
-    plan: Any, waits: dict[int, list[int]], before_us: int, ended: bool
-) -> dict[int, int]:
+def _overdue(plan: Any, waits: dict[int, list[int]], before_us: int, ended: bool) -> dict[int, int]:
     """Per station how many packets wait too long; of a run that had a goal and has ended, all."""
     goal = ended and not plan.saturated and plan.wanted > 0
     return {
