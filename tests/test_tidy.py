@@ -115,6 +115,13 @@ def test_files_are_short():
     ] == []
 
 
+def test_the_architecture_is_said_in_half_the_words_it_once_took():
+    """Before networks were folders it had 120 lines and 10,948 bytes."""
+    text = (ROOT / "ARCHITECTURE.md").read_text()
+    assert len(text.splitlines()) <= 60
+    assert len(text.encode()) <= 5_474
+
+
 def test_lines_are_short():
     assert lines_with(CODE, lambda line: len(line) > COLUMNS_MAX) == []
 
