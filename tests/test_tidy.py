@@ -47,6 +47,7 @@ class Described(NamedTuple):
     line: int
     name: str
     said: str | None
+    lines: int = 0
     own_lines: int = 0
     parameters: int = 0
 
@@ -59,8 +60,7 @@ def described(path):
     for node in statements(module):
         if isinstance(node, ast.ClassDef | FUNCTION):
             said = ast.get_docstring(node, clean=False)
-            sizes = (own_lines(node), parameters(node)) if isinstance(node, FUNCTION) else ()
-            found.append(Described(node.lineno, node.name, said, *sizes))
+            found.append(Described(node.lineno, node.name, said, *sizes(node)))
     return found
 
 
@@ -70,6 +70,13 @@ def statements(node):
         for below in getattr(node, part, ()):
             yield below
             yield from statements(below)
+
+
+def sizes(node):
+    """(lines, lines without functions that it builds, parameters); nothing of a class."""
+    if not isinstance(node, FUNCTION):
+        return ()
+    return node.end_lineno - node.lineno + 1, own_lines(node), parameters(node)
 
 
 def own_lines(function):
@@ -90,7 +97,7 @@ def parameters(function):
 def test_functions_are_short():
     """Beyond a screen a ratchet: lower its numbers when fewer are left, never raise them."""
     ours = [one for path in sources("src/innervate", suffixes={".py"}) for one in described(path)]
-    assert sum(one.own_lines > LINES_WANTED for one in ours) <= LONG_MAX
+    assert sum(one.lines > LINES_WANTED for one in ours) <= LONG_MAX
     assert sum(one.parameters > PARAMETERS_WANTED for one in ours) <= WIDE_MAX
     assert [
         f"{path.relative_to(ROOT)}:{one.line} {one.name}"
@@ -106,6 +113,13 @@ def test_files_are_short():
         for path in PYTHON
         if len(path.read_text().splitlines()) > FILE_LINES_MAX
     ] == []
+
+
+def test_the_architecture_is_said_in_half_the_words_it_once_took():
+    """Before networks were folders it had 120 lines and 10,948 bytes."""
+    text = (ROOT / "ARCHITECTURE.md").read_text()
+    assert len(text.splitlines()) <= 60
+    assert len(text.encode()) <= 5_474
 
 
 def test_lines_are_short():

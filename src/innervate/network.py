@@ -73,7 +73,7 @@ class Network:
         }
 
     def __repr__(self) -> str:
-        """The network as "Network('skin')"."""
+        """Name alone, as parts are imported when they are asked for: "Network('skin')"."""
         return f"Network({self.name!r})"
 
     def __getattr__(self, part: str) -> Any:

@@ -15,6 +15,8 @@ from innervate.cli.options import SweepOptions
 from innervate.kernel.words import number_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from innervate.sweeping import Sweep, SweepPlan
 
 POINTS_MAX = 40
@@ -44,10 +46,7 @@ def sweep(
     with LiveTable(plan.name, follow, folder, options.json) as table:
         done = room.sweep(plan, out=folder, **options.how, show=options.shown, follow=follow,
                           progress=table)  # fmt: skip
-    if done.torn:
-        more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
-        errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
-                   f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
+    _say_torn(folder / "jobs.sqlite", done.torn)
     drawn = draw_plots(done, folder)
     if options.json:
         told = {"folder": str(folder), "drawn": [str(path) for path in drawn]}
@@ -65,6 +64,12 @@ def sweep(
                    "them again has them at once (--out: another folder)")  # fmt: skip
     undrawn = len(drawn) < len(done.plan.plots)
     return int(undrawn or done.failed.height == done.results.height > 0)
+
+
+def _say_torn(jobs: Path, torn: Sequence[str]) -> None:
+    if torn:
+        more = f"; ... and {len(torn) - TORN_MAX} more" if len(torn) > TORN_MAX else ""
+        errors.say(f"{jobs} had damaged rows: {'; '.join(torn[:TORN_MAX])}{more}")
 
 
 def draw_plots(done: Sweep, folder: Path) -> list[Path]:

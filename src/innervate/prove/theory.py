@@ -9,7 +9,7 @@ from typing import Any
 
 from innervate.dialect.source import Change, Function, functions, reached
 from innervate.kernel.stop import ends_at_once
-from innervate.prove.check import Checked, Teller, Way, check, unreached
+from innervate.prove.check import Checked, Explainer, Way, check, unreached
 from innervate.prove.steps import Step
 from innervate.prove.tell import changes
 from innervate.prove.terms import Term
@@ -84,7 +84,7 @@ class Theory:
     # "" for one that holds, else the step that must refute it: a claim that is false
     refuted_by: str = ""
     is_example: bool = False  # it plays one story, so that branches are left out on purpose
-    tell: Teller = changes  # says in sentences what happens with values that refute a goal
+    tell: Explainer = changes  # says in sentences what happens with values that refute a goal
     # what counterexamples should keep to, of a step
     simple: Callable[[Step], list[Term]] | None = None
 
