@@ -44,10 +44,7 @@ def sweep(
     with LiveTable(plan.name, follow, folder, options.json) as table:
         done = room.sweep(plan, out=folder, **options.how, show=options.shown, follow=follow,
                           progress=table)  # fmt: skip
-    if done.torn:
-        more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
-        errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
-                   f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
+    _say_torn(done, folder)
     drawn = draw_plots(done, folder)
     if options.json:
         told = {"folder": str(folder), "drawn": [str(path) for path in drawn]}
@@ -65,6 +62,14 @@ def sweep(
                    "them again has them at once (--out: another folder)")  # fmt: skip
     undrawn = len(drawn) < len(done.plan.plots)
     return int(undrawn or done.failed.height == done.results.height > 0)
+
+
+def _say_torn(done: Sweep, folder: Path) -> None:
+    """What the job table had lost; of much, the first of it."""
+    if done.torn:
+        more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
+        errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
+                   f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
 
 
 def draw_plots(done: Sweep, folder: Path) -> list[Path]:

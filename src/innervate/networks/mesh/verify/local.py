@@ -81,7 +81,7 @@ class Call(NamedTuple):
 
     @property
     def now(self) -> int:
-        """Of its clock, us."""
+        """The time of its clock then, us."""
         return NOW + self.elapsed
 
 
