@@ -35,9 +35,9 @@ class Network:
         link_type: of its frames in captures: LINKTYPE_USER0 .. USER15 = 147 .. 162, which pcapng
             keeps for private use.
         key_kind: its number under a seal, 1 .. 255: what is sealed for one is not taken by another.
-        medium: what its nodes are joined by, if it has no parts of its own for that: "cables".
-        **parts: where each part stands: "module" or "module:name"; and `over`, on a field, what
-            medium access of another network is below it: "csma".
+        **parts: where each part stands: "module" or "module:name"; and two that are named only:
+            `medium`, what its nodes are joined by, if it has no parts of its own for that:
+            "cables"; `over`, on a field, what medium access of another network is below it: "csma".
 
     Attributes:
         folder: that it was loaded from, if it is not installed.
@@ -49,12 +49,12 @@ class Network:
 
     def __init__(
         self, name: str, package: str, rank: int = 100, link_type: int = 162, key_kind: int = 255,
-        medium: str = "cables", **parts: str,
+        **parts: str,
     ) -> None:  # fmt: skip
-        self.over = parts.pop("over", "")
-        if medium not in MEDIA:
+        self.medium, self.over = parts.pop("medium", "cables"), parts.pop("over", "")
+        if self.medium not in MEDIA:
             known = ", ".join(MEDIA)
-            raise TypeError(f"network {name}: no medium {medium!r}; there are {known}")
+            raise TypeError(f"network {name}: no medium {self.medium!r}; there are {known}")
         for part in parts:
             if part not in PARTS:
                 near = get_close_matches(part, PARTS, 1)
@@ -65,15 +65,14 @@ class Network:
         self.rank = rank
         self.link_type = link_type
         self.key_kind = key_kind
-        self.medium = medium
         self.parts = {
             **DEFAULTS,
-            **MEDIA[medium],
+            **MEDIA[self.medium],
             **{part: _absolute(package, place) for part, place in parts.items()},
         }
 
     def __repr__(self) -> str:
-        """Name alone, as parts are imported when they are asked for: "Network('skin')"."""
+        """Its name, as code that looks it up would have it: Network('skin')."""
         return f"Network({self.name!r})"
 
     def __getattr__(self, part: str) -> Any:

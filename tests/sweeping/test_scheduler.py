@@ -12,7 +12,7 @@ from innervate.sweeping import SweepError, make_plan, scheduler
 from innervate.sweeping.engines import Engine
 from innervate.sweeping.jobs import Jobs
 from innervate.sweeping.planfile import PlotTable
-from innervate.sweeping.scheduler import DEATHS_MAX, Scheduler
+from innervate.sweeping.scheduler import DEATHS_MAX, Scheduler, Seen
 from innervate.sweeping.work import Done, Job, Outcome
 from innervate.trace.sources import stamp
 from tests.sweeping.test_plan import SKIN
@@ -58,7 +58,7 @@ def conducted(tmp_path, monkeypatch):
         jobs = Jobs(None)
         digest = plan.points[0].digest
         jobs.add([Outcome(digest, r, r, json.dumps({"x": v}), "", 1.0, 1) for r, v in there], PLACE)
-        return Scheduler(plan, jobs, engine, show)
+        return Scheduler(plan, jobs, engine, Seen(show))
 
     return begun
 

@@ -15,8 +15,6 @@ from innervate.cli.options import SweepOptions
 from innervate.kernel.words import number_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from innervate.sweeping import Sweep, SweepPlan
 
 POINTS_MAX = 40
@@ -46,7 +44,7 @@ def sweep(
     with LiveTable(plan.name, follow, folder, options.json) as table:
         done = room.sweep(plan, out=folder, **options.how, show=options.shown, follow=follow,
                           progress=table)  # fmt: skip
-    _say_torn(folder / "jobs.sqlite", done.torn)
+    _say_torn(done, folder)
     drawn = draw_plots(done, folder)
     if options.json:
         told = {"folder": str(folder), "drawn": [str(path) for path in drawn]}
@@ -66,10 +64,12 @@ def sweep(
     return int(undrawn or done.failed.height == done.results.height > 0)
 
 
-def _say_torn(jobs: Path, torn: Sequence[str]) -> None:
-    if torn:
-        more = f"; ... and {len(torn) - TORN_MAX} more" if len(torn) > TORN_MAX else ""
-        errors.say(f"{jobs} had damaged rows: {'; '.join(torn[:TORN_MAX])}{more}")
+def _say_torn(done: Sweep, folder: Path) -> None:
+    """What the job table had lost; of much, the first of it."""
+    if done.torn:
+        more = f"; ... and {len(done.torn) - TORN_MAX} more" if len(done.torn) > TORN_MAX else ""
+        errors.say(f"{folder / 'jobs.sqlite'} had damaged rows: "
+                   f"{'; '.join(done.torn[:TORN_MAX])}{more}")  # fmt: skip
 
 
 def draw_plots(done: Sweep, folder: Path) -> list[Path]:

@@ -51,13 +51,14 @@ def modules_of(entry: ModuleType) -> list[ModuleType]:
     return found
 
 
-def bound(name: str, *functions: Iterable[Callable[..., Any]]) -> ModuleType:
+def bound(name: str, /, *functions: Iterable[Callable[..., Any]], **named: Any) -> ModuleType:
     """Functions under one roof, that compiled code can be handed: a module that is no file.
 
     Compiled code takes no other object of functions as an argument. Of equal names the first
-    counts.
+    counts. `named` are functions, or modules of them, by other names than their own.
     """
     made = ModuleType(name)
+    vars(made).update(named)
     for function in (one for some in functions for one in some):
         vars(made).setdefault(function.__name__, function)
     return made

@@ -49,7 +49,7 @@ class Lending:
         self._last: tuple[Any, Any, Any] = (None, None, None)
 
     def __call__(self, world: Any, until: int, budget: int) -> None:
-        """Advance a world."""
+        """Advance a world to a time, or by so many events."""
         known, lent, entry = self._last  # as one: other threads may have other worlds
         if world is not known:
             lent = borrowed(world)

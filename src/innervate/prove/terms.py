@@ -12,10 +12,8 @@ class Term:
 
     __slots__ = ("args", "high", "is_leafy", "is_truth", "low", "made", "op", "opposite")
 
-    def __init__(
-        self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool, made: int
-    ) -> None:
-        self.made = made  # how many were before it: the same formula comes out every time
+    def __init__(self, op: str, args: tuple[object, ...], low: int, high: int, truth: bool) -> None:
+        self.made = 0  # how many were before it: the same formula comes out every time
         # const, var, add, sub, mul, div, mod, and, or, xor, shl, shr, wrap for numbers; const, eq,
         # lt, all, any, not for truths; pick for either: (if, then, else)
         self.op = op
@@ -53,7 +51,9 @@ class Terms:
         key = (op, truth, low, high, args)
         found = self._made.get(key)
         if found is None:
-            found = self._made[key] = Term(op, args, low, high, truth, len(self._made))
+            found = Term(op, args, low, high, truth)
+            found.made = len(self._made)
+            self._made[key] = found
         return found
 
     # -- leaves

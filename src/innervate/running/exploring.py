@@ -6,6 +6,7 @@ from types import SimpleNamespace
 from typing import TypedDict, Unpack
 
 from innervate.network import Network, NetworkError, networks, use
+from innervate.running.options import refuse_others
 from innervate.running.showing import Bar
 from innervate.verify.cases import USUAL, Case, notice_of
 
@@ -62,10 +63,7 @@ def explore(network: str | os.PathLike[str] | Network, **wanted: Unpack[Wanted])
         VerifyError: no such graph, rule or budget.
         TypeError: no option of that name.
     """
-    unknown = wanted.keys() - Wanted.__annotations__
-    if unknown:
-        raise TypeError(f"explore takes no {', '.join(sorted(unknown))}; it takes "
-                        f"{', '.join(Wanted.__annotations__)}")  # fmt: skip
+    refuse_others("explore", wanted, Wanted.__annotations__)
     if not isinstance(network, Network):
         network = named(network)
     options = SimpleNamespace(**(USUAL | wanted))

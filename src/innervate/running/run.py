@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 from innervate import scenario as scenarios
 from innervate.folders import for_plain
 from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
+from innervate.running.options import refuse_others
 from innervate.running.showing import Bar
 from innervate.scenario import Scenario
 from innervate.scenario.given import Changes, Given, load
@@ -29,6 +30,23 @@ else:
     Summaries = object
 
 Progress = Callable[[int, int], None]
+
+
+class How(TypedDict, total=False):
+    """How a plan is simulated, and what is kept of it.
+
+    Attributes:
+        checks: invariant checkers on, as they are if nothing is said.
+        received: keep every sample that a skin's PC received; None = unless there are very many.
+        plain: run uncompiled, slow; a protocol may call `print` and `breakpoint`.
+    """
+
+    checks: bool
+    received: bool | None
+    plain: bool
+
+
+USUAL: How = {"checks": True, "received": None, "plain": False}
 
 
 @dataclass(eq=False, repr=False)
@@ -161,9 +179,7 @@ def run(
     overrides: Changes = (),
     out: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
-    checks: bool = True,
-    received: bool | None = None,
-    plain: bool = False,
+    **how: Unpack[How],
 ) -> Run:
     """Run a scenario.
 
@@ -173,24 +189,24 @@ def run(
         overrides: "a.b=c" texts, or a mapping from dotted keys to values.
         out: folder to write; nothing is written without one (see Run.write).
         progress: called now and then with (time_us, duration_us); None = a bar in a notebook.
-        checks: invariant checkers on.
-        received: keep every sample that a skin's PC received; None = unless there are very many.
-        plain: run uncompiled, slow; a protocol may call `print` and `breakpoint`.
+        how: `checks`, `received`, `plain`: how it is simulated, and what is kept (see How).
 
     Raises:
+        TypeError: no argument of that name.
         ScenarioError: the scenario is not valid.
         RunError: `out` cannot be written; found out before the simulation.
         InvariantBroken: a checker found what must not happen, as frames that went nowhere.
     """
-    with for_plain(plain):
+    refuse_others("run", how, How.__annotations__)
+    usual: How = {**USUAL, **how}
+    with for_plain(usual["plain"]):
         plan = scenarios.plan(made := load(scenario, seed=seed, overrides=overrides))
     if out is not None:
         folders.check_target(out)
     room = networks()[plan.kind].run
     with Bar() as bar:
-        result = room.simulate(plan, plain=plain, checks=checks, received=received,
-                               progress=progress or bar.simulated)  # fmt: skip
-    done = Run(made, plan, result, room.summarize(result), checks)
+        result = room.simulate(plan, **usual, progress=progress or bar.simulated)
+    done = Run(made, plan, result, room.summarize(result), usual["checks"])
     if out is not None:
         done.write(out)
     return done

@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.analysis.summary import COUNTED
 from innervate.kernel import cache, compilation
@@ -46,13 +46,27 @@ class State:
         return [found[repeat] for repeat in sorted(found)]
 
 
+class Seen(NamedTuple):
+    """Measures that somebody looks at.
+
+    Attributes:
+        show: runs have to have these.
+        follow: their values are kept at hand for a display, besides those of `until`.
+    """
+
+    show: tuple[str, ...] = ()
+    follow: tuple[str, ...] = ()
+
+
+NOTHING = Seen()
+
+
 class Scheduler:
     """Brings a sweep from where it is to its end.
 
     Args:
         plan, jobs, engine: what is wanted, what is there, who runs the rest.
-        show: measures that somebody wants to see: runs have to have them.
-        follow: measures whose values are kept at hand for a display, besides those of `until`.
+        seen: measures that somebody looks at.
         progress: called after every batch, with this.
     """
 
@@ -61,8 +75,7 @@ class Scheduler:
         plan: SweepPlan,
         jobs: Jobs,
         engine: Engine,
-        show: tuple[str, ...] = (),
-        follow: tuple[str, ...] = (),
+        seen: Seen = NOTHING,
         progress: Callable[[Scheduler], None] | None = None,
     ) -> None:
         self.plan = plan
@@ -73,8 +86,8 @@ class Scheduler:
         self._engine = engine
         self._progress = progress or (lambda scheduler: None)
         rules = [(f"--until {rule}", rule.measure) for rule in plan.until]
-        self._numbers = [*rules, *(("--show", measure) for measure in show)]
-        self._measures = tuple(dict.fromkeys([*(name for _, name in self._numbers), *follow]))
+        self._numbers = [*rules, *(("--show", measure) for measure in seen.show)]
+        self._measures = tuple(dict.fromkeys([*(name for _, name in self._numbers), *seen.follow]))
         drawn = [(f"[[plot]] {number}", plot) for number, plot in enumerate(plan.plots)]
         self._numbers += [(where, plot.y) for where, plot in drawn]
         self._named = [*self._numbers, *((w, n) for w, plot in drawn for n in (plot.x, plot.by))]

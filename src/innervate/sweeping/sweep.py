@@ -13,6 +13,7 @@ from typing import Any, Literal, TypedDict, Unpack
 from msgspec import Struct
 
 from innervate import scenario as scenarios
+from innervate.running.options import refuse_others
 from innervate.running.showing import Bar
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
@@ -23,7 +24,7 @@ from innervate.sweeping.errors import DamagedError, SweepError
 from innervate.sweeping.jobs import FILE, Jobs, rescue
 from innervate.sweeping.plan import REPEAT_MAX, SweepPlan
 from innervate.sweeping.result import Sweep
-from innervate.sweeping.scheduler import Scheduler
+from innervate.sweeping.scheduler import Scheduler, Seen
 from innervate.sweeping.sources import files_named
 from innervate.sweeping.until import parse as parse_until
 from innervate.sweeping.vary import Axis, axis, check_key, parse, plain
@@ -37,7 +38,20 @@ Progress = Callable[[Scheduler], None]
 
 
 class Planned(TypedDict, total=False):
-    """What is varied, and how often it runs: see `sweep`."""
+    """What is varied, and how often it runs.
+
+    Attributes:
+        vary: what is varied: {"protocol.k": [2, 3], ("a", "b"): [(1, 10), (2, 20)]}, values also
+            as "2..8"; or texts like those of --vary. The last one changes fastest.
+        overrides: scenario keys that are other than in the file, for every run.
+        derive: keys that follow from others, {"duration_s": "2 + 100 / protocol.beacon_hz"}.
+        repeat: runs of every point, each with a seed of its own; 1, or at most 1,000 with `until`.
+        seed: root seed in place of the scenario's.
+        until: "recoveries.routed_ms.ci=5%": a point ends when the 95 % interval of its mean is
+            that narrow to either side; several must all be met.
+        batch: repeats between two decisions of `until`; 10.
+        paired: keys whose variants are compared on the same seeds; "all" = every point has them.
+    """
 
     vary: Vary
     overrides: Iterable[str] | Mapping[str, Any]
@@ -49,67 +63,64 @@ class Planned(TypedDict, total=False):
     paired: str | Iterable[str]
 
 
+class Crew(TypedDict, total=False):
+    """Who runs it.
+
+    Attributes:
+        workers: how many at the same time; None = one for every core; 1 = here, without processes.
+        kind: "processes", "threads" or "here".
+        dask: address of a Dask scheduler to use instead of this machine.
+    """
+
+    workers: int | None
+    kind: str
+    dask: str
+
+
+class Asked(Planned, Crew, total=False):
+    """What a sweep is asked for besides its scenario and its folder."""
+
+
 def sweep(
     scenario: Source | SweepPlan,
     *,
-    vary: Vary = (),
-    overrides: Iterable[str] | Mapping[str, Any] = (),
-    derive: Mapping[str, str] | None = None,
-    repeat: int | None = None,
-    seed: int | None = None,
-    until: str | Iterable[str] = (),
-    batch: int | None = None,
-    paired: str | Iterable[str] = (),
     out: str | os.PathLike[str] | None = None,
-    workers: int | None = None,
-    kind: str = "processes",
-    dask: str = "",
     retry: bool = False,
     show: Iterable[str] = (),
     follow: Iterable[str] = (),
     progress: Progress | None = None,
+    **asked: Unpack[Asked],
 ) -> Sweep:
     """Run a scenario for every combination of some settings, each many times.
 
     Args:
         scenario: a plan file, or what `innervate.run` takes, or a SweepPlan,
-            which says all that is said up to `paired`.
-        vary: what is varied: {"protocol.k": [2, 3], ("a", "b"): [(1, 10), (2, 20)]}, values also
-            as "2..8"; or texts like those of --vary. The last one changes fastest.
-        overrides: scenario keys that are other than in the file, for every run.
-        derive: keys that follow from others, {"duration_s": "2 + 100 / protocol.beacon_hz"}.
-        repeat: runs of every point, each with a seed of its own; 1, or at most 1,000 with `until`.
-        seed: root seed in place of the scenario's.
-        until: "recoveries.routed_ms.ci=5%": a point ends when the 95 % interval of its mean is
-            that narrow to either side; several must all be met.
-        batch: repeats between two decisions of `until`; 10.
-        paired: keys whose variants are compared on the same seeds; "all" = every point has them.
+            which says all that Planned does.
         out: folder to write, or to go on in; without one everything stays in memory.
-        workers: how many at the same time; None = one for every core; 1 = here, without processes.
-        kind: "processes", "threads" or "here".
-        dask: address of a Dask scheduler to use instead of this machine.
         retry: run again what failed.
         show: measures that somebody wants to see; the first run shows whether there are such.
         follow: measures that `progress` wants to see the values of, if there are such.
         progress: called now and then with the Scheduler; None = a bar in a notebook.
+        asked: `vary`, `overrides`, `derive`, `repeat`, `seed`, `until`, `batch`, `paired`: what is
+            varied (see Planned); `workers`, `kind`, `dask`: who runs it (see Crew).
 
     Raises:
+        TypeError: no argument of that name.
         SweepError: the plan cannot be kept, or the folder not used; one line.
         ScenarioError: no point of it is a valid scenario.
         KeyboardInterrupt: Ctrl-C; with `out` what was done is kept, and the same call goes on.
     """
-    if isinstance(scenario, SweepPlan):
-        plan = scenario
-    else:
-        plan = make_plan(scenario, vary=vary, overrides=overrides, derive=derive, repeat=repeat,
-                         seed=seed, until=until, batch=batch, paired=paired)  # fmt: skip
+    refuse_others("a sweep", asked, Asked.__annotations__)
+    workers, dask = asked.pop("workers", None), asked.pop("dask", "")
+    crew = engine(asked.pop("kind", "processes"), workers, dask)
+    planned: Planned = asked
+    plan = scenario if isinstance(scenario, SweepPlan) else make_plan(scenario, **planned)
     plan, made = _checked(plan)
-    folder = None if out is None else Path(out)
-    with engine(kind, workers, dask) as crew:  # one that cannot be leaves no folder behind
+    folder, seen = None if out is None else Path(out), Seen(tuple(show), tuple(follow))
+    with crew as running:  # one that cannot be leaves no folder behind
         if folder is not None:
             _prepare(folder)
-
-        files, seen = _files(plan, made), (tuple(show), tuple(follow))
+        files = _files(plan, made)
 
         def go_on(jobs: Jobs) -> Sweep:
             jobs.claim(plan.identity(), files)
@@ -118,7 +129,7 @@ def sweep(
             if retry:
                 jobs.forget_failed()
             with Bar("preparing the runs") as bar:
-                scheduler = Scheduler(plan, jobs, crew, *seen, progress or bar.swept)
+                scheduler = Scheduler(plan, jobs, running, seen, progress or bar.swept)
                 return _run_plan(scheduler, jobs, folder)
 
         return _with_table(folder, plan, go_on)
@@ -153,13 +164,11 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
 
 def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
     """The plan that these describe, as in sweep(); what they say goes before a plan file's."""
+    refuse_others("a sweep", planned, Planned.__annotations__)
     file, source = _plan_file(scenario)
     base = base_of(source, planned.get("overrides", ()))
     axes, derived = _axes(planned.get("vary", ())), dict(planned.get("derive") or {})
     rules, pairs = _texts(planned.get("until", ())), _texts(planned.get("paired", ()))
-    unknown = planned.keys() - Planned.__annotations__.keys()
-    if unknown:
-        raise TypeError(f"a sweep takes no {', '.join(sorted(unknown))}")
     if file is not None:
         given = {key for one in axes for key in one.keys} | {key for key, _ in base.settings}
         label = str(scenario)

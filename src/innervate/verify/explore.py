@@ -47,8 +47,8 @@ def compiled_engine(parts: Callable[[], Any]) -> s.Engine:
     known = (s.hash_of, s.covers, s.look_up, s.insert, s.refill)
     walking = (s.save_row, s.restore_row, s.append, s.room_left)
     compilation.register_functions(s.fetch_row, *images, *known, *walking, hot=True)
+    compilation.register_functions(*s.BOUND, system.variants, hot=False)
     engine = s.build(system)
-    compilation.register_functions(*engine.parts, system.variants, hot=False)
     return engine._replace(
         insert=compilation.compiled(s.insert),
         refill=compilation.compiled(s.refill),
@@ -85,7 +85,7 @@ def explore(
     while True:
         status = driver.advance()
         if status == s.GROW:
-            driver.known.grow()
+            driver.known.grow(driver.engine.refill)
             continue
         now = wall_s()
         driver.count(tally, now - started)
@@ -142,7 +142,7 @@ class _Driver:
         if plain:
             limit = min(limit, max(states, 1 << 18) + 2 * s.MARGIN)
         self.engine = s.build(system) if plain else compiled_engine(model.compiled_parts)
-        self.known = Table(self.lay, plain, limit, self.lay.body(), self.engine.refill)
+        self.known = Table(self.lay, plain, limit, self.lay.body())
         self.run = self.known.search.run
         self.run[s.MOVES] = len(self.lay.moves())
         self.world = model.world(plain)

@@ -1,7 +1,8 @@
 """Breadth-first search through the states of a system: rows of bytes, each kept once.
 
 A system brings `parts` (functions that compiled code calls), `start`, `variants(world, move)`,
-`step(world, move, variant, choice)` and `check(world)`; they work on the row `world.work`. The row
+`step(world, move, variant, choice)` and `check(world)`; they work on the row `world.work`, and are
+handed on together as `do`. The row
 that is kept is the smallest among its images under the symmetries of the graph. The table of
 known states has open addresses; its entries hold 32 bits of a row's hash and its number.
 """
@@ -10,6 +11,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from innervate.kernel.bits import mix
+from innervate.kernel.compilation import bound
 
 # Places in `Search.run`.
 COUNT, NEXT, LIMIT, SLOTS, GENERATED, STATUS, MOVES, WORDS, IMAGES, WIDTH = range(10)
@@ -44,7 +46,6 @@ class Search(NamedTuple):
 class Engine(NamedTuple):
     """The search, bound to a system; `refill` enters all rows into a new table."""
 
-    parts: tuple[Callable[..., Any], ...]
     insert: Callable[..., int]
     refill: Callable[..., None]
     expand: Callable[..., None]
@@ -199,106 +200,121 @@ def room_left(run):
     return GOING
 
 
-def build(system):
-    """The search for a system."""
-    variants, step, check = system.variants, system.step, system.check
+def note(world, do, search, index, is_new):
+    """Remember the first thing that is broken."""
+    run = search.run
+    broken = world.found[0]
+    if broken == 0 and is_new:
+        broken = do.check(world)
+    if broken != 0 and run[BROKEN] == 0:
+        run[BROKEN] = broken
+        run[BROKEN_AT] = index
+        run[STATUS] = FOUND
 
-    def note(world, search, index, is_new):
-        """Remember the first thing that is broken."""
-        run = search.run
-        broken = world.found[0]
-        if broken == 0 and is_new:
-            broken = check(world)
-        if broken != 0 and run[BROKEN] == 0:
-            run[BROKEN] = broken
-            run[BROKEN_AT] = index
-            run[STATUS] = FOUND
 
-    def follow(world, search, index, move, variant):
-        """All successors of a state by one variant of a move."""
-        run = search.run
-        choice, asked = 0, 1
-        while choice < asked:
+def follow(world, do, search, index, move, variant):
+    """All successors of a state by one variant of a move."""
+    run = search.run
+    choice, asked = 0, 1
+    while choice < asked:
+        fetch_row(world, search, index)
+        asked = do.step(world, move, variant, choice)
+        if asked > 0 and world.found[0] == TOO_MANY:
+            run[LEFT_OUT] += 1
+        elif asked > 0:
+            run[GENERATED] += 1
+            is_new = insert(world, search, index)
+            note(world, do, search, index, is_new)
+        choice += 1
+
+
+def expand(world, do, search, budget):
+    """Find the successors of up to `budget` more states."""
+    run = search.run
+    for _ in range(budget):
+        run[STATUS] = room_left(run)
+        if run[STATUS] != GOING:
+            return
+        index = run[NEXT]
+        for move in range(run[MOVES]):
             fetch_row(world, search, index)
-            asked = step(world, move, variant, choice)
-            if asked > 0 and world.found[0] == TOO_MANY:
-                run[LEFT_OUT] += 1
-            elif asked > 0:
-                run[GENERATED] += 1
-                is_new = insert(world, search, index)
-                note(world, search, index, is_new)
-            choice += 1
+            for variant in range(do.variants(world, move)):
+                follow(world, do, search, index, move, variant)
+        run[NEXT] = index + 1
+        if run[BROKEN] != 0:
+            run[STATUS] = FOUND
+            return
 
-    def expand(world, search, budget):
-        """Find the successors of up to `budget` more states."""
-        run = search.run
-        for _ in range(budget):
-            run[STATUS] = room_left(run)
-            if run[STATUS] != GOING:
-                return
-            index = run[NEXT]
-            for move in range(run[MOVES]):
-                fetch_row(world, search, index)
-                for variant in range(variants(world, move)):
-                    follow(world, search, index, move, variant)
-            run[NEXT] = index + 1
-            if run[BROKEN] != 0:
-                run[STATUS] = FOUND
-                return
 
-    def choose(world, number):
-        """A move and variant that can be made, by a number; (-1, 0) if there is none."""
-        total = 0
-        for move in range(len(world.move_kind)):
-            total += variants(world, move)
-        if total == 0:
-            return -1, 0
-        wanted = number % total
-        for move in range(len(world.move_kind)):
-            count = variants(world, move)
-            if wanted < count:
-                return move, wanted
-            wanted -= count
+def choose(world, do, number):
+    """A move and variant that can be made, by a number; (-1, 0) if there is none."""
+    total = 0
+    for move in range(len(world.move_kind)):
+        total += do.variants(world, move)
+    if total == 0:
         return -1, 0
+    wanted = number % total
+    for move in range(len(world.move_kind)):
+        count = do.variants(world, move)
+        if wanted < count:
+            return move, wanted
+        wanted -= count
+    return -1, 0
 
-    def stride(world, search, move, variant):
-        """A step of a walk, what it draws being any that can be; the row before it is saved."""
-        save_row(world, search)
-        asked = step(world, move, variant, 0)
-        if asked > 1:
-            choice = ((mix(search.run[RANDOM], DRAWN) >> 20) & LOW32) % asked
-            if choice > 0:
-                restore_row(world, search)
-                asked = step(world, move, variant, choice)
-        return asked
 
-    def wander(world, search, walks, length):
-        """So many random walks from the state in row 0; the rows of the last one are kept."""
-        run = search.run
-        for _ in range(walks):
-            fetch_row(world, search, 0)
-            run[COUNT] = 1
-            while run[COUNT] < length:
-                run[RANDOM] = mix(run[RANDOM], run[COUNT])
-                move, variant = choose(world, (run[RANDOM] >> 20) & LOW32)
-                if move < 0:
-                    break
-                asked = stride(world, search, move, variant)
-                if asked < 0 or world.found[0] == TOO_MANY:
-                    restore_row(world, search)  # not that way; the next number is another
-                    run[GENERATED] += 1
-                    run[RANDOM] = mix(run[RANDOM], OTHER_WAY)
-                    if run[RANDOM] & 63 == 0:
-                        break
-                    continue
+def stride(world, do, search, move, variant):
+    """A step of a walk, what it draws being any that can be; the row before it is saved."""
+    save_row(world, search)
+    asked = do.step(world, move, variant, 0)
+    if asked > 1:
+        choice = ((mix(search.run[RANDOM], DRAWN) >> 20) & LOW32) % asked
+        if choice > 0:
+            restore_row(world, search)
+            asked = do.step(world, move, variant, choice)
+    return asked
+
+
+def wander(world, do, search, walks, length):
+    """So many random walks from the state in row 0; the rows of the last one are kept."""
+    run = search.run
+    for _ in range(walks):
+        fetch_row(world, search, 0)
+        run[COUNT] = 1
+        while run[COUNT] < length:
+            run[RANDOM] = mix(run[RANDOM], run[COUNT])
+            move, variant = choose(world, do, (run[RANDOM] >> 20) & LOW32)
+            if move < 0:
+                break
+            asked = stride(world, do, search, move, variant)
+            if asked < 0 or world.found[0] == TOO_MANY:
+                restore_row(world, search)  # not that way; the next number is another
                 run[GENERATED] += 1
-                broken = world.found[0]
-                if broken == 0:
-                    broken = check(world)
-                if broken != 0:
-                    run[BROKEN], run[BROKEN_AT] = broken, run[COUNT] - 1
-                    return
-                append(world, search)
-            run[NEXT] += 1
+                run[RANDOM] = mix(run[RANDOM], OTHER_WAY)
+                if run[RANDOM] & 63 == 0:
+                    break
+                continue
+            run[GENERATED] += 1
+            broken = world.found[0]
+            if broken == 0:
+                broken = do.check(world)
+            if broken != 0:
+                run[BROKEN], run[BROKEN_AT] = broken, run[COUNT] - 1
+                return
+            append(world, search)
+        run[NEXT] += 1
 
-    return Engine((note, follow, choose, stride), insert, refill, expand, wander)
+
+BOUND = (note, follow, expand, choose, stride, wander)
+
+
+def build(system: Any) -> Engine:
+    """The search for a system."""
+    do = bound("system", variants=system.variants, step=system.step, check=system.check)
+
+    def expand_known(world, search, budget):  # type: ignore[no-untyped-def]
+        expand(world, do, search, budget)
+
+    def wander_on(world, search, walks, length):  # type: ignore[no-untyped-def]
+        wander(world, do, search, walks, length)
+
+    return Engine(insert, refill, expand_known, wander_on)

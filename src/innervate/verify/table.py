@@ -32,7 +32,6 @@ class Table:
         plain: for uncompiled code.
         limit: how many there is room for.
         body: see `Search.body`.
-        refill: enters all rows into a new table.
         rows: states that are there already; None = none.
 
     Attributes:
@@ -41,15 +40,9 @@ class Table:
     """
 
     def __init__(
-        self,
-        lay: Any,
-        plain: bool,
-        limit: int,
-        body: list[int],
-        refill: Callable[[Any], None],
-        rows: Any = None,
+        self, lay: Any, plain: bool, limit: int, body: list[int], rows: Any = None
     ) -> None:
-        self.plain, self.words, self._refill = plain, lay.width // 8, refill
+        self.plain, self.words = plain, lay.width // 8
         mask = np.array(body, np.uint8).view(np.int64)
         search = s.Search(
             run=zeros(s.NUMBERS, plain),
@@ -68,12 +61,12 @@ class Table:
         self.search = search
         self.seen = search if self.plain else tables.borrowed(search)
 
-    def grow(self) -> None:
-        """A table with twice the places."""
+    def grow(self, refill: Callable[[Any], None]) -> None:
+        """A table with twice the places, into which `refill` enters all rows."""
         run = self.search.run
         run[s.SLOTS] = 2 * int(run[s.SLOTS])
         self._take(self.search._replace(table=zeros(int(run[s.SLOTS]), self.plain)))
-        self._refill(self.seen)
+        refill(self.seen)
 
     @property
     def count(self) -> int:

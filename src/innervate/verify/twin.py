@@ -27,7 +27,7 @@ class Twin:
         self.lay = model.layout()
         self.moves = self.lay.moves()
         self.world = model.world(True)
-        self.search = Table(self.lay, True, 1, self.lay.body(), s.refill).search
+        self.search = Table(self.lay, True, 1, self.lay.body()).search
         self.put(bytes(model.first_row(system)))
 
     def put(self, row: bytes) -> None:

@@ -124,7 +124,7 @@ def test_whatever_else_is_said_a_stop_ends_the_frame_on_the_air(do, monkeypatch,
     world = world_of()
     world.out.count[0], world.out.frame = 1, [Of(kind=7, count=0, slots=2)]
     world.out.action = [Of(kind=SEND, a=0, b=0, c=flags)]
-    loop.drain(world, do, 0, 80, 580)
+    loop.drain(world, do, 0, 80)
     assert (ended, do.said) == ([(0, 80)], [])
 
 

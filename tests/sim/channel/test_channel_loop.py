@@ -257,13 +257,13 @@ def test_an_outcome_is_told_and_edges_of_signals_go_on(do):
     assert world.run[0].decoded == 1
 
 
-def drained(do, *actions, now=80 + OFFSET, **run):
+def drained(do, *actions, **run):
     """A world in which a station's call at 80 us has put these out."""
     world = world_of(**run)
     world.out.count[0] = len(actions)
     world.out.action = [Of(kind=kind, a=a, b=b, c=c) for kind, a, b, c in actions]
     world.out.frame = [Of(kind=7, count=count, slots=2) for count in (0, 1, 2)]
-    loop.drain(world, do, 0, 80, now)
+    loop.drain(world, do, 0, 80)
     assert world.out.count[0] == 0
     return world
 
@@ -305,7 +305,7 @@ def test_who_has_reported_that_it_left_is_gone_once_it_listens(do):
     assert world.radios[0].leaving == 2
     for deaf in (1, 0):
         world.radios[0].deaf = deaf
-        loop.finish(world, do, 0, 80, 80 + OFFSET, ON_INPUT, 0)
+        loop.finish(world, do, 0, 80, ON_INPUT, 0)
         assert world.radios[0].alive == deaf
 
 
@@ -314,7 +314,7 @@ def test_who_has_reported_that_it_left_is_gone_once_it_listens(do):
 ])  # fmt: skip
 def test_who_has_delivered_is_asked_for_more(do, state, saturated, asks):
     world = world_of(radio(noted=3, **state), saturated=saturated)
-    loop.finish(world, do, 0, 80, 80 + OFFSET, ON_START, 0)
+    loop.finish(world, do, 0, 80, ON_START, 0)
     assert world.radios[0].noted == 1
     assert due(world) == ([key_of(80, OFFER, 0, 1)] if asks else [])
 

@@ -266,10 +266,10 @@ def test_who_broke_the_run_first_and_when_stays(monkeypatch):
     world.radios[0].leaving = 0
     do = Of(watch=lambda *_: setattr(run, "broken", 2))
     for time in (70, 80):
-        loop.finish(world, do, 0, time, time, 0, 0)
+        loop.finish(world, do, 0, time, 0, 0)
     assert run.broken_at == 70
     run.broken_node, world.out = 4, Of(count=[0], overflow=[1], action=[], frame=[])
-    loop.drain(world, do, 0, 90, 90)
+    loop.drain(world, do, 0, 90)
     assert (run.broken, run.broken_node) == (2, 4)
 
 

@@ -5,16 +5,17 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import polars
 
 from innervate import scenario as scenarios
+from innervate.running.options import refuse_others
 from innervate.scenario import ScenarioError
 from innervate.sweeping.errors import SweepError
 from innervate.sweeping.plan import SweepPlan
 from innervate.sweeping.result import Sweep
-from innervate.sweeping.sweep import Progress, make_plan, sweep
+from innervate.sweeping.sweep import Crew, Progress, make_plan, sweep
 from innervate.sweeping.vary import Named
 from innervate.topology import Graph, TopologyError, cells_from_urdf
 from innervate.topology.body import body_graph, joining_reach
@@ -133,21 +134,22 @@ def size(
     question: Question,
     *,
     out: str | os.PathLike[str] | None = None,
-    workers: int | None = None,
-    dask: str = "",
     progress: Progress | None = None,
     repeat: int = 20,
     seed: int = 1,
+    **crew: Unpack[Crew],
 ) -> Answer:
     """Answer a question by simulation; the other arguments are those of sweep().
 
     Raises:
+        TypeError: no argument of that name.
         SweepError: nothing to place cells on, or no ports or rates to try.
         ScenarioError: the skin cannot be built.
     """
+    refuse_others("size", crew, Crew.__annotations__)
     asked, frames, names = _placed(question)
     plan = plan_of(asked, frames, repeat, seed)
-    done = sweep(plan, out=out, workers=workers, dask=dask, follow=(RECOVERY,), progress=progress)
+    done = sweep(plan, out=out, follow=(RECOVERY,), progress=progress, **crew)
     made = {ports: _graph(plan, ports) for ports in asked.ports}
     graphs = {ports: graph for ports, graph in made.items() if graph is not None}
     weak = {ports: weak_points(graph) for ports, graph in graphs.items()}

@@ -95,9 +95,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         added: what is its network's own.
     """
     size = _sizes(plan, of, kept, added, tables.rows)
-    beyond = BATCH * (ROWS_PER_EVENT + size.limit)  # what a batch of events can add
-    cells = plan.graph.cells
-    states = tables.states(of.node, cells, _lines(of.node))
+    states = tables.states(of.node, plan.graph.cells, _lines(of.node))
     low, high = records.bounds(of.node)
     world = w.World(
         run=tables.records((*w.RUN, *of.numbers), 1, wide={*w.WIDE, *of.numbers}),
@@ -122,13 +120,7 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
         watch=added.watch,
         carrier=added.carrier,
         commands=tables.records(w.COMMAND, len(plan.faults) + len(added.inputs) + 1),
-        rows=tables.records(ROW, tables.rows + beyond, fresh=True),
-        deliveries=tables.records(
-            of.delivery, tables.rows + beyond if kept.deliveries else 1, fresh=True
-        ),
-        trail=tables.records(TRAIL, tables.rows if kept.trail else 1, fresh=True),
-        taps=tables.records(TAP, size.tapped, fresh=True),
-        tapped=tables.states(of.frame, size.tapped),
+        **_kept(tables, of, size, kept),
         delays=tables.records(w.DELAY, added.ways, wide=w.WIDE),
         delay_counts=tables.numbers(added.ways * delays.CLASSES),
     )
@@ -138,6 +130,19 @@ def build(plan: Any, of: Records, tables: Tables, kept: Recorded, added: Added) 
     _set_nodes(world, plan, of)
     _set_commands(world, plan, added.inputs)
     return world
+
+
+def _kept(tables: Tables, of: Records, size: _Sizes, kept: Recorded) -> dict[str, Any]:
+    """What a run leaves of what happened, until the loop stops for it to be taken away."""
+    beyond = BATCH * (ROWS_PER_EVENT + size.limit)  # what a batch of events can add
+    deliveries = tables.rows + beyond if kept.deliveries else 1
+    return {
+        "rows": tables.records(ROW, tables.rows + beyond, fresh=True),
+        "deliveries": tables.records(of.delivery, deliveries, fresh=True),
+        "trail": tables.records(TRAIL, tables.rows if kept.trail else 1, fresh=True),
+        "taps": tables.records(TAP, size.tapped, fresh=True),
+        "tapped": tables.states(of.frame, size.tapped),
+    }
 
 
 def _sizes(plan: Any, of: Records, kept: Recorded, added: Added, rows: int) -> _Sizes:

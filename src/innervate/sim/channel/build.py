@@ -35,13 +35,7 @@ class Records(NamedTuple):
     delivered: Names = r.PACKET
 
 
-def build(
-    plan: Any,
-    of: Records,
-    plain: bool,
-    kept: Recorded,
-    room: int | None = None,
-) -> r.World:
+def build(plan: Any, of: Records, plain: bool, kept: Recorded, room: int | None = None) -> r.World:
     """The world of a plan, before its first event.
 
     Args:
@@ -56,10 +50,6 @@ def build(
     fields = of.station
     stations = tables.states(fields, n)
     low, high = records.bounds(fields)
-    beyond = BATCH * (ROWS_PER_EVENT + of.outbox) + n * of.outbox  # see `loop.pressing`
-    rows = (room or tables.rows) + beyond if kept.observe else 1
-    trail = tables.rows + beyond if kept.trail else 1
-    tapped = tables.rows + of.outbox * n * BATCH if kept.tap else 1
     world = r.World(
         run=tables.records(r.RUN, 1, wide=r.WIDE),
         heap=r.Heap(tables.numbers(64 * n + 1024, 0, np.int64), tables.numbers(1, 0, np.int64)),
@@ -79,12 +69,7 @@ def build(
         item=tables.states(of.packet, 1),
         out=tables.outbox(of.outbox, of.frame),
         commands=tables.records(r.COMMAND, len(plan.faults) + 1, wide=r.WIDE),
-        rows=tables.records(ROW, rows, fresh=True, wide=r.WIDE),
-        sent=tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
-        packets=tables.records(of.delivered, rows, fresh=True, wide=r.WIDE),
-        trail=tables.records(TRAIL, trail, fresh=True, wide=r.WIDE),
-        taps=tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
-        tapped=tables.states(of.frame, tapped),
+        **_kept(tables, n, of, kept, room or tables.rows),
     )
     _set_run(world, plan, of, kept)
     _set_stations(world, plan, {name for name, *_ in fields})
@@ -96,6 +81,22 @@ def grow_heap(world: Any) -> Any:
     """The same world, of the radio or of a mesh, with twice the room for events."""
     keys = world.heap.keys
     return world._replace(heap=world.heap._replace(keys=longer(keys, 2 * len(keys))))
+
+
+def _kept(tables: Tables, n: int, of: Records, kept: Recorded, room: int) -> dict[str, Any]:
+    """What a run leaves of what happened, until the loop stops for it to be taken away."""
+    beyond = BATCH * (ROWS_PER_EVENT + of.outbox) + n * of.outbox  # see `loop.pressing`
+    rows = room + beyond if kept.observe else 1
+    trail = tables.rows + beyond if kept.trail else 1
+    tapped = tables.rows + of.outbox * n * BATCH if kept.tap else 1
+    return {
+        "rows": tables.records(ROW, rows, fresh=True, wide=r.WIDE),
+        "sent": tables.records(r.SENT, rows, fresh=True, wide=r.WIDE),
+        "packets": tables.records(of.delivered, rows, fresh=True, wide=r.WIDE),
+        "trail": tables.records(TRAIL, trail, fresh=True, wide=r.WIDE),
+        "taps": tables.records(TAP, tapped, fresh=True, wide=r.WIDE),
+        "tapped": tables.states(of.frame, tapped),
+    }
 
 
 def _packets(tables: Tables, plan: Any) -> dict[str, Any]:

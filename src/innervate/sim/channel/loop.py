@@ -49,7 +49,7 @@ def pressing(world):
     return status.DONE
 
 
-def drain(world, do, node, time, now):
+def drain(world, do, node, time):
     """Carry out what a handler put into the outbox; fold it into the fingerprint."""
     run, out = world.run[0], world.out
     mark = run.fingerprint
@@ -66,6 +66,7 @@ def drain(world, do, node, time, now):
                 do.note_sent(world, node, out.frame[i], time)
             medium.transmit(world, node, out.frame[i], time, do.copy_frame)
         elif kind == SET_TIMER:
+            now = time + world.radios[node].offset
             at = time + max(0, ((b - now + (1 << 29)) & MASK30) - (1 << 29))
             if world.due[node * TIMERS + a] != at:
                 world.due[node * TIMERS + a] = at
@@ -86,13 +87,13 @@ def drain(world, do, node, time, now):
         run.broken, run.broken_node = BROKEN_OUTBOX, node
 
 
-def finish(world, do, node, time, now, handler, port):
+def finish(world, do, node, time, handler, port):
     """After a handler: account for it, carry out what it asked for, check."""
     run, radio = world.run[0], world.radios[node]
     run.handled += 1
     run.fingerprint = mix(run.fingerprint, (time << 26) ^ (node << 6) ^ (port << 40) ^ handler)
     if world.out.count[0] > 0:
-        drain(world, do, node, time, now)
+        drain(world, do, node, time)
     if run.watchful:
         do.watch(world, node, time, handler, port)
         if run.broken and run.broken_at < 0:
@@ -123,7 +124,7 @@ def offer(world, do, node, time):
         now = time + radio.offset
         kind = access.FORCE if run.forced else access.PACKET
         do.on_input(world, node, now & MASK30, kind)
-        finish(world, do, node, time, now, status.ON_INPUT, kind)
+        finish(world, do, node, time, status.ON_INPUT, kind)
 
 
 def tell_clock(world, do, node, time):
@@ -134,7 +135,7 @@ def tell_clock(world, do, node, time):
         item.ago = time % run.period
         now = time + world.radios[node].offset
         do.on_input(world, node, now & MASK30, access.CLOCK)
-        finish(world, do, node, time, now, status.ON_INPUT, access.CLOCK)
+        finish(world, do, node, time, status.ON_INPUT, access.CLOCK)
 
 
 def tell_outcome(world, do, node, time):
@@ -145,7 +146,7 @@ def tell_outcome(world, do, node, time):
         item.handle = world.got[node * RING + (radio.told & (RING - 1))]
         now = time + radio.offset
         do.on_input(world, node, now & MASK30, access.RESULT)
-        finish(world, do, node, time, now, status.ON_INPUT, access.RESULT)
+        finish(world, do, node, time, status.ON_INPUT, access.RESULT)
 
 
 def switch_on(world, do, node, time, cause):
@@ -161,7 +162,7 @@ def switch_on(world, do, node, time, cause):
     for timer in range(TIMERS):
         world.due[node * TIMERS + timer] = NEVER
     do.on_start(world, node, now & MASK30, cause)
-    finish(world, do, node, time, now, status.ON_START, cause)
+    finish(world, do, node, time, status.ON_START, cause)
     tell_clock(world, do, node, time)
     medium.note_carrier(world, node)
     queue.push(world.heap, queue.key_of(time, queue.OFFER, node, 1))
@@ -174,7 +175,7 @@ def tell_carrier(world, do, node, time):
     radio.voc = 1 if radio.present == 1 else 0
     now = time + radio.offset
     do.on_carrier(world, node, now & MASK30, radio.cd, radio.voc)
-    finish(world, do, node, time, now, ON_CARRIER, radio.cd * 2 + radio.voc)
+    finish(world, do, node, time, ON_CARRIER, radio.cd * 2 + radio.voc)
 
 
 def edge(world, do, rank, node, what, time):
@@ -202,7 +203,7 @@ def edge(world, do, rank, node, what, time):
             do.on_frame(world, node, now & MASK30, world.frames[what])
             if run.checks and run.broken == 0 and do.digest(world.frames[what]) != was:
                 run.broken, run.broken_node = BROKEN_FRAME, sender
-            finish(world, do, node, time, now, status.ON_FRAME, world.frames[what].kind)
+            finish(world, do, node, time, status.ON_FRAME, world.frames[what].kind)
     medium.note_carrier(world, node)
 
 
@@ -224,7 +225,7 @@ def obey(world, do, index, time):
         radio.leaving = max(radio.leaving, 1)
         now = time + radio.offset
         do.on_input(world, node, now & MASK30, access.LEAVE)
-        finish(world, do, node, time, now, status.ON_INPUT, access.LEAVE)
+        finish(world, do, node, time, status.ON_INPUT, access.LEAVE)
     elif command.action == GARBLE:
         radio.garble = command.value
     elif command.action == FADE:
@@ -263,7 +264,7 @@ def dispatch(world, do, key, time):
             world.due[node * TIMERS + what] = NEVER
             now = time + radio.offset
             do.on_timer(world, node, now & MASK30, what)
-            finish(world, do, node, time, now, status.ON_TIMER, what)
+            finish(world, do, node, time, status.ON_TIMER, what)
     elif rank == queue.OFFER:
         if what == 0:
             traffic.make(world, node, time)

@@ -22,8 +22,8 @@ def kept(tiny, insert, index=0, among=1):
     """The states that an insertion keeps of one, beside others that are no matter."""
     here = tiny.twin.row()
     rows = np.frombuffer(here * among, np.int64).copy()
-    source = fair._rows(tiny.model, True, 1 << 20, rows.data)
-    target = fair._rows(tiny.model, True, 1 << 20)
+    space = fair._Space(tiny.model, True, 1 << 20)
+    source, target = space.rows(rows.data), space.rows()
     insert(tiny.world, source.search, target.search, index)
     tiny.twin.put(here)
     return [target.row(i) for i in range(target.count)], list(target.search.before[: target.count])
@@ -94,7 +94,7 @@ def test_the_last_beacon_of_each_direction_may_have_been_lost(loss, queues, more
 
 def test_what_comes_before_a_round_is_told_by_a_number():
     """A state from which one may forget, and one whose beacon may have been lost."""
-    play = fair.build(system_of())[-1]
+    play = fair.build(system_of())
 
     def played(tiny, which):
         kept_of = partial(play, nodes=which, begin=0, end=1)
@@ -112,10 +112,11 @@ def test_what_comes_before_a_round_is_told_by_a_number():
 
 def test_a_table_that_grows_still_knows_its_states():
     tiny = Tiny(3, keep=True)
-    rows = fair._rows(tiny.model, True, 1 << 20)
+    space = fair._Space(tiny.model, True, 1 << 20)
+    rows = space.rows()
     assert s.insert(tiny.world, rows.search, 0)
     slots = len(rows.search.table)
-    rows.grow()
+    rows.grow(space.refill())
     assert rows.seen is rows.search  # plain: what is played on is the table itself
     assert len(rows.search.table) == 2 * slots == rows.search.run[s.SLOTS]
     assert not s.insert(tiny.world, rows.seen, 0)
@@ -145,7 +146,7 @@ def test_where_there_is_no_room_for_what_comes_before_a_round_it_is_counted(said
         drawn.append(draw(world, sizes))
         return True
 
-    play = fair.build(Of(settle=settle, turn=None, is_settled=None))[-1]
+    play = fair.build(Of(settle=settle, turn=None, is_settled=None))
     seen = []
 
     def played(world, source, target, _):
@@ -169,11 +170,11 @@ def test_where_there_is_no_room_for_what_a_round_sends_it_is_counted(said, sizes
             drawn.append(draw(world, sizes))
         return True
 
-    play = fair.build(Of(settle=None, turn=turn, is_settled=lambda world: True))[-1]
+    play = fair.build(Of(settle=None, turn=turn, is_settled=lambda world: True))
     seen = []
 
     def played(world, source, target, _):
-        play(world._replace(orders=[0, 1] * 3), source, target, 2, 0, 1)
+        play(world._replace(orders=[0, 1, 2] * 3), source, target, 3, 0, 1)
         seen.extend((target.run[s.LEFT_OUT], target.run[s.GENERATED]))
 
     assert kept(Tiny(), played) == ([], [])
@@ -197,8 +198,9 @@ def test_what_rounds_had_no_room_for_is_added_up():
 
     tiny = Tiny()
     given = np.frombuffer(tiny.twin.row(), np.int64).copy()
-    source = fair._rows(tiny.model, True, 1 << 20, given.data)
-    player = fair._Player(tiny.model, True, play, fair.Fair(bound=9), None, 1 << 20)
+    space = fair._Space(tiny.model, True, 1 << 20)
+    source = space.rows(given.data)
+    player = fair._Player(space, play, fair.Fair(bound=9), None)
     for _ in range(2):
         player.round(source, player.nodes)
     assert (player.fair.left_out, player.fair.played) == (6, 10)

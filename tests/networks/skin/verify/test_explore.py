@@ -56,7 +56,7 @@ def test_a_small_table_grows_as_often_as_it_must(monkeypatch):
     slots = []
     while (status := driver.advance()) in (search.GOING, search.GROW):
         if status == search.GROW:
-            driver.known.grow()
+            driver.known.grow(driver.engine.refill)
             slots.append((int(driver.run[search.SLOTS]), len(driver.known.search.table)))
     count = int(driver.run[search.COUNT])
     assert (status, count) == (search.DONE, roomy.tally.states)

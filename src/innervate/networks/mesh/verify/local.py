@@ -72,6 +72,19 @@ class State(NamedTuple):
     handed: int
 
 
+class Call(NamedTuple):
+    """What a node is called with, how long after its last event, and what its draws give."""
+
+    event: tuple[int, ...]
+    elapsed: int  # us
+    script: tuple[int, ...]
+
+    @property
+    def now(self) -> int:
+        """The time of its clock then, us."""
+        return NOW + self.elapsed
+
+
 class Locals:
     """All node states of a network found so far, and what calls make of them."""
 
@@ -175,31 +188,29 @@ class Locals:
         todo: list[tuple[int, ...]] = [()]
         while todo:
             script = todo.pop()
-            outcomes.append(self._make(number, event, elapsed, script))
+            outcomes.append(self._make(self.states[number], Call(event, elapsed, script)))
             todo += branches(script, self.node.drawn)
         return outcomes
 
-    def _make(
-        self, number: int, event: tuple[int, ...], elapsed: int, script: tuple[int, ...]
-    ) -> Outcome:
+    def _make(self, before: State, call: Call) -> Outcome:
         """Bring a state to life, make a call, and keep what it leaves."""
-        before, node, now = self.states[number], self.node, NOW + elapsed
+        node, event = self.node, call.event
         self.calls += 1
         self.shape.put(node, before.node)
         gate = None
         if before.gate is not None:
             gate = self.gate
             self.gate_shape.put(gate, before.gate)
-        node.script, node.drawn = script, []
+        node.script, node.drawn = call.script, []
         self.boots = event[2] if event[0] == START else 0
         self.out.count[0] = 0
         self.out.overflow[0] = 0
         crashed = False
         try:
-            self._handle(node, gate, now, event)
+            self._handle(node, gate, call.now, event)
         except (IndexError, ValueError, ZeroDivisionError):
             crashed = True  # a mutant; what the others leave is in range
-        return self._leave(before, event, elapsed, gate, script, crashed)
+        return self._leave(before, call, gate, crashed)
 
     def _handle(self, node: Any, gate: Any, now: int, event: tuple[int, ...]) -> None:
         entry, params, out, what = self.entry, self.params, self.out, event[0]
@@ -221,12 +232,10 @@ class Locals:
         elif what == START:
             entry.on_start(node, gate, params, now, event[1], out)
 
-    def _leave(
-        self, before: State, event: Any, elapsed: int, gate: Any, script: Any, crashed: bool
-    ) -> Outcome:
+    def _leave(self, before: State, call: Call, gate: Any, crashed: bool) -> Outcome:
         """What a call has left in the records and the outbox."""
-        node, out, now = self.node, self.out, NOW + elapsed
-        timers = [max(0, due - elapsed) if due >= 0 else NEVER for due in before.timers]
+        node, out, now, event = self.node, self.out, call.now, call.event
+        timers = [max(0, due - call.elapsed) if due >= 0 else NEVER for due in before.timers]
         if event[0] == TIMER:
             timers[event[1]] = NEVER
         handed = NONE if event[0] in (SENT, START) else before.handed
@@ -250,7 +259,7 @@ class Locals:
                 number = self._keep(node, gate, now, timers, handed)
             except mesh_shape.OutOfRange:
                 broken = broken or BROKEN_RANGE
-        return Outcome(number, tuple(acks), tuple(delivered), broken, tuple(script))
+        return Outcome(number, tuple(acks), tuple(delivered), broken, call.script)
 
     def _keep(self, node: Any, gate: Any, now: int, timers: list[int], handed: int) -> int:
         """The number of what the records are now."""

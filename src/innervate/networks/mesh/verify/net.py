@@ -201,22 +201,22 @@ class Nets:
             for count in range(min(frames, len(heard_by)) + 1):
                 later = net._replace(left=(deaths, revivals, frames - count, acks))
                 for missed in combinations(heard_by, count):
-                    found += self._exchange(later, node, number, heard_by, missed)
+                    found += self._exchange(later, node, heard_by, missed)
             return found
-        found += self._exchange(net, node, number, heard_by)
+        found += self._exchange(net, node, heard_by)
         if to in heard_by and frames:
             later = net._replace(left=(deaths, revivals, frames - 1, acks))
-            found += self._exchange(later, node, number, heard_by, (to,))
+            found += self._exchange(later, node, heard_by, (to,))
         if to in heard_by and acks and self.locals.packets[number].flags & const.ACK_WANTED:
             later = net._replace(left=(deaths, revivals, frames, acks - 1))
-            found += self._exchange(later, node, number, heard_by, deaf=1)
+            found += self._exchange(later, node, heard_by, deaf=1)
         return found
 
     def _exchange(
-        self, net: Net, node: int, number: int, heard_by: list[int],
-        missed: tuple[int, ...] = (), deaf: int = 0,
-    ) -> list[Successor]:  # fmt: skip
+        self, net: Net, node: int, heard_by: list[int], missed: tuple[int, ...] = (), deaf: int = 0
+    ) -> list[Successor]:
         """Receivers in order, then the sender is told that it has left, then the ack is heard."""
+        number = self.locals.states[net.nodes[node]].handed
         packet = self.locals.packets[number]
         event = (local.FRAME, number)
         parts = [self._part(net)]

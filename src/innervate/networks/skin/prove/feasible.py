@@ -26,13 +26,14 @@ OTHERS = {  # kinds of frames that are no beacons
 def steps(change: Change | None = None) -> tuple[Callable[[], Step], ...]:
     """All that can happen to a cell."""
     play, hears = partial(RULE.play, source(near.ENTRY, change)), near.EVENTS[near.HEARS]
+    others = {name: hears._replace(kinds=kinds) for name, kinds in OTHERS.items()}
+    others["a cell reads its sensors"] = near.Event("on_input", (const.SAMPLE, "frame"))
     return (
         partial(play, near.STARTS, _started),
         partial(play, near.HEARS, _kept),
         partial(play, near.TICKS, _ticked),
         partial(play, near.TELLS, _kept, more=lambda view: view.is_(view.soon, 1)),
-        *(partial(play, name, _kept, hears, kinds) for name, kinds in OTHERS.items()),
-        partial(play, "a cell reads its sensors", _kept, ("on_input", const.SAMPLE, "frame")),
+        *(partial(play, name, _kept, event) for name, event in others.items()),
     )
 
 

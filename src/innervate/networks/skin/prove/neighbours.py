@@ -26,12 +26,22 @@ STARTS = "a cell is switched on"
 HEARS = "a cell hears a beacon"
 TICKS = "a cell's period ends"
 TELLS = "a cell announces what is new"
-# What the explorer has happen to a cell: a handler, and what it is told besides the time.
-EVENTS: dict[str, tuple[Any, ...]] = {
-    STARTS: ("on_start", "cause"),
-    HEARS: ("on_frame", "port", "frame"),
-    TICKS: ("on_timer", const.TICK),
-    TELLS: ("on_timer", const.SOON),
+
+
+class Event(NamedTuple):
+    """A call of a cell."""
+
+    handler: str
+    told: tuple[Any, ...]  # besides the time; "cause", "port", "frame" are any
+    kinds: tuple[int, int] = (const.BEACON, const.BEACON)  # from which to which, of the frame
+
+
+# What the explorer has happen to a cell.
+EVENTS = {
+    STARTS: Event("on_start", ("cause",)),
+    HEARS: Event("on_frame", ("port", "frame")),
+    TICKS: Event("on_timer", (const.TICK,)),
+    TELLS: Event("on_timer", (const.SOON,)),
 }
 
 
@@ -282,8 +292,7 @@ class Rule(NamedTuple):
         known: dict[str, Any],
         name: str,
         then: Callable[[Cell, Step], list[Goal]],
-        event: tuple[Any, ...] = (),
-        kinds: tuple[int, int] = (const.BEACON, const.BEACON),
+        event: Event | None = None,
         more: Callable[[View], Term] | None = None,
     ) -> Step:
         """An event at a cell in any state.
@@ -293,10 +302,9 @@ class Rule(NamedTuple):
             name: of the step.
             then: goals besides those of every step.
             event: if it is none of EVENTS, such a one.
-            kinds: from which to which, of a frame that comes in.
             more: what else is known before.
         """
-        handler, *told = event or EVENTS[name]
+        handler, told, kinds = event or EVENTS[name]
         cell = Cell(known, self.number)
         view = cell.view(cell.stage.store)
         if handler == "on_frame":

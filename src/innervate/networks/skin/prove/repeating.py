@@ -67,7 +67,8 @@ def _kept(known: dict[str, Any], rule: int, name: str) -> Step:
     bare = _triggered(known, rule)
     before, starts = bare.stage.store, name == STARTS
     facts = [] if starts else [one.holds for one in up_to_date(bare, before)]
-    after, _ = bare.run(before, *EVENTS[name])
+    handler, told, _kinds = EVENTS[name]
+    after, _ = bare.run(before, handler, *told)
     ports = range(const.PORTS if starts else 1)  # to all else ports are alike: mirror.py
     return bare.step(name, up_to_date(bare, after, ports), facts)
 

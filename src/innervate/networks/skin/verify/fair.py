@@ -7,14 +7,15 @@ are not settled yet, by every order of the nodes; the set has to be empty after 
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import cache
 from itertools import permutations
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from innervate.kernel import compilation, tables
 from innervate.kernel.clock import wall_s
+from innervate.kernel.compilation import bound
 from innervate.networks.skin.verify import calm as skin_calm
 from innervate.networks.skin.verify import system as skin_system
 from innervate.networks.skin.verify import world as w
@@ -59,44 +60,46 @@ class Fair:
         return f"routes are not shortest after {self.bound} fair rounds"
 
 
-def build(system: Any) -> tuple[Callable[..., Any], ...]:
-    """Functions; the last plays a round from rows begin .. end - 1 of `source`."""
-    settle, turn, is_settled = system.settle, system.turn, system.is_settled
+def calm(world, do, source, target, index):
+    """No more faults, and what is in flight arrives, before the first round."""
+    skin_calm.draw_first(world)
+    is_open = True
+    while is_open:
+        s.fetch_row(world, source, index)
+        skin_calm.forget_budgets(world)
+        world.found[0] = 0
+        if not do.settle(world):
+            target.run[s.BROKEN] = 1
+        if world.found[0] == s.TOO_MANY:
+            target.run[s.LEFT_OUT] += 1
+        s.insert(world, target, index)
+        is_open = skin_calm.draw_otherwise(world) and target.run[s.BROKEN] == 0
 
-    def calm(world, source, target, index):
-        """No more faults, and what is in flight arrives, before the first round."""
-        skin_calm.draw_first(world)
-        is_open = True
-        while is_open:
-            s.fetch_row(world, source, index)
-            skin_calm.forget_budgets(world)
-            world.found[0] = 0
-            if not settle(world):
-                target.run[s.BROKEN] = 1
-            if world.found[0] == s.TOO_MANY:
-                target.run[s.LEFT_OUT] += 1
+
+def round_of(world, do, source, target, index, order):
+    """One round in one order, with all that it can draw; what is not settled then is kept."""
+    run = target.run
+    skin_calm.draw_first(world)
+    is_open = True
+    while is_open:
+        s.fetch_row(world, source, index)
+        world.found[0] = 0
+        for k in range(world.at[w.CELLS] + 1):
+            if not do.turn(world, world.orders[order + k]):
+                run[s.BROKEN] = 1
+        run[s.GENERATED] += 1
+        if world.found[0] == s.TOO_MANY:
+            run[s.LEFT_OUT] += 1
+        if not do.is_settled(world):
             s.insert(world, target, index)
-            is_open = skin_calm.draw_otherwise(world) and target.run[s.BROKEN] == 0
+        is_open = skin_calm.draw_otherwise(world) and target.run[s.BROKEN] == 0
 
-    def round_of(world, source, target, index, order, nodes):
-        """One round in one order, with all that it can draw; what is not settled then is kept."""
-        run = target.run
-        skin_calm.draw_first(world)
-        is_open = True
-        while is_open:
-            s.fetch_row(world, source, index)
-            world.found[0] = 0
-            for k in range(nodes):
-                if not turn(world, world.orders[order + k]):
-                    run[s.BROKEN] = 1
-            run[s.GENERATED] += 1
-            if world.found[0] == s.TOO_MANY:
-                run[s.LEFT_OUT] += 1
-            if not is_settled(world):
-                s.insert(world, target, index)
-            is_open = skin_calm.draw_otherwise(world) and target.run[s.BROKEN] == 0
 
-    def play(world, source, target, nodes, begin, end):
+def build(system: Any) -> Callable[..., None]:
+    """What plays a round from rows begin .. end - 1 of `source`."""
+    do = bound("system", settle=system.settle, turn=system.turn, is_settled=system.is_settled)
+
+    def play(world, source, target, nodes, begin, end):  # type: ignore[no-untyped-def]
         """A round from each state, or CALM, LOST, or EXPIRY."""
         run = target.run
         for index in range(begin, end):
@@ -105,27 +108,25 @@ def build(system: Any) -> tuple[Callable[..., Any], ...]:
                 run[s.NEXT] = -index  # how far it came, out of the way of `room_left`
                 return
             if nodes == CALM:
-                calm(world, source, target, index)
+                calm(world, do, source, target, index)
             elif nodes == LOST:
                 skin_calm.insert_lost(world, source, target, index)
             elif nodes == EXPIRY:
                 skin_calm.insert_expiring(world, source, target, index)
             else:
                 for order in range(0, len(world.orders), nodes):
-                    round_of(world, source, target, index, order, nodes)
+                    round_of(world, do, source, target, index, order)
         run[s.NEXT] = -end
 
-    return calm, round_of, play
+    return play
 
 
 @cache
 def _compiled() -> Callable[..., None]:
-    engine = ex.compiled_engine(skin_system.compiled_parts)
-    system = skin_system.compiled_parts()
-    parts = build(system)
+    ex.compiled_engine(skin_system.compiled_parts)  # registers what keeps states
     compilation.register(skin_calm, hot=False)
-    compilation.register_functions(*engine.parts, *parts[:-1], hot=False)
-    return compilation.compiled_as_one(parts[-1])
+    compilation.register_functions(calm, round_of, hot=False)
+    return compilation.compiled_as_one(build(skin_system.compiled_parts()))
 
 
 def bound_of(model: Any) -> int:
@@ -143,11 +144,33 @@ def check(
     progress: Callable[[Fair], bool] | None = None,
 ) -> Fair:
     """Play the fair schedule from all states of a search, or from `starts` evenly spaced ones."""
-    first = _rows(result.model, plain, memory, _starts(result, starts, plain))
+    space = _Space(result.model, plain, memory)
+    first = space.rows(_starts(result, starts, plain))
     fair = Fair(bound_of(result.model), starts=first.count, of=result.tally.states)
-    play = build(system or skin_system.system_of())[-1] if plain else _compiled()
-    _settle(_Player(result.model, plain, play, fair, progress, memory), first)
+    play = build(system or skin_system.system_of()) if plain else _compiled()
+    _settle(_Player(space, play, fair, progress), first)
     return fair
+
+
+class _Space(NamedTuple):
+    """Where the states of a model are kept: by compiled code or plain, in so many bytes."""
+
+    model: Any
+    plain: bool
+    memory: int
+
+    def rows(self, rows: Any = None) -> Table:
+        """The states of a round, with none in it yet unless they are given."""
+        lay, plain = self.model.layout(), self.plain
+        limit = self.memory // (lay.width + 32) if rows is None else len(rows) // (lay.width // 8)
+        limit = min(limit, 1 << 19) if plain and rows is None else limit
+        return Table(lay, plain, limit, [255] * lay.width, rows)
+
+    def refill(self) -> Callable[[Any], None]:
+        """What enters all rows into a new table."""
+        if self.plain:
+            return s.refill
+        return ex.compiled_engine(skin_system.compiled_parts).refill
 
 
 class _Player:
@@ -158,11 +181,9 @@ class _Player:
         chain: the states before each round that was played.
     """
 
-    def __init__(
-        self, model: Any, plain: bool, play: Any, fair: Fair, progress: Any, memory: int
-    ) -> None:
-        self.model, self.fair, self.chain = model, fair, list[Table]()
-        self.none = partial(_rows, model, plain, memory)
+    def __init__(self, space: _Space, play: Any, fair: Fair, progress: Any) -> None:
+        model, plain = space.model, space.plain
+        self.model, self.space, self.fair, self.chain = model, space, fair, list[Table]()
         self.nodes = int(model.graph.nodes)
         self._play, self._progress, self._begun = play, progress, wall_s()
         flat = [node for order in permutations(range(self.nodes)) for node in order]
@@ -175,7 +196,7 @@ class _Player:
 
     def round(self, source: Table, nodes: int) -> Table | None:
         """What one round from all rows of `source` leaves; None if it was ended early."""
-        target, fair = self.none(), self.fair
+        target, fair = self.space.rows(), self.fair
         at, chunk = 0, PLAIN_CHUNK if target.plain else CHUNK
         while at < source.count:
             end = min(at + chunk, source.count)
@@ -184,7 +205,7 @@ class _Player:
             at = -int(target.search.run[s.NEXT])
             status = int(target.search.run[s.STATUS])
             if status == s.GROW:
-                target.grow()
+                target.grow(self.space.refill())
             fair.wall_s = wall_s() - self._begun
             if status == s.FULL:
                 fair.ended = "memory"
@@ -243,12 +264,3 @@ def _starts(result: ex.Result, starts: int, plain: bool) -> Any:
     places = [count * i // starts for i in range(starts)]
     picked = np.asarray(result.rows).reshape(-1, words)[places].reshape(-1)
     return picked.data if plain else picked
-
-
-def _rows(model: Any, plain: bool, memory: int, rows: Any = None) -> Table:
-    """The states of a round, with none in it yet unless they are given."""
-    lay = model.layout()
-    limit = memory // (lay.width + 32) if rows is None else len(rows) // (lay.width // 8)
-    limit = min(limit, 1 << 19) if plain and rows is None else limit
-    refill = s.refill if plain else ex.compiled_engine(skin_system.compiled_parts).refill
-    return Table(lay, plain, limit, [255] * lay.width, refill, rows)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from innervate.dialect.outbox import REPORT, SEND
+from innervate.kernel.compilation import bound
 from innervate.kernel.records import within
 from innervate.networks.skin.protocol import constants as const
 from innervate.networks.skin.verify import row as rows
@@ -172,171 +173,194 @@ def finish_cell(world, c, has_ticked):
     return asked
 
 
-def bind(skin, skin_sink):
-    """The moves of a skin for a copy of its protocol: modules `skin` and `skin_sink`."""
-
-    def start(world):
-        """Everything is switched on, and the PC has listened for its period."""
-        for c in range(world.at[w.CELLS]):
-            rows.load_cell(world, c, 0)
-            skin.on_start(world.cells[0], world.params[0], 0, 0, world.out)
-            finish_cell(world, c, 0)
-        skin_sink.on_start(world.pc, world.params[0], 0, 0, world.out)
-        while world.pc.own[0].listen > 0:
-            skin_sink.on_timer(world.pc, world.params[0], 0, const.TICK, world.out)
-        world.out.count[0] = 0
-        rows.save_pc(world)
-
-    def hear(world, way, choice):
-        """The oldest frame of a direction arrives."""
-        end = world.way_end[way]
-        rows.take(world, way, 0)
-        first = const.PORTS * world.at[w.CELLS]
-        if end >= first:
-            rows.load_pc(world)
-            params = world.params[world.at[w.FAIR]]
-            skin_sink.on_frame(world.pc, params, 0, end - first, world.frame[0], world.out)
-            rows.save_pc(world)
-            drain(world, first)
-            return 1
-        c = end // const.PORTS
+def start(world, do):
+    """Everything is switched on, and the PC has listened for its period."""
+    for c in range(world.at[w.CELLS]):
         rows.load_cell(world, c, 0)
-        cell = world.cells[0]
-        cell.choice = choice
-        params = world.params[world.at[w.FAIR]]
-        skin.on_frame(cell, params, 0, end - const.PORTS * c, world.frame[0], world.out)
-        return finish_cell(world, c, 0)
+        do.cell.on_start(world.cells[0], world.params[0], 0, 0, world.out)
+        finish_cell(world, c, 0)
+    do.sink.on_start(world.pc, world.params[0], 0, 0, world.out)
+    while world.pc.own[0].listen > 0:
+        do.sink.on_timer(world.pc, world.params[0], 0, const.TICK, world.out)
+    world.out.count[0] = 0
+    rows.save_pc(world)
 
-    def attend(world, c, variant):
-        """What reaches a cell right before its tick; 0 if this cannot be."""
-        cell, params = world.cells[0], world.params[world.at[w.FAIR]]
-        for p in range(const.PORTS):
-            slot = world.port_at[const.PORTS * c + p]
-            if slot < 0:
-                continue
-            way = world.in_way[const.PORTS * c + p]
-            up = rows.is_up(world, way // 2)
-            count = options(world, c, p)
-            chosen = variant % count
-            variant = variant // count
-            if world.at[w.FAIR]:
-                cell.heard[p] = up
-                continue
-            if may_break(world, c, p) and chosen == count - 1:
-                cell.heard[p] = 0
-                if up and not rows.spend(world, w.FALSE):
-                    return False
-                continue
-            if world.at[w.MERGE]:
-                for _ in range(chosen):
-                    rows.take(world, way, 0)
-                    skin.on_frame(cell, params, 0, p, world.frame[0], world.out)
-            # A cable that is not found broken now has brought something since the last tick.
-            cell.heard[p] = 1 if up or cell.pf[p] < const.ONE else 0
-        return True
 
-    def tick(world, c, variant, choice):
-        """A cell's period is over."""
-        rows.load_cell(world, c, 0)
-        cell = world.cells[0]
-        if not attend(world, c, variant):
-            return REFUSED
-        if world.at[w.FAIR] == 0 and world.work[world.cell_at[c] + w.TICKS] != w.ANY:
-            world.work[world.cell_at[c] + w.TICKS] -= 1
-        cell.choice = choice
-        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, const.TICK, world.out)
-        asked = finish_cell(world, c, rows.HAS_TICKED)
-        if world.at[w.MERGE]:
-            rows.trim(world, c)
-        return asked
-
-    def soon(world, c, choice):
-        """A cell's timer for news fires."""
-        rows.load_cell(world, c, 0)
-        cell = world.cells[0]
-        cell.choice = choice
-        skin.on_timer(cell, world.params[world.at[w.FAIR]], 0, const.SOON, world.out)
-        return finish_cell(world, c, 0)
-
-    def pc_tick(world, variant):
-        """The PC's period is over."""
-        params = world.params[world.at[w.FAIR]]
+def hear(world, do, way, choice):
+    """The oldest frame of a direction arrives."""
+    end = world.way_end[way]
+    rows.take(world, way, 0)
+    first = const.PORTS * world.at[w.CELLS]
+    if end >= first:
         rows.load_pc(world)
-        first = const.PORTS * world.at[w.CELLS]
-        if world.at[w.MERGE]:
-            for p in range(world.pc.own[0].ports):
-                way = world.in_way[first + p]
-                count = 1 + queued(world, way)
-                for _ in range(variant % count):
-                    rows.take(world, way, 0)
-                    skin_sink.on_frame(world.pc, params, 0, p, world.frame[0], world.out)
-                variant = variant // count
-        if world.pc.own[0].listen == 0 and world.at[w.FAIR] == 0:
-            world.work[world.at[w.PC_AT] + w.PC_COUNTS] -= 1
-        skin_sink.on_timer(world.pc, params, 0, const.TICK, world.out)
+        params = world.params[world.at[w.FAIR]]
+        do.sink.on_frame(world.pc, params, 0, end - first, world.frame[0], world.out)
         rows.save_pc(world)
         drain(world, first)
         return 1
+    c = end // const.PORTS
+    rows.load_cell(world, c, 0)
+    cell = world.cells[0]
+    cell.choice = choice
+    params = world.params[world.at[w.FAIR]]
+    do.cell.on_frame(cell, params, 0, end - const.PORTS * c, world.frame[0], world.out)
+    return finish_cell(world, c, 0)
 
-    def step(world, move, variant, choice):
-        """Make a move in the row; out of how many the draw it asked for was, or REFUSED."""
-        asked = make(world, move, variant, choice)
-        if world.at[w.LEAN]:
-            tidy(world)
-        return asked
 
-    def make(world, move, variant, choice):
-        """Carry out a move, without asking what it may cost: FINE, or what is broken."""
-        world.found[0] = w.FINE
-        kind, arg = world.move_kind[move], world.move_arg[move]
-        if kind == w.TICK:
-            return tick(world, arg, variant, choice)
-        if kind == w.PC_TICK:
-            return pc_tick(world, variant)
-        if kind == w.SOON:
-            return soon(world, arg, choice)
-        if kind == w.DELIVER:
-            return hear(world, arg, choice)
-        if kind == w.LOSE:
-            rows.spend(world, w.LOSS)
-            rows.drop(world, arg)
-        elif kind == w.CUT_LINK:
-            rows.spend(world, w.CUT)
-            change_link(world, arg, 1)
-        elif kind == w.HEAL_LINK:
-            rows.spend(world, w.HEAL)
-            change_link(world, arg, 0)
-        else:
-            rows.spend(world, w.RESTART)
-            rows.load_pc(world)
-            skin_sink.on_start(world.pc, world.params[0], 0, const.MEMORY_LOST, world.out)
-            world.out.count[0] = 0
-            rows.save_pc(world)
-        return 1
+def attend(world, do, c, variant):
+    """What reaches a cell right before its tick; 0 if this cannot be."""
+    cell, params = world.cells[0], world.params[world.at[w.FAIR]]
+    for p in range(const.PORTS):
+        slot = world.port_at[const.PORTS * c + p]
+        if slot < 0:
+            continue
+        way = world.in_way[const.PORTS * c + p]
+        up = rows.is_up(world, way // 2)
+        count = options(world, c, p)
+        chosen = variant % count
+        variant = variant // count
+        if world.at[w.FAIR]:
+            cell.heard[p] = up
+            continue
+        if may_break(world, c, p) and chosen == count - 1:
+            cell.heard[p] = 0
+            if up and not rows.spend(world, w.FALSE):
+                return False
+            continue
+        if world.at[w.MERGE]:
+            for _ in range(chosen):
+                rows.take(world, way, 0)
+                do.cell.on_frame(cell, params, 0, p, world.frame[0], world.out)
+        # A cable that is not found broken now has brought something since the last tick.
+        cell.heard[p] = 1 if up or cell.pf[p] < const.ONE else 0
+    return True
 
-    def settle(world):
-        """Everything in flight arrives, and what that sets off; 0 if it never ends."""
-        for _ in range(200):
-            moved = False
-            for way in range(world.at[w.DIRECTIONS]):
-                while queued(world, way) > 0:
-                    hear(world, way, rows.next_draw(world))
-                    moved = True
-            for c in range(world.at[w.CELLS]):
-                if world.work[world.cell_at[c] + w.FLAGS] & rows.IS_SOON:
-                    soon(world, c, rows.next_draw(world))
-                    moved = True
-            if not moved:
-                return True
-        return False
 
-    def turn(world, node):
-        """A node ticks in the fair schedule, and is heard before the next one does."""
-        if node == world.at[w.CELLS]:
-            pc_tick(world, 0)
-        else:
-            tick(world, node, 0, rows.next_draw(world))
-        return settle(world)
+def tick(world, do, c, variant, choice):
+    """A cell's period is over."""
+    rows.load_cell(world, c, 0)
+    cell = world.cells[0]
+    if not attend(world, do, c, variant):
+        return REFUSED
+    if world.at[w.FAIR] == 0 and world.work[world.cell_at[c] + w.TICKS] != w.ANY:
+        world.work[world.cell_at[c] + w.TICKS] -= 1
+    cell.choice = choice
+    do.cell.on_timer(cell, world.params[world.at[w.FAIR]], 0, const.TICK, world.out)
+    asked = finish_cell(world, c, rows.HAS_TICKED)
+    if world.at[w.MERGE]:
+        rows.trim(world, c)
+    return asked
 
-    parts = (hear, attend, tick, soon, pc_tick, make, step, settle, turn)
-    return System(parts, start, variants, step, check, settle, turn, is_settled)
+
+def soon(world, do, c, choice):
+    """A cell's timer for news fires."""
+    rows.load_cell(world, c, 0)
+    cell = world.cells[0]
+    cell.choice = choice
+    do.cell.on_timer(cell, world.params[world.at[w.FAIR]], 0, const.SOON, world.out)
+    return finish_cell(world, c, 0)
+
+
+def pc_tick(world, do, variant):
+    """The PC's period is over."""
+    params = world.params[world.at[w.FAIR]]
+    rows.load_pc(world)
+    first = const.PORTS * world.at[w.CELLS]
+    if world.at[w.MERGE]:
+        for p in range(world.pc.own[0].ports):
+            way = world.in_way[first + p]
+            count = 1 + queued(world, way)
+            for _ in range(variant % count):
+                rows.take(world, way, 0)
+                do.sink.on_frame(world.pc, params, 0, p, world.frame[0], world.out)
+            variant = variant // count
+    if world.pc.own[0].listen == 0 and world.at[w.FAIR] == 0:
+        world.work[world.at[w.PC_AT] + w.PC_COUNTS] -= 1
+    do.sink.on_timer(world.pc, params, 0, const.TICK, world.out)
+    rows.save_pc(world)
+    drain(world, first)
+    return 1
+
+
+def step(world, do, move, variant, choice):
+    """Make a move in the row; out of how many the draw it asked for was, or REFUSED."""
+    asked = make(world, do, move, variant, choice)
+    if world.at[w.LEAN]:
+        tidy(world)
+    return asked
+
+
+def make(world, do, move, variant, choice):
+    """Carry out a move, without asking what it may cost: FINE, or what is broken."""
+    world.found[0] = w.FINE
+    kind, arg = world.move_kind[move], world.move_arg[move]
+    if kind == w.TICK:
+        return tick(world, do, arg, variant, choice)
+    if kind == w.PC_TICK:
+        return pc_tick(world, do, variant)
+    if kind == w.SOON:
+        return soon(world, do, arg, choice)
+    if kind == w.DELIVER:
+        return hear(world, do, arg, choice)
+    if kind == w.LOSE:
+        rows.spend(world, w.LOSS)
+        rows.drop(world, arg)
+    elif kind == w.CUT_LINK:
+        rows.spend(world, w.CUT)
+        change_link(world, arg, 1)
+    elif kind == w.HEAL_LINK:
+        rows.spend(world, w.HEAL)
+        change_link(world, arg, 0)
+    else:
+        rows.spend(world, w.RESTART)
+        rows.load_pc(world)
+        do.sink.on_start(world.pc, world.params[0], 0, const.MEMORY_LOST, world.out)
+        world.out.count[0] = 0
+        rows.save_pc(world)
+    return 1
+
+
+def settle(world, do):
+    """Everything in flight arrives, and what that sets off; 0 if it never ends."""
+    for _ in range(200):
+        moved = False
+        for way in range(world.at[w.DIRECTIONS]):
+            while queued(world, way) > 0:
+                hear(world, do, way, rows.next_draw(world))
+                moved = True
+        for c in range(world.at[w.CELLS]):
+            if world.work[world.cell_at[c] + w.FLAGS] & rows.IS_SOON:
+                soon(world, do, c, rows.next_draw(world))
+                moved = True
+        if not moved:
+            return True
+    return False
+
+
+def turn(world, do, node):
+    """A node ticks in the fair schedule, and is heard before the next one does."""
+    if node == world.at[w.CELLS]:
+        pc_tick(world, do, 0)
+    else:
+        tick(world, do, node, 0, rows.next_draw(world))
+    return settle(world, do)
+
+
+def bind(skin: Any, skin_sink: Any) -> System:
+    """The moves of a skin for a copy of its protocol: modules `skin` and `skin_sink`."""
+    do = bound("protocol", cell=skin, sink=skin_sink)
+
+    def start_all(world):  # type: ignore[no-untyped-def]
+        start(world, do)
+
+    def make_move(world, move, variant, choice):  # type: ignore[no-untyped-def]
+        return step(world, do, move, variant, choice)
+
+    def settle_all(world):  # type: ignore[no-untyped-def]
+        return settle(world, do)
+
+    def take_turn(world, node):  # type: ignore[no-untyped-def]
+        return turn(world, do, node)
+
+    parts = (make_move, settle_all, take_turn)
+    return System(parts, start_all, variants, make_move, check, settle_all, take_turn, is_settled)
