@@ -96,13 +96,11 @@ def test_nothing_is_taken_twice_or_on_another_path(make):
             a.frame(bytes([k]))
         await settle()
         assert b.frames() == [bytes([k]) for k in range(5)]
-        recorded = [data for data in a.said if data[0] == seal.FRAME]
-        for data in recorded:
+        for data in [data for data in a.said if data[0] == seal.FRAME]:
             b.hear(data)
         assert len(b.got) == 5
         assert b.sealer.dropped == {"sealed: replayed": 5}
-        elsewhere = Wire("elsewhere")
-        begin(b.sealer, b, elsewhere)  # its sessions are over
+        begin(b.sealer, b, elsewhere := Wire("elsewhere"))  # its sessions are over
         for data in a.said:
             b.hear(data)
             elsewhere.hear(data)
