@@ -81,8 +81,7 @@ import os, time
 until = time.monotonic() + 1.5
 
 def wait():  # an interrupt that comes here is swallowed
-    while time.monotonic() < until:
-        pass
+    time.sleep(max(0, until - time.monotonic()))
 
 def count():
     global forks
