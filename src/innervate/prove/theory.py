@@ -10,6 +10,7 @@ from typing import Any
 from innervate.dialect.source import Change, Function, functions, reached
 from innervate.kernel.stop import ends_at_once
 from innervate.prove.check import Checked, Explainer, Way, check, unreached
+from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
 from innervate.prove.tell import changes
 from innervate.prove.terms import Term
@@ -61,6 +62,16 @@ def is_touched(step: Step) -> bool:
     asked = known.asked & known.changed
     known.asked.clear()
     return bool(asked) or not known.changed
+
+
+def check_change(change: Change | None, *entries: str) -> None:
+    """Nothing is proved of a mistake that none of these entries' functions has.
+
+    Raises:
+        ProveError: the mistake to plant is in none of the sources.
+    """
+    if change is not None and not any(is_in(entry, change) for entry in entries):
+        raise ProveError(f"{change[0]!r} is in no source that is proved")
 
 
 def is_in(entry: str, change: Change) -> bool:

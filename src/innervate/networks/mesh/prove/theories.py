@@ -13,12 +13,11 @@ from innervate.networks.mesh.protocol import fields
 from innervate.networks.mesh.protocol.duplicates import ANEW, BITS, FLOODED
 from innervate.networks.mesh.protocol.fields import FORWARDED, WINDOW_WORDS
 from innervate.networks.mesh.prove import hops
-from innervate.prove.errors import ProveError
 from innervate.prove.mutants import planted
 from innervate.prove.records import Record, Store
 from innervate.prove.steps import Goal, Stage, Step, own_goals
 from innervate.prove.terms import Term
-from innervate.prove.theory import Theory, is_in, source
+from innervate.prove.theory import Theory, check_change, source
 
 ENTRY = "innervate.networks.mesh.protocol.node"
 ORIGINS = 2
@@ -66,8 +65,7 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     Raises:
         ProveError: the mistake to plant is in none of the sources.
     """
-    if change is not None and not is_in(ENTRY, change):
-        raise ProveError(f"{change[0]!r} is in no source that is proved")
+    check_change(change, ENTRY)
     known = source(ENTRY, change)
     return [
         Theory("mesh, delivery", "A packet that was delivered is not delivered again.", ASSUMED,

@@ -10,11 +10,10 @@ from typing import Any
 from innervate.dialect.source import Change
 from innervate.networks.radio.protocol import fields
 from innervate.networks.radio.prove import missed, turns
-from innervate.prove.errors import ProveError
 from innervate.prove.mutants import planted
 from innervate.prove.steps import Goal, Stage, Step, own_goals
 from innervate.prove.terms import Term
-from innervate.prove.theory import Theory, is_in, source
+from innervate.prove.theory import Theory, check_change, source
 
 ENTRY = "innervate.networks.radio.protocol.practical"
 STATION = (*fields.STATION, *fields.PRACTICAL)
@@ -47,8 +46,7 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     Raises:
         ProveError: the mistake to plant is in none of the sources.
     """
-    if change is not None and not is_in(ENTRY, change):
-        raise ProveError(f"{change[0]!r} is in no source that is proved")
+    check_change(change, ENTRY)
     known = source(ENTRY, change)
     claim = "A packet that is taken waits in the queue, and none that waits is lost or changed."
     return [

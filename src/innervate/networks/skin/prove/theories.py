@@ -21,10 +21,9 @@ from innervate.networks.skin.prove import (
 from innervate.networks.skin.prove.faults import EXPLORERS, MUTANTS
 from innervate.networks.skin.prove.neighbours import ANY_RULE, ENTRY, base_of
 from innervate.networks.skin.prove.words import tell
-from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
 from innervate.prove.terms import Term
-from innervate.prove.theory import Theory, is_in
+from innervate.prove.theory import Theory, check_change
 
 __all__ = ["EXPLORERS", "MUTANTS", "theories"]
 
@@ -81,8 +80,7 @@ def theories(_network: Any, change: Change | None = None) -> list[Theory]:
     Raises:
         ProveError: the mistake to plant is in none of the sources.
     """
-    if change is not None and not any(is_in(entry, change) for entry in (ENTRY, pc.ENTRY)):
-        raise ProveError(f"{change[0]!r} is in no source that is proved")
+    check_change(change, ENTRY, pc.ENTRY)
     return [
         Theory("skin, the PC", "It announces distance 0 and its number, which only rises.",
                (), pc.steps(change), UNREACHABLE, tell=tell, simple=simple),
