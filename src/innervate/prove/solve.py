@@ -5,7 +5,7 @@ The only door to z3, which is an extra.
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from contextlib import suppress
 from typing import Any
 
@@ -231,13 +231,15 @@ class Question:
         thread = threading.Thread(target=think)
         try:
             thread.start()
-            thread.join()
+            wait([said])  # not for the thread: a `join` that is interrupted takes it for ended
         except KeyboardInterrupt:
-            while thread.is_alive():  # what is let go of now it may still be thinking of
+            while not said.done():  # what is let go of now it may still be thinking of
                 with suppress(KeyboardInterrupt):
                     solver.ctx.interrupt()
-                    thread.join(BREAK_S)
+                    wait([said], BREAK_S)
             raise
+        finally:
+            thread.join()
         return said.result()
 
     def holds(self, term: Term) -> bool:
