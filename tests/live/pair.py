@@ -1,6 +1,7 @@
 """Sealers joined by wires inside a program, which lose, twist and repeat what they are told."""
 
 import asyncio
+import functools
 
 from innervate.live.identity import enrol, signing_public
 from innervate.live.keys import Sealer, ring_of
@@ -55,8 +56,14 @@ def network_sealer(number, keys=None, use=None, **more):
 
 
 def own_sealer(number, serial=None, authority=AUTHORITY, state=None, kind="mesh"):
-    identity = enrol(authority, number, number + 100 if serial is None else serial, SHARED)
+    identity = identity_of(authority, number, number + 100 if serial is None else serial)
     return Sealer(ring_of(kind, {}, 0, identity), number, state or State(None))
+
+
+@functools.cache
+def identity_of(authority, number, serial):
+    """A node that is started anew has the file that it had."""
+    return enrol(authority, number, serial, SHARED)
 
 
 def public_authority():
