@@ -161,9 +161,9 @@ def _twice(traffic: Traffic) -> list[str]:
 def _false(traffic: Traffic) -> list[str]:
     if not traffic.false:
         return []
-    which = "the robot was" if traffic.false == 1 else "the robots were"
+    each = "" if traffic.false == 1 else "each "
     return [f"{number_of(traffic.false, 'alarm')} {verb(traffic.false, 'was')} false, "
-            f"{which} inside"]  # fmt: skip
+            f"{each}of a robot that was inside"]  # fmt: skip
 
 
 def _came(traffic: Traffic, nodes: int) -> list[str]:

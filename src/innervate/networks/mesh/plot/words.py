@@ -128,10 +128,9 @@ def _false(alarms: Mapping[str, Any]) -> list[str]:
     false = alarms.get("false", 0)
     if not false:
         return []
-    were = "was" if false == 1 else "were"
+    were = "was false, of a robot that was" if false == 1 else "were false, of robots that were"
     rate = figure_words(alarms["false_per_hour"], 2)
-    return [f"{number_of(false, 'alarm')} {were} false: the robot was inside until it took it "
-            f"back, {rate} times per hour of a robot."]  # fmt: skip
+    return [f"{number_of(false, 'alarm')} {were} inside: {rate} per robot and hour."]
 
 
 def _undecided(count: int) -> list[str]:
