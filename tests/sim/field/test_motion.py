@@ -19,7 +19,7 @@ def world_of(*points, moving=1):
     return Of(
         run=[Of(moving=moving, **run)],
         radios=[Of(x=0, y=0, state=ALIVE) for _ in range(3)], item=[Of(x=9, y=9, vx=9, vy=9)],
-        walks=[Of(node=1, point=1, last=len(points), placed=0)],
+        walks=[Of(node=1, point=1, last=len(points), placed=0, noise=0)],
         points=[Of(time=time, x=x, y=y) for time, x, y in path],
     )  # fmt: skip
 
@@ -78,7 +78,7 @@ def test_a_place_is_told_to_who_is_on_in_units_from_the_corner(place, unit, told
     run, radio = world.run[0], world.radios[1]
     run.origin_x, run.origin_y, run.unit = 200, -300, unit
     (radio.x, radio.y), radio.state = place, state
-    assert motion.tell_place(world, 1) == (state == ALIVE)
+    assert motion.tell_place(world, 0) == (state == ALIVE)
     assert (world.item[0].x, world.item[0].y) == told
 
 

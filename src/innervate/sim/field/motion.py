@@ -1,6 +1,7 @@
 """Robots move: where they are, what their radio links are worth there, what they are told."""
 
-from innervate.sim.field import medium, powers
+from innervate.dialect.rng import LOW15, step
+from innervate.sim.field import astray, medium, powers
 from innervate.sim.field.states import ALIVE
 from innervate.topology.placement import UNHEARD
 
@@ -34,14 +35,31 @@ def walk_on(world, index, time):
         renew(world, walk.node)
 
 
-def tell_place(world, node):
-    """The item's position, in units relative to the fence's corner."""
-    run, radio, item = world.run[0], world.radios[node], world.item[0]
-    x = (radio.x - run.origin_x + run.unit // 2) // run.unit
-    y = (radio.y - run.origin_y + run.unit // 2) // run.unit
-    item.x = min(max(x, -PLACE_MAX), PLACE_MAX)
-    item.y = min(max(y, -PLACE_MAX), PLACE_MAX)
-    return world.radios[node].state == ALIVE
+def tell_place(world, index):
+    """Where the walker believes to be as the item's position, in units from the fence's corner."""
+    run, walk, item = world.run[0], world.walks[index], world.item[0]
+    radio = world.radios[walk.node]
+    x, y = radio.x - run.origin_x, radio.y - run.origin_y
+    if walk.noise > 0:
+        err(world, walk)
+        x += astray.centimetres(walk.noise, walk.off_x)
+        y += astray.centimetres(walk.noise, walk.off_y)
+    item.x = min(max((x + run.unit // 2) // run.unit, -PLACE_MAX), PLACE_MAX)
+    item.y = min(max((y + run.unit // 2) // run.unit, -PLACE_MAX), PLACE_MAX)
+    return radio.state == ALIVE
+
+
+def err(world, walk):
+    """The walker's next error, of which `keep` is the last one and `fresh` is new."""
+    walk.off_x = astray.next_of(walk.off_x, walk.keep, walk.fresh, normal(world, walk))
+    walk.off_y = astray.next_of(walk.off_y, walk.keep, walk.fresh, normal(world, walk))
+
+
+def normal(world, walk):
+    """A normally distributed number from the walker's own stream."""
+    high = step(walk.rng)
+    walk.rng = step(high)
+    return astray.normal(world.normals, (high & LOW15) << 15 | (walk.rng & LOW15))
 
 
 def renew(world, node):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.mesh.analysis.alarms import Crossing, alarms, all_crossings
+from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm, alarms, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.protocol.constants import (
     ALARM,
@@ -147,9 +147,14 @@ def test_the_summary_counts_what_is_decided():
         one(flooded=True),  # no more than it was accepted
         one(open=True, raised_us=5 * S, raised_by=WITNESS, warned_us=1, flooded=True),
     ]  # fmt: skip
-    assert alarms(found) == {
+    false = [FalseAlarm(ROBOT, 5 * S, ROBOT, 6 * S, accepted_us, 1.0)
+             for accepted_us in (5 * S + 1, NEVER, 5 * S + 2)]  # fmt: skip
+    assert alarms(found, false, 1.5) == {
         "sent": 6, "delivered": 3, "noticed": 3, "by_witness": 1, "by_flood": 1, "warned": 2,
         "latency_ms": {"p50": pytest.approx(3.0), "p99": pytest.approx(3.98), "max": 4.0},
         "overrun_m": {"p50": 2.0, "p99": 2.0, "max": 2.0},
         "warning_ms": {"p50": pytest.approx(750.0), "p99": pytest.approx(995.0), "max": 1000.0},
+        "after_ms": {"p50": 1002.0, "p99": pytest.approx(1003.96), "max": 1004.0},
+        "false": 3, "false_delivered": 2, "false_per_hour": 2.0,
     }  # fmt: skip
+    assert alarms(found)["false_per_hour"] is None

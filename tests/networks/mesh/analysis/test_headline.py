@@ -62,6 +62,8 @@ def test_all_is_well_only_if_nothing_is_missing():
      "2 of 9 broadcasts did not reach every node that was on", (1,)),
     ({"doubled": 1}, "1 message came twice", ()),
     ({"looped": 31}, "31 packets met a node twice on the way", ()),
+    ({"false": 1, "about": (2,)}, "1 alarm was false, of a robot that was inside", (2,)),
+    ({"false": 12}, "12 alarms were false, each of a robot that was inside", ()),
 ])  # fmt: skip
 def test_what_was_lost_or_came_twice_is_in_the_headline(change, words, nodes):
     found = headline(all_well(), WELL._replace(**change))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.mesh.analysis.alarms import Crossing
+from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm
 from innervate.networks.mesh.analysis.headline import Traffic, traffic
 from innervate.networks.mesh.analysis.messages import NEVER, messages
 from innervate.networks.mesh.protocol.constants import REPORT_ACCEPTED
@@ -37,6 +37,9 @@ def test_what_is_decided_is_counted_and_who_it_is_about_is_named():
     assert found == Traffic(decided=3, delivered=2, crossings=3, learned=1, doubled=5, looped=6,
                             flows=True, about=(1, 2))  # fmt: skip
     assert traffic(sent(True), [], 0, 0, []).about == ()
+    false = [FalseAlarm(robot, S, robot, 2 * S, NEVER, 0.5) for robot in (4, 4, 3)]
+    found = traffic(sent(True), [crossing(2)], 0, 0, [], false)
+    assert (found.false, found.about, found.crossings, found.learned) == (3, (2, 3, 4), 1, 0)
     assert traffic(sent(), [crossing(3, 2 * S)], 0, 0, []) == Traffic(crossings=1, learned=1)
 
 

@@ -44,6 +44,23 @@ def test_it_begins_an_eighth_before_and_ends_a_fifth_after_what_happened(accepte
     assert (low - CROSSED, high - CROSSED) == shown
 
 
+@pytest.mark.parametrize(("raised", "accepted", "shown"), [
+    (-12_500, 100_000, (-12_500, 120_000)), (-200_000, 100_000, (-237_500, 120_000)),
+    (-200_000, -195_000, (-202_500, 24_000)), (-4_000_000, -3_990_000, (-4_002_500, -3_976_000)),
+])  # fmt: skip
+def test_an_alarm_that_came_before_the_crossing_is_seen(raised, accepted, shown):
+    """With the crossing, if that is not too long for a film."""
+    one = {"raised_us": CROSSED + raised, "accepted_us": CROSSED + accepted}
+    low, high = film.window(crossing(**one), 9_000_000)
+    assert (low - CROSSED, high - CROSSED) == shown
+    result = result_of()
+    result.ended_us = 9_000_000
+    said = film.film(result, crossing(**one), Sheet(result.plan)).render()
+    assert said.index("robot n2 is inside") < said.index("the robot raises the alarm")
+    if accepted < 0:
+        assert said.index("the monitor knows") < said.index("robot n2 has left")
+
+
 ROWS = [
     # (from and to after the crossing in us, who, to whom, kind, flags, path, receivers)
     (-40_000, -20_000, 0, 1, DATA, 0, 1, 1),  # before the film

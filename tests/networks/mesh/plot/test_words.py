@@ -43,6 +43,15 @@ def test_how_many_crossings_the_monitor_learned_of(sent, came, said):
     assert words._alarms(alarms(sent, came)) == said
 
 
+@pytest.mark.parametrize(("false", "said"), [
+    (0, []), (1, ["1 alarm was false, of a robot that was inside: 90 per robot and hour."]),
+    (3, ["3 alarms were false, of robots that were inside: 90 per robot and hour."]),
+])  # fmt: skip
+def test_how_many_alarms_were_false(false, said):
+    assert words._false({"false": false, "false_per_hour": 90.0}) == said
+    assert words._false({}) == []
+
+
 def test_a_crossing_too_shortly_before_the_end_is_told_though_it_counts_in_nothing():
     """A robot is outside, the monitor is off, and no figure says so yet."""
     run = innervate.run({

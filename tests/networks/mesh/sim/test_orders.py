@@ -89,7 +89,7 @@ def test_who_is_off_is_given_nothing_and_that_is_counted(given, state):
 def test_a_robot_learns_its_place_again_and_again(given, monkeypatch, is_on):
     walked = []
     monkeypatch.setattr(motion, "walk_on", lambda _world, *what: walked.append(what))
-    monkeypatch.setattr(motion, "tell_place", lambda _world, node: is_on and node == 1)
+    monkeypatch.setattr(motion, "tell_place", lambda _world, index: is_on and index == 1)
     world = Of(walks=[None, Of(node=1)], run=[Of(sample=500)], heap=Of(keys=[0] * 4, size=[0]))
     orders.sample(world, None, 1, 70)
     assert walked == [(1, 70)]

@@ -47,6 +47,7 @@ def plans(draw):
         (at, what, i, j) for at, what, i, j in trouble if i != j or what not in (CUT, RESTORE)
     ]
     robot = draw(node)
+    errs = draw(st.sampled_from([(0, 0), (400_000, 0), (90_000_000, 50_000)]))
     plan = mesh_plan(
         n,
         radio(n, links, chance, **more),
@@ -59,7 +60,7 @@ def plans(draw):
         starts_us=[700 * i for i in range(n)],
         positions_cm=[(places[2 * i], places[2 * i + 1]) for i in range(n)],
         robots=[int(i == robot) for i in range(n)],
-        walks=[Walk(robot, ((0, 0, 0), (END_US // 2, 900, 400), (END_US, 900, -100)))],
+        walks=[Walk(robot, ((0, 0, 0), (END_US // 2, 900, 400), (END_US, 900, -100)), *errs)],
     )
     plan.offers = [
         Offer(at, i, draw(st.sampled_from([255, (i + 1) % n])), 0, size, 0)

@@ -25,8 +25,9 @@ def recorder(engine, monkeypatch):
     """A recorder that tells how often it counts, and of what."""
     made = TrafficRecorder(engine)
     made.counted = []
-    for name in ("all_crossings", "duplicates", "looped"):
+    for name in ("duplicates", "looped"):
         monkeypatch.setattr(room, name, lambda result: 0)
+    monkeypatch.setattr(room, "judged", lambda result: ([], []))
     monkeypatch.setattr(room, "messages", lambda result: made.counted.append(result))
     monkeypatch.setattr(room, "traffic", lambda *given: len(made.counted))
     return made

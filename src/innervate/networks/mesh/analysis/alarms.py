@@ -1,5 +1,11 @@
-"""Crossings of a mesh's fence: who noticed, when the monitor knew, how far the robot got."""
+"""Crossings of a mesh's fence: who noticed, when the monitor knew, how far the robot got.
 
+Whether a robot is outside is judged by where it is, not by where it believes to be. An alarm is of
+a crossing if it stood while the robot was outside, though it was raised before; else it is false.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,6 +13,7 @@ import numpy as np
 from innervate.analysis.percentiles import usual
 from innervate.networks.mesh.analysis.fence import Edge, crossings, edges_of, margin_cm, overrun_cm
 from innervate.networks.mesh.analysis.messages import NEVER, timeout_us
+from innervate.networks.mesh.analysis.said import Said, said
 from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
 from innervate.networks.mesh.scenario.plan import position_cm
@@ -25,7 +32,7 @@ class Crossing(NamedTuple):
     crossed_us: int  # when it truly did; 0 if it begins outside
     back_us: int  # when it came back inside; the run's end if it did not
     # the sample at which somebody raised the alarm, NEVER if nobody did; with its place
-    # rounded a robot can be outside just before it truly is
+    # rounded, or wrong, a robot can be outside before it truly is
     raised_us: int
     raised_by: int  # who that was: the robot, or a witness of its beacon
     accepted_us: int  # when the monitor's user had the first alarm of it, NEVER if it did not
@@ -39,32 +46,59 @@ class Crossing(NamedTuple):
     open: bool  # not accepted, but too shortly before the run's end to say that it was lost
 
 
+class FalseAlarm(NamedTuple):
+    """A robot is said to be outside, and is inside all the time."""
+
+    robot: int  # its node
+    raised_us: int
+    raised_by: int  # who that was: the robot, or a witness of its beacon
+    until_us: int  # when it was taken back; the run's end if it was not
+    accepted_us: int  # when the monitor's user had it, NEVER if it did not
+    inside_m: float  # how far from the fence the robot was when it was raised
+
+
+class Judged(NamedTuple):
+    """All alarms of a run held against where the robots were, in order of time."""
+
+    crossings: list[Crossing]
+    false: list[FalseAlarm]
+
+
 def all_crossings(result: Any) -> list[Crossing]:
     """Every crossing of a run, in order of time; none without a fence."""
-    plan = result.plan
+    return judged(result).crossings
+
+
+def judged(result: Any) -> Judged:
+    """Every crossing of a run, and every alarm that is of none; none without a fence."""
+    plan, found, false = result.plan, [], []
     edges = edges_of(plan)
     if not edges:
-        return []
+        return Judged([], [])
     rows = result.rows[result.rows["code"] == REPORT_ALARM]
     alarms = np.flatnonzero(result.delivered["kind"] == ALARM)
-    found = []
     for walk in plan.walks:
         told = alarms[result.delivered["body0"][alarms] == walk.node]
         raised = rows[(rows["b"] == walk.node) & (rows["a"] == CROSS)]
-        episodes = _episodes(plan, edges, walk, result.ended_us)
-        befores = [0, *(back_us for _, back_us in episodes)]
-        seen = [_seen_from(plan, edges, walk, before, out_us)
-                for before, (out_us, _) in zip(befores, episodes, strict=False)]  # fmt: skip
-        untils = [*seen[1:], result.ended_us]
-        for spans in zip(befores, seen, episodes, untils, strict=False):
+        stood = said(result, walk.node)
+        stays = _stays(plan, edges, walk, result.ended_us, stood)
+        befores = [0, *(back_us for _, back_us in stays)]
+        windows = _windows(plan, edges, walk, stays, stood, result.ended_us)
+        for before, (since, until), stay in zip(befores, windows, stays, strict=False):
+            spans = (before, since, stay, until)
             found.append(_crossing(result, edges, walk, spans, raised, told))
-    return sorted(found, key=lambda crossing: (crossing.crossed_us, crossing.robot))
+        false += _false(result, edges, walk, list(zip(windows, stays, strict=True)), stood, told)
+    return Judged(sorted(found, key=lambda one: (one.crossed_us, one.robot)),
+                  sorted(false, key=lambda one: (one.raised_us, one.robot)))  # fmt: skip
 
 
-def _episodes(plan: Any, edges: list[Edge], walk: Any, until_us: int) -> list[tuple[int, int]]:
+def _stays(
+    plan: Any, edges: list[Edge], walk: Any, until_us: int, stood: list[Said]
+) -> list[tuple[int, int]]:
     """(out, back) of every stay outside; what is out again before it was well inside is one stay.
 
     The protocol calls a robot inside again from `clear_margin` on, so only then it can cross anew.
+    One that errs may be well inside and not know it: then the alarm stands, and it is one stay.
     Who begins outside is so from time 0 on, for which it raises the alarm, too.
     """
     outside = margin_cm(edges, position_cm(walk, 0)) < 0
@@ -75,7 +109,10 @@ def _episodes(plan: Any, edges: list[Edge], walk: Any, until_us: int) -> list[tu
         if not crossing.outward:
             if found:
                 found[-1] = (found[-1][0], at)
-        elif found and not _well_inside(plan, edges, walk, found[-1][1], at, clear_cm):
+        elif found and not (
+            _well_inside(plan, edges, walk, found[-1][1], at, clear_cm)
+            and not (walk.noise_um and _stands(stood, found[-1][1], at))
+        ):
             found[-1] = (found[-1][0], until_us)
         else:
             found.append((at, until_us))
@@ -90,6 +127,52 @@ def _well_inside(
         margin_cm(edges, position_cm(walk, at)) > clear_cm
         for at in range(since_us, until_us, plan.sample_us)
     )
+
+
+def _stands(stood: list[Said], since_us: int, until_us: int) -> bool:
+    """True if an alarm stood all the time."""
+    return any(one.raised_us <= since_us and one.until_us >= until_us for one in stood)
+
+
+def _windows(
+    plan: Any, edges: list[Edge], walk: Any, stays: list[tuple[int, int]], stood: list[Said],
+    ended_us: int,
+) -> list[tuple[int, int]]:  # fmt: skip
+    """From when to when alarms are of each stay.
+
+    Of a robot that errs, from the first that stood while it was outside to the next that did not.
+    """
+    if not walk.noise_um:
+        befores = [0, *(back_us for _, back_us in stays)]
+        seen = [_seen_from(plan, edges, walk, before, out_us)
+                for before, (out_us, _) in zip(befores, stays, strict=False)]  # fmt: skip
+        return list(pairwise([*seen, ended_us]))
+    found = []
+    for out_us, back_us in stays:
+        its = [one for one in stood if one.raised_us <= back_us and one.until_us > out_us]
+        later = [one.raised_us for one in stood if one.raised_us > back_us]
+        found.append((its[0].raised_us, min([*later, ended_us])) if its else (out_us, out_us))
+    return found
+
+
+def _false(
+    result: Any, edges: list[Edge], walk: Any,
+    stays: list[tuple[tuple[int, int], tuple[int, int]]], stood: list[Said], told: Any,
+) -> list[FalseAlarm]:  # fmt: skip
+    """Alarms that are of no stay outside; `stays` with the windows of their alarms."""
+    rows, found = result.delivered, []
+    crossed = told[rows["body3"][told] == CROSS]
+    nexts = [*(one.raised_us for one in stood[1:]), result.ended_us]
+    for one, until in zip(stood, nexts, strict=False):
+        if any(one.raised_us <= back_us and (one.until_us > out_us or one.raised_us >= since)
+               for (since, _), (out_us, back_us) in stays):  # fmt: skip
+            continue
+        times = rows["time"][crossed]
+        came = times[(times >= one.raised_us) & (times < until)][:1]
+        inside_cm = margin_cm(edges, position_cm(walk, one.raised_us))
+        accepted = int(came[0]) if len(came) else NEVER
+        found.append(FalseAlarm(*one, accepted, inside_cm / 100))
+    return found
 
 
 def _crossing(
@@ -133,8 +216,18 @@ def _seen_from(plan: Any, edges: list[Edge], walk: Any, before_us: int, out_us: 
     return max(at, before_us)
 
 
-def alarms(found: list[Crossing]) -> Alarms:
-    """The summary's part on alarms; a crossing that nobody noticed counts as not delivered."""
+def robot_hours(result: Any) -> float:
+    """How long all robots together were in the run."""
+    return float(len(result.plan.walks) * result.ended_us / 3.6e9)
+
+
+def alarms(
+    found: list[Crossing], false: Sequence[FalseAlarm] = (), hours: float = 0.0
+) -> Alarms:
+    """The summary's part on alarms; a crossing that nobody noticed counts as not delivered.
+
+    `hours` are those of all robots together, 0 if there is none.
+    """
     decided = [crossing for crossing in found if not crossing.open]
     came = [crossing for crossing in decided if crossing.accepted_us != NEVER]
     warned = [c for c in decided if c.warned_us != NEVER]
@@ -150,4 +243,8 @@ def alarms(found: list[Crossing]) -> Alarms:
         "by_flood": sum(crossing.flooded for crossing in came),
         "warned": len(warned),
         "warning_ms": usual([c.crossed_us - c.warned_us for c in warned], 1e-3),
+        "after_ms": usual([c.accepted_us - c.crossed_us for c in came], 1e-3),
+        "false": len(false),
+        "false_delivered": sum(one.accepted_us != NEVER for one in false),
+        "false_per_hour": len(false) / hours if hours else None,
     }

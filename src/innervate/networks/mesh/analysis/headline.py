@@ -16,7 +16,7 @@ from innervate.analysis.headline import (
     verb,
 )
 from innervate.kernel.words import number_of
-from innervate.networks.mesh.analysis.alarms import Crossing
+from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
 from innervate.networks.mesh.analysis.reach import Ways
 from innervate.networks.mesh.scenario.nodes import listed
@@ -37,6 +37,7 @@ class Traffic(NamedTuple):
     flows: bool = False  # something came since the newest fault, or there was no fault
     # senders of what did not come, and robots that the monitor does not know are out
     about: tuple[int, ...] = ()
+    false: int = 0  # alarms of robots that were inside
 
 
 NOTHING_KNOWN = Traffic()
@@ -65,7 +66,7 @@ def headline(
 
     `elsewhere` are nodes of which only others' words are known, which are believed.
 
-    degraded: a message or an alarm was lost or came twice, a broadcast missed somebody, a packet
+    degraded: a message or an alarm was lost or came twice, an alarm was false, a broadcast missed somebody, a packet
     met a node twice, a node is off, cut off or without a way, the network is in parts. down:
     nobody's messages get through to a gateway, nor did anything come to anybody else since, or
     the only node hears nobody. no data: nobody has heard a gateway yet.
@@ -75,7 +76,8 @@ def headline(
         return Headline(NO_DATA, "No node leads as gateway yet.")
     if len(ways.on) == 1 and ways.leads.all() and not elsewhere.heard:
         return Headline(DOWN, "The only node leads, and hears nobody.", (0,))
-    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere), *_twice(traffic)]
+    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere), *_twice(traffic),
+            *_false(traffic)]  # fmt: skip
     came, afar = _came(traffic, len(ways.on)), _afar(elsewhere)
     if not said:
         return Headline(OK, sentence([*came, _reached(ways, elsewhere.leads), *afar]))
@@ -156,6 +158,14 @@ def _twice(traffic: Traffic) -> list[str]:
     return found
 
 
+def _false(traffic: Traffic) -> list[str]:
+    if not traffic.false:
+        return []
+    each = "" if traffic.false == 1 else "each "
+    return [f"{number_of(traffic.false, 'alarm')} {verb(traffic.false, 'was')} false, "
+            f"{each}of a robot that was inside"]  # fmt: skip
+
+
 def _came(traffic: Traffic, nodes: int) -> list[str]:
     """What came, as far as it all did; where there is nobody else, no broadcast did."""
     said = []
@@ -193,8 +203,9 @@ def _afar(elsewhere: Elsewhere) -> list[str]:
 
 
 def traffic(
-    found: Messages, crossings: Sequence[Crossing], doubled: int, looped: int, faults: Any
-) -> Traffic:
+    found: Messages, crossings: Sequence[Crossing], doubled: int, looped: int, faults: Any,
+    false: Sequence[FalseAlarm] = (),
+) -> Traffic:  # fmt: skip
     """The traffic of a run, so far."""
     decided = counted(found)
     came = decided.state == DELIVERED
@@ -215,5 +226,6 @@ def traffic(
         doubled=doubled,
         looped=looped,
         flows=bool(late.any()),
-        about=tuple(sorted({*unheard, *missing})),
+        about=tuple(sorted({*unheard, *missing, *(one.robot for one in false)})),
+        false=len(false),
     )

@@ -9,7 +9,7 @@ from innervate.analysis.summary_common import measured
 from innervate.networks.mesh.analysis import messages
 from innervate.networks.mesh.analysis import network as network
 from innervate.networks.mesh.analysis import summary_keys as keys
-from innervate.networks.mesh.analysis.alarms import alarms, all_crossings
+from innervate.networks.mesh.analysis.alarms import alarms, judged, robot_hours
 from innervate.networks.mesh.analysis.headline import headline, traffic
 from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.reach import of_simulation
@@ -26,9 +26,10 @@ def summarize(result: Any) -> keys.MeshSummary:
     plan, counts = result.plan, result.counts
     found, kinds = messages.messages(result), network.acked_kinds(result.sent)
     led, ground = network.gateways(result), Ground(plan)
-    crossings = all_crossings(result)
+    crossings, false = judged(result)
     again, met = messages.duplicates(result), looped(result)
-    sent = traffic(found, crossings, again, met, messages.took_effect(plan, result.ended_us))
+    faults = messages.took_effect(plan, result.ended_us)
+    sent = traffic(found, crossings, again, met, faults, false)
     return {
         "kind": plan.kind,
         "name": plan.scenario.name,
@@ -39,7 +40,7 @@ def summarize(result: Any) -> keys.MeshSummary:
         "discovery": network.discovery(result, kinds),
         "delivery_ratio": messages.delivery_ratio(found),
         "latency_ms": usual(messages.latencies_us(found), 1e-3),
-        "alarms": alarms(crossings),
+        "alarms": alarms(crossings, false, robot_hours(result)),
         "duplicates": again,
         "looped": met,
         "control_bytes": network.control_bytes(result, kinds),

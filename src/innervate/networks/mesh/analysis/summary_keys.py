@@ -42,6 +42,10 @@ class Alarms(TypedDict):
         by_flood: the flooded copy came first.
         warned: crossings that the monitor was told of before.
         warning_ms: how long before.
+        after_ms: from the crossing to the monitor; below 0 if the alarm came before it.
+        false: alarms of robots that were inside until they were taken back.
+        false_delivered: those that the monitor had.
+        false_per_hour: false alarms per hour of each robot; None without robots.
     """
 
     sent: int
@@ -53,6 +57,10 @@ class Alarms(TypedDict):
     by_flood: int
     warned: int
     warning_ms: Percentiles
+    after_ms: Percentiles
+    false: int
+    false_delivered: int
+    false_per_hour: float | None
 
 
 class Counts(TypedDict):

@@ -37,7 +37,12 @@ def window(crossing: Crossing, ended_us: int) -> tuple[int, int]:
     if end == NEVER:
         end = min(ended_us, crossing.crossed_us + WINDOW_US)
     long = min(max(end - crossing.crossed_us, 20_000), WINDOW_US)
-    return crossing.crossed_us - long // 8, crossing.crossed_us + long + long // 5
+    low, high = crossing.crossed_us - long // 8, crossing.crossed_us + long + long // 5
+    if NEVER < crossing.raised_us < low:  # by a robot that errs: the alarm alone, if that is long
+        long = max(end - crossing.raised_us, 20_000)
+        low = crossing.raised_us - long // 8
+        high = high if high - low <= WINDOW_US else min(crossing.raised_us + long + long // 5, high)
+    return low, high
 
 
 class _Crossing:
@@ -153,7 +158,7 @@ class _Crossing:
             out = f"{figure_words(crossing.overrun_m, 2)} m out"
             found.append((crossing.accepted_us, f"the monitor knows, {took} later: robot {out}",
                           "strong heavy"))  # fmt: skip
-        return found
+        return [found[0], *sorted(found[1:], key=lambda phase: phase[0])]
 
     def _axis(self) -> None:
         """Time below the field, what happened when, and where the film is."""

@@ -91,6 +91,7 @@ def sentences(result: Any, summary: Mapping[str, Any]) -> list[str]:
     """What happened, for somebody who knows nothing of it; alarms first, they matter most."""
     return [
         *_alarms(summary["alarms"]),
+        *_false(summary["alarms"]),
         *_undecided(sum(crossing.open for crossing in all_crossings(result))),
         *_messages(summary),
         *_uncounted(summary["messages"]),
@@ -120,6 +121,16 @@ def _alarms(alarms: Mapping[str, Any]) -> list[str]:
         f"{crossings} of the fence, and the monitor learned {many}: {slowest} {latency}, "
         f"no robot got farther out than {figure_words(overrun, 2)} m by then."
     ]
+
+
+def _false(alarms: Mapping[str, Any]) -> list[str]:
+    """Alarms of robots that were inside; folders of older versions do not say."""
+    false = alarms.get("false", 0)
+    if not false:
+        return []
+    were = "was false, of a robot that was" if false == 1 else "were false, of robots that were"
+    rate = figure_words(alarms["false_per_hour"], 2)
+    return [f"{number_of(false, 'alarm')} {were} inside: {rate} per robot and hour."]
 
 
 def _undecided(count: int) -> list[str]:

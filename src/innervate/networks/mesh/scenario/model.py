@@ -172,6 +172,8 @@ class RobotTable(keys.Table, frozen=True, kw_only=True):
     speed_mps: Annotated[float, keys.number("m/s", 0.001, 100)] = 1.0
     start_s: Seconds = 0.0
     pause_s: Seconds = 0.0
+    position_noise_m: Annotated[float, keys.number("metres", 0, 100)] = 0.0
+    position_hold_s: Annotated[float, keys.number("seconds", 0, 3_600)] = 0.0
 
 
 class MeshEventTable(keys.Table, frozen=True, kw_only=True):

@@ -36,6 +36,8 @@ class Walk:
     node: int  # the robot
     # (time us, x cm, y cm), ascending in time; before the first it stands there.
     points: tuple[tuple[int, int, int], ...]
+    noise_um: int = 0  # along each axis, standard deviation of where it believes to be, um
+    hold_us: int = 0  # after so long 1/e of an error is left, us; 0: each sample has one of its own
 
 
 def position_cm(walk: Walk, time_us: float) -> Point:

@@ -72,7 +72,8 @@ def walks(model: MeshScenario, nodes: Nodes, points: list[Point], duration_us: i
                     "make its area larger or its speed lower"
                 )
                 raise nodes.source.error(("robot", i), message)
-        found.append(Walk(node, tuple(walk)))
+        noise_um, hold_us = round(1e6 * robot.position_noise_m), round(1e6 * robot.position_hold_s)
+        found.append(Walk(node, tuple(walk), noise_um, hold_us))
     return found
 
 

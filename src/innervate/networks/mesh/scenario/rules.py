@@ -201,6 +201,9 @@ def _robot(model: MeshScenario, index: int) -> Iterator[Finding]:
         yield (*key, "waypoints"), message
     if robot.area is not None and not robot.random:
         yield (*key, "area"), f"robot.{index}.area goes with random = true"
+    if robot.position_hold_s and not robot.position_noise_m:
+        message = f"robot.{index}.position_hold_s goes with position_noise_m"
+        yield (*key, "position_hold_s"), message
 
 
 def _event(model: MeshScenario, index: int, event: MeshEventTable) -> Iterator[Finding]:

@@ -1,6 +1,7 @@
 """A mesh scenario in a few lines, without running it; and what somebody should know before."""
 
-from math import ceil
+from itertools import pairwise
+from math import ceil, dist
 from typing import Any
 
 from innervate.networks.mesh.protocol import constants as c
@@ -9,7 +10,7 @@ from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.foreseen import foreseen
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import RESERVED, count_of, listed
-from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
+from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan, Walk
 from innervate.scenario.actions.field import JAM, TARGETS
 from innervate.scenario.events import opening, told
 from innervate.topology.placement import distances, neighbours
@@ -22,6 +23,7 @@ STAR = 2 / 3  # share of nodes with a single link
 TABLES_MAX = {"38k4": 50, "250k": 200}
 TABLES_MAX_BEHIND_STANDBY = {"38k4": 50, "250k": 120}
 GRAPH_MAX = {"38k4": 70, "250k": 100}
+CLEAR_SIGMAS = 6
 SOURCE_ROUTE_MAX = 19  # hops; at an MTU of 64 tables do not fit beside longer routes [mesh 2]
 
 
@@ -117,7 +119,7 @@ def warnings(made: MeshPlan) -> list[str]:
     found += _distribution(made)
     if model.fence is not None and not made.walks:
         found.append("a fence but no [[robot]]: nobody can cross it")
-    found += [*_outside(made), *foreseen(made)]
+    found += [*_outside(made), *_astray(made), *foreseen(made)]
     offered = {offer.flow for offer in made.offers}
     found += [
         f"flow.{index} sends nothing: it begins after the end; set start_s or a later duration_s"
@@ -141,6 +143,36 @@ def _outside(made: MeshPlan) -> list[str]:
     if not who:
         return []
     return [f"outside the fence from the beginning: {listed(who)}; that counts as a crossing"]
+
+
+def _astray(made: MeshPlan) -> list[str]:
+    """Robots that err by more than what lies between a warning, an alarm and the all-clear."""
+    fence = made.scenario.model.fence
+    if fence is None:
+        return []
+    soon = {walk.node: _fastest_mps(walk) * fence.predict_s for walk in made.walks}
+    found = []
+    for noise_m in sorted({walk.noise_um / 1e6 for walk in made.walks if walk.noise_um}):
+        those = [walk.node for walk in made.walks if walk.noise_um == round(1e6 * noise_m)]
+        who, least = listed([made.names[node] for node in those]), min(soon[node] for node in those)
+        if noise_m > fence.clear_m:
+            found.append(
+                f"positions of {who} err by {noise_m:g} m, and fence.clear_m is {fence.clear_m:g}: "
+                "near the fence the error alone raises alarms and takes them back; make it "
+                f"{CLEAR_SIGMAS * noise_m:g}"
+            )
+        if noise_m > least:
+            found.append(
+                f"positions of {who} err by {noise_m:g} m, and the fence warns {least:.3g} m before "
+                "it is reached (speed times fence.predict_s): warnings come no sooner than alarms"
+            )
+    return found
+
+
+def _fastest_mps(walk: Walk) -> float:
+    """The highest speed on a way; 0 if it leads nowhere."""
+    legs = [(dist(a[1:], b[1:]), b[0] - a[0]) for a, b in pairwise(walk.points) if b[0] > a[0]]
+    return max((1e4 * far_cm / took_us for far_cm, took_us in legs), default=0.0)
 
 
 def _distribution(made: MeshPlan) -> list[str]:

@@ -10,15 +10,18 @@ from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma, csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
+from innervate.networks.mesh.scenario.plan import Walk
 from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
 from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.sim.field import build as field
-from innervate.sim.field import powers, queue
+from innervate.sim.field import astray, powers, queue
 from innervate.sim.field.loop import NEVER
 from innervate.sim.field.world import COMMAND
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import ACTION, ROW, Tables, get, put, uniform
+from innervate.topology.placement import normal_cdb
+from innervate.trace.streams import stream
 
 OUTBOX = 32
 DUPLICATES = 1 << 15
@@ -112,6 +115,7 @@ def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
         "base": tables.given(radio.base_cdb or [0], np.int32),
         "losses": tables.given(powers.loss_table(radio.exponent_c)),
         "chances": tables.given(powers.chance_table()),
+        "normals": tables.given(astray.normal_table()),
         "good": tables.given(good),
     }
 
@@ -130,19 +134,30 @@ def _script(tables: Tables, plan: Any) -> dict[str, Any]:
 
 def _walks(plan: Any) -> tuple[list[Any], list[Any]]:
     """Walkers with their place in the list of all points; robots that stand still, too."""
-    paths = [(walk.node, walk.points) for walk in plan.walks]
-    moving = {node for node, _ in paths}
+    paths = list(plan.walks)
+    moving = {walk.node for walk in paths}
     for node, robot in enumerate(plan.robots):
         if robot and plan.positions_cm and node not in moving:
-            paths.append((node, ((0, *plan.positions_cm[node]),)))
+            paths.append(Walk(node, ((0, *plan.positions_cm[node]),)))
     phases = uniform(plan.seed, "sample", plan.nodes, plan.sample_us)
     walks: list[Any] = []
     points: list[Any] = []
-    for node, path in paths:
+    for walk in paths:
         first = len(points)
-        points += list(path)
-        walks.append((node, first, len(points) - 1, int(phases[node]), 0))
+        points += list(walk.points)
+        place = (walk.node, first, len(points) - 1, int(phases[walk.node]), 0)
+        walks.append((*place, *_astray(plan, walk)))
     return walks, points
+
+
+def _astray(plan: Any, walk: Walk) -> tuple[int, ...]:
+    """How a robot errs about its place, and by how much at first."""
+    if not walk.noise_um:
+        return (0,) * 6
+    draw = stream(plan.seed, f"position/{walk.node}")
+    own = 1 + draw.draw(rng.FIXED_POINT - 1)
+    first = (normal_cdb(draw, astray.SIGMA), normal_cdb(draw, astray.SIGMA))
+    return (walk.noise_um, *astray.shares(plan.sample_us, walk.hold_us), own, *first)
 
 
 def _set_run(world: m.World, plan: Any) -> None:

@@ -63,7 +63,7 @@ def sample(world, do, index, time):
     """A robot learns where it is."""
     node = world.walks[index].node
     motion.walk_on(world, index, time)
-    if motion.tell_place(world, node):
+    if motion.tell_place(world, index):
         calls.give(world, do, node, time, SAMPLE)
     at = time + world.run[0].sample
     queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, index))

@@ -21,7 +21,9 @@ RUN = (
 # What the medium knows of a node.
 RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "gate", "offset",
          "noise", "x", "y")  # fmt: skip
-WALK = ("node", "point", "last", "phase", "placed")
+# ... and how it errs about its place (see sim/field/astray.py): `noise` in um, errors in SIGMA.
+WALK = ("node", "point", "last", "phase", "placed",
+        "noise", "keep", "fresh", "rng", "off_x", "off_y")  # fmt: skip
 POINT = ("time", "x", "y")
 OFFER = ("time", "node", "dest", "flags", "length")
 
@@ -67,6 +69,7 @@ class World(NamedTuple):
     strengths: Any  # power per 0.1 dBm
     losses: Any  # path loss by squared distance
     chances: Any  # chance of reception per 0.1 dB
+    normals: Any  # normal numbers by how rare they are
     air: Any  # per place: a transmission
     frames: Any  # its frame
     worst: Any  # per place and receiver: the strongest interference it met

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.networks.mesh.analysis.alarms import all_crossings
+from innervate.networks.mesh.analysis.alarms import judged
 from innervate.networks.mesh.analysis.headline import Traffic, traffic
 from innervate.networks.mesh.analysis.messages import duplicates, messages, took_effect
 from innervate.networks.mesh.analysis.summary import looped
@@ -71,10 +71,12 @@ class TrafficRecorder:
         faults = sorted([*engine.plan.faults, *engine.given], key=lambda fault: fault.at_us)
         plan = replace(engine.plan, faults=[f for f in faults if f.at_us < engine.now_us])
         result = SimpleNamespace(plan=plan, ended_us=engine.now_us, **rows)
+        crossings, false = judged(result)
         return traffic(
             messages(result),
-            all_crossings(result),
+            crossings,
             duplicates(result),
             looped(result),
             took_effect(plan, result.ended_us),
+            false,
         )
