@@ -9,12 +9,21 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
 from innervate.network import networks
-from innervate.scenario import load, plan
+from innervate.scenario import load, loads, plan, template
 
 
 def simulated(name, *settings):
     """The loop that a bundled scenario runs on."""
-    made = plan(load(name, list(settings)))
+    prepare(load(name, list(settings)))
+
+
+def begun(kind):
+    """The loop that a network's template runs on."""
+    prepare(loads(template(kind)))
+
+
+def prepare(scenario):
+    made = plan(scenario)
     networks()[made.kind].simulation(made).prepare()
 
 
@@ -35,26 +44,33 @@ GROUPS = (
     (
         partial(simulated, "mesh-team"),
         partial(simulated, "mesh-field"),
-        partial(simulated, "radio-figure-1"),
+        partial(simulated, "mesh-leipzig"),
     ),
     (
         partial(simulated, "demo"),
         explored,
         partial(simulated, "demo", "protocol.rule='static'"),
         partial(simulated, "radio-disaster"),
+        partial(simulated, "radio-figure-1"),
         partial(simulated, "radio-disaster", "protocol.mac='dcf'"),
+        partial(simulated, "babel-patch"),
+        partial(begun, "flooding"),
     ),
 )
 
 
-def compiled(index):
-    """Compile a group, or find it compiled."""
-    for loop in GROUPS[index]:
-        loop()
+def compiled(group, number):
+    """Compile a loop of a group, or find it compiled."""
+    GROUPS[group][number]()
+
+
+def compiled_in_turn(group):
+    """Compile a group, and say of each loop that it is there."""
+    for number in range(len(GROUPS[group])):
+        compiled(group, number)
+        print(group, number, flush=True)
 
 
 if __name__ == "__main__":
     with ProcessPoolExecutor(int(sys.argv[1])) as processes:
-        ready = [processes.submit(compiled, index) for index in range(len(GROUPS))]
-        for one in ready:
-            one.result()
+        list(processes.map(compiled_in_turn, range(len(GROUPS))))

@@ -81,8 +81,7 @@ import os, time
 until = time.monotonic() + 1.5
 
 def wait():  # an interrupt that comes here is swallowed
-    while time.monotonic() < until:
-        pass
+    time.sleep(max(0, until - time.monotonic()))
 
 def count():
     global forks
@@ -161,16 +160,19 @@ def test_ctrl_c_ends_it_and_tears_down(tmp_path, more):
 
 
 LOOPS = """
-import sys
-GROUPS = ((), ())
+import sys, time
 
-def compiled(index):
+def compiled(group, number):
     with open("loops", "a") as file:
-        file.write(f", read {{index}}")
+        file.write(f", read {{group}} {{number}}")
 
 if __name__ == "__main__":
     with open("loops", "w") as file:
         file.write(sys.argv[1])
+    print(0, 0, flush=True)
+    while "read 0 0" not in open("loops").read():  # as it comes, not at the end
+        time.sleep(0.01)
+    print(1, 0)
     sys.exit({status})
 """
 
@@ -183,10 +185,10 @@ def test_loops_come_first(tmp_path, status, said):
     loops = LOOPS.format(status=status)
     (tmp_path / "tests" / "loops.py").write_text(loops)
     suite = {
-        "test_it.py": "def test_it():\n    assert open('loops').read() == '7, read 0, read 1'\n"
+        "test_it.py": "def test_it():\n    assert open('loops').read() == '7, read 0 0, read 1 0'\n"
     }
     process = begin(tmp_path, suite, "--forks", "1", "--loops", "7")
-    assert said in process.communicate()[0]
+    assert said in process.communicate(timeout=60)[0]
     assert process.returncode == bool(status)
 
 

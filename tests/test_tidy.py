@@ -103,6 +103,13 @@ def test_files_are_short():
     ] == []
 
 
+def test_the_architecture_is_said_in_half_the_words_it_once_took():
+    """Before networks were folders it had 118 lines and 10,646 bytes."""
+    text = (ROOT / "ARCHITECTURE.md").read_text()
+    assert len(text.splitlines()) <= 59
+    assert len(text.encode()) <= 5_323
+
+
 def test_lines_are_short():
     assert lines_with(CODE, lambda line: len(line) > COLUMNS_MAX) == []
 

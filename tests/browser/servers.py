@@ -15,6 +15,7 @@ from contextlib import contextmanager
 import pytest
 
 from innervate import scenario
+from innervate.web.messages import Pause
 from innervate.web.serve import serving as served
 from innervate.web.simulated import Simulated
 
@@ -79,11 +80,14 @@ def serving(what, *options, port=0):
 
 
 @contextmanager
-def beside(path, speed):
+def beside(path, speed, held=False):
     """A scenario's page as `watch` serves it, by a thread of this process: its loops are loaded
-    once; gives the address."""
+    once; gives the address. Held at its beginning, it needs no loop."""
     source = Simulated(scenario.plan(scenario.load(str(path))), speed)
-    source.prepare()
+    if held:
+        source.do(Pause())
+    else:
+        source.prepare()
     told = Future()
 
     async def serve():

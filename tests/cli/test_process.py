@@ -87,12 +87,12 @@ def test_without_the_simulator_it_says_what_to_install(process, tmp_path):
 def test_the_first_run_says_that_it_compiles(process, tmp_path):
     code = (
         "from innervate.cli.progress import *\n"
-        "with Progress(compiled=False) as p: p(0, 1)\n"
-        "with Progress(compiled=False, quiet=True) as p: p(0, 1)\n"
+        "with Progress('mesh-32') as p: p(0, 1)\n"
+        "with Progress('skin', quiet=True) as p: p(0, 1)\n"
     )
     out, err = process(code=code, cwd=tmp_path).communicate(timeout=TIMEOUT_S)
     assert (out, err.count("compiling"), err.count("\n")) == ("", 1, 1)
-    assert "about half a minute" in err
+    assert "compiling the simulation (mesh-32), once on this machine: about half a minute" in err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals as on POSIX")

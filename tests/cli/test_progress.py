@@ -1,9 +1,11 @@
 import re
 import time
+from types import SimpleNamespace as Of
 
 import pytest
 
 from innervate.cli import progress
+from innervate.kernel import compilation
 
 
 @pytest.fixture
@@ -59,7 +61,7 @@ def test_json_is_silent_unless_somebody_watches(clock, capsys):
 
 def test_a_terminal_gets_bars(monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    with progress.Progress(compiled=False, quiet=True) as show:
+    with progress.Progress("skin", quiet=True) as show:
         task = show._bars.tasks[0]
         assert "half a minute" in task.description
         show(500_000, 2_000_000)
@@ -106,12 +108,22 @@ def test_a_bar_of_which_nobody_knows_the_end_has_none(monkeypatch):
         assert (task.completed, task.total) == (8, 9)
 
 
+@pytest.mark.parametrize(("kind", "loop", "is_compiled", "told"), [
+    ("skin", "skin", False, "skin"), ("mesh", "mesh-32", False, "mesh-32"),
+    ("radio", "dcf", False, "radio, dcf"), ("radio", "dcf", True, ""), ("skin", "", False, ""),
+])  # fmt: skip
+def test_what_has_to_be_compiled_is_named(monkeypatch, kind, loop, is_compiled, told):
+    monkeypatch.setattr(progress, "networks", lambda: {kind: Of(loop_name=lambda _: loop)})
+    monkeypatch.setattr(compilation, "is_compiled", lambda _: is_compiled)
+    assert progress.uncompiled(Of(kind=kind)) == told
+
+
 def test_while_something_compiles_a_line_comes_now_and_then_and_none_afterwards(
     monkeypatch, capsys
 ):
     monkeypatch.setattr(progress, "STILL_EVERY_S", 0.01)
-    for compiled, quiet, some in ((False, False, True), (True, False, False), (False, True, False)):
-        with progress.Progress(compiled, quiet) as show:
+    for loop, quiet, some in (("skin", False, True), ("", False, False), ("skin", True, False)):
+        with progress.Progress(loop, quiet) as show:
             end = time.monotonic() + (10 if some else 0.1)
             said = ""
             while time.monotonic() < end and "still compiling, after 0 s" not in said:

@@ -6,13 +6,18 @@ import re
 import signal
 import subprocess
 import sys
+import threading
+import time
 from dataclasses import replace
 from pathlib import Path
+
+import pytest
 
 from innervate.network import networks
 from innervate.networks.radio.protocol.constants import WIDE_MOST
 from innervate.networks.radio.prove import turns
 from innervate.prove import solve
+from innervate.prove.steps import Goal, Stage
 from tests.own import alone
 
 __all__ = ["alone"]
@@ -70,6 +75,54 @@ def test_an_interrupted_proof_says_how_far_it_came(sh, monkeypatch):
     cut = f"; interrupted after 0 of {1 + len(others)} theories."
     assert sh.out.splitlines()[-1].endswith(cut)
     assert "All as it should be" not in sh.out
+
+
+PRIMES = 2_147_483_659, 2_147_483_693  # whose product the solver takes minutes to take apart
+
+
+def hard():
+    """A step whose one question takes the solver long."""
+    stage = Stage({}, (), 1)
+    a, b = (stage.terms.unknown(name, 2, (1 << 32) - 1) for name in "ab")
+    product = stage.terms.same(stage.terms.mul(a, b), stage.number(PRIMES[0] * PRIMES[1]))
+    return stage.step("hard", {}, [], [Goal("it is a prime", stage.terms.negated(product))])
+
+
+@pytest.fixture
+def interrupted(monkeypatch):
+    """Ctrl-C soon, while a solver that gives up after some seconds thinks; when it came, s."""
+    monkeypatch.setattr(solve.Question.__init__, "__defaults__", (20_000_000,))
+    begun = []
+
+    def press():
+        begun.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.5, press)
+    timer.start()
+    yield begun
+    timer.cancel()
+
+
+def test_the_solver_is_not_waited_for(sh, monkeypatch, interrupted):
+    """Ctrl-C comes while it thinks; what was found before is told."""
+    network = networks()["radio"]
+    queue, *others = network.prove.theories(network)
+    made = replace(queue, steps=(queue.steps[0], hard))
+    monkeypatch.setattr(network.prove, "theories", lambda _: [made, *others])
+    assert sh("prove", "radio", "--json") == 130
+    assert time.monotonic() - interrupted[0] < 5
+    (one,) = json.loads(sh.out)
+    assert (one["ended"], len(one["steps"]), one["expected"]) == ("stopped", 1, False)
+
+
+def test_nor_is_it_where_mistakes_are_planted(sh, monkeypatch, interrupted):
+    network = networks()["radio"]
+    queue, *_ = network.prove.theories(network)
+    monkeypatch.setattr(network.prove, "theories", lambda *_: [replace(queue, steps=(hard,))])
+    assert sh("prove", "radio", "--faults") == 130
+    assert time.monotonic() - interrupted[0] < 5
+    assert sh.err.splitlines()[-1].startswith("innervate: interrupted after 0 of ")
 
 
 def test_planted_mistakes_are_refuted(sh):

@@ -7,6 +7,9 @@ import sys
 import threading
 import time
 
+import pytest
+
+from innervate import cli
 from innervate import scenario as scenarios
 from innervate.live import hangup, status
 from innervate.live.up import Processes
@@ -135,3 +138,21 @@ def test_nobody_can_hang_up_on_a_node_that_is_starting(tmp_path):
         node.kill()
     assert node.returncode == 0
     assert "keys reloaded" in said
+
+
+@pytest.mark.parametrize("more", [[], ["--engine", "auto"], ["--firmware", "n0.elf"]])
+def test_whatever_it_is_told_to_run_on_a_node_holds_hangups_before_it_loads_commands(
+    monkeypatch, more
+):
+    blocked = []
+
+    def look(*_):
+        blocked.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+        return 0
+
+    monkeypatch.setattr("innervate.cli.app.main", look)
+    monkeypatch.setattr("innervate.live.main.run", look)
+    with hangup.held():
+        hangup.let_in()
+        assert cli.main(["live", "node", "n0.toml", *more]) == 0
+    assert [signal.SIGHUP in one for one in blocked] == [True]

@@ -5,13 +5,15 @@ import socket
 
 import pytest
 
+from innervate.dialect import plain
 from innervate.live import warm
 from innervate.live.build import build
 from innervate.live.engine import Engine
-from innervate.live.errors import LiveError
 from innervate.live.machine import Machine, on
 from innervate.live.nodefile import load
 from innervate.live.warm import Warmth
+from innervate.networks.babel.packets import Packets, const
+from innervate.networks.babel.protocol import fields
 from tests.live.test_udp import free_port
 
 NODE = """kind = "mesh"
@@ -24,6 +26,14 @@ warm = true
 kind = "udp"
 bind = "127.0.0.1:{}"
 peers = ["127.0.0.1:{}"]
+"""
+BABEL = """kind = "babel"
+number = 1
+warm = true
+[[link]]
+kind = "udp"
+bind = "127.0.0.1:{}"
+peers = ["127.0.0.1:9", "127.0.0.1:10"]
 """
 MANY = 40
 
@@ -130,20 +140,74 @@ def test_nobody_else_makes_it_rehearse():
     assert asyncio.run(main()) == [1]
 
 
-class Full(Machine):
-    """A machine that has no file left."""
+class Down(socket.socket):
+    """A socket of a machine whose loopback is down."""
+
+    def connect(self, address):
+        raise OSError(101, "Network is unreachable")
+
+
+class Unreachable(Machine):
+    """A machine whose loopback is down, but for who is bound there already."""
 
     def socket(self, family, kind):
-        raise OSError(24, "Too many open files")
+        return Down(family, kind)
 
 
-def test_a_machine_that_has_no_socket_left_says_so():
+def test_without_a_socket_to_itself_a_node_says_so_and_goes_on(tmp_path, capsys):
     async def main():
-        with pytest.raises(LiveError, match=r"^warm = true: no socket to itself: Too many open"):
+        first, second = pair(tmp_path, "python")
+        async with first, second:
+            assert await second.send_message(0, b"x").wait() == "delivered"
+            return first.is_warm, second.is_warm
+
+    with on(Unreachable()):
+        assert asyncio.run(main()) == (False, False)
+    why = "warm = true: no socket to itself: Network is unreachable; goes on without"
+    assert capsys.readouterr().err.splitlines() == [f"n0: {why}", f"n1: {why}"]
+
+
+def test_a_socket_that_cannot_be_used_is_closed():
+    made = []
+
+    class Counting(Unreachable):
+        def socket(self, family, kind):
+            made.append(super().socket(family, kind))
+            return made[-1]
+
+    async def main():
+        with pytest.raises(OSError, match="unreachable"):
             Warmth(lambda: None)
 
-    with on(Full()):
+    with on(Counting()):
         asyncio.run(main())
+    assert made[0].fileno() == -1
+
+
+def test_the_rest_of_a_rehearsed_datagram_is_not_taken_with_the_next(tmp_path):
+    """Three Hellos came in one datagram; what another path refuses is none of them."""
+    port = free_port()
+    path = tmp_path / "n1.toml"
+    path.write_text(BABEL.format(port))
+    node = build(load(path))
+    hello = plain.make("Frame", fields.FRAME)()
+    hello.kind, hello.hello = const.HELLO, 400
+    peer = Packets(2, node.stack.params)
+    body = peer.sender + 3 * peer._tlvs(hello)
+    data, taken = b"\x2a\x02" + len(body).to_bytes(2, "big") + body, []
+
+    async def main():
+        async with node:
+            real = node.engine.receive
+            node.engine.receive = lambda port, *at: taken.append(port) or real(port, *at)
+            node._receive(node.paths[0], data)
+            node.engine.rehearse()
+            node.engine.rehearse()
+            node.change(1, "cut")
+            node._receive(node.paths[1], data)
+
+    asyncio.run(main())
+    assert taken == [0, 0, 0]
 
 
 def test_a_frame_that_cannot_be_said_again_ends_no_rehearsal(tmp_path):

@@ -63,7 +63,8 @@ def compiled(workers: int) -> Path | None:
     """Where compiled code is kept, once what many tests run is compiled."""
     if not (ROOT / "tests/loops.py").exists():
         return None
-    subprocess.run([sys.executable, "-m", "tests.loops", str(workers)], cwd=ROOT, check=True)
+    command = [sys.executable, "-m", "tests.loops", str(workers)]
+    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     asking = "from innervate.kernel import compilation; print(compilation.open_cache())"
     return Path(subprocess.check_output([sys.executable, "-c", asking], text=True).strip())
 

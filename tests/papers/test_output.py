@@ -164,6 +164,16 @@ def test_a_page_has_all_of_it(tmp_path, width, is_narrow):
     assert verdicts.index("never") < verdicts.index("as many") < verdicts.index("by <a")
 
 
+def test_labels_in_titles_and_captions_are_links_too(tmp_path):
+    (tmp_path / "fig3.svg").write_text("<svg/>")
+    figure = replace(FIGURE, title="A2: two", caption="As A3 <says>, not A9.")
+    made = output.Made({"fig3": CLAIMS[:1]})
+    page = output.write(tmp_path, HEADING, [figure], made, 2.0).read_text(encoding="utf-8")
+    assert '<h2><a href="#A2">A2</a>: two</h2>' in page
+    assert '<figcaption>As <a href="#A3">A3</a> &lt;says&gt;, not A9.</figcaption>' in page
+    assert '<dt id="A2">A2</dt><dd>Two.</dd><dt id="A3">A3</dt>' in page
+
+
 def test_without_tables_or_readings_there_are_none(tmp_path):
     (tmp_path / "fig3.svg").write_text("<svg/>")
     heading = output.Heading("toy", "", "", quick=True, stamp="", redraw=False, command="")

@@ -50,7 +50,7 @@ def test_it_is_summed_up(done):
         (Counts(), NO_DATA, "Nothing has happened yet."),
         (Counts(nodes=2, sent=9, arrived=9), OK, "None of 9 frames is lost."),
         (Counts(nodes=2, sent=9, arrived=9, offered=3, delivered=3), OK,
-         "All 3 messages are delivered, none of 9 frames is lost."),
+         "All 3 messages are delivered once, none of 9 frames is lost."),
         (Counts(nodes=2, off=(1,), sent=9, arrived=8, lost_by={"cut": 1}), DEGRADED,
          "1 of 2 nodes is off, 1 of 9 frames is lost."),
         (Counts(nodes=2, off=(0, 1), sent=9, arrived=8), DOWN, "Both nodes are off."),

@@ -56,6 +56,20 @@ def test_degrees_become_metres() -> None:
     assert points[3] == ((points[0][0] + points[1][0]) // 2, (points[0][1] + points[1][1]) // 2)
 
 
+def test_what_a_map_of_a_community_gives() -> None:
+    """Node 475 of such a file lies at a longitude of 12986035."""
+    places = [{"latitude": 51.0, "longitude": 12.0}, {}, {"latitude": 51.0, "longitude": 12986035},
+              {"latitude": 51.01, "longitude": 12.0}]  # fmt: skip
+    nodes = [{"node_id": f"c46e1f0e105{i}", "location": at} for i, at in enumerate(places)]
+    link = {"source": "c46e1f0e1050", "type": "wifi", "source_tq": 0.9, "target_tq": 1}
+    links = [link | {"target": one["node_id"]} for one in nodes[1:]]
+    found = measured.from_json(json.dumps({"nodes": nodes, "links": links}), ["wifi"])
+    assert found.names == [one["node_id"] for one in nodes]
+    assert found.links == {(0, other): (1.0, 0.9) for other in (1, 2, 3)}
+    assert found.points[3][1] - found.points[0][1] == pytest.approx(111_194, abs=2)
+    assert found.points[1] == found.points[2] == found.points[0]
+
+
 def test_plain_lines() -> None:
     found = measured.from_lines("# mine\nA B 0.9 0.7\nC A 0.5\n\nB C  # perfect\n")
     assert found.names == ["A", "B", "C"]

@@ -45,7 +45,7 @@ def test_a_git_that_hangs_is_not_waited_for(tmp_path, monkeypatch):
     slow.write_text("#!/bin/sh\nexec sleep 60\n")
     slow.chmod(0o755)
     monkeypatch.setenv("PATH", str(slow.parent), prepend=os.pathsep)
-    monkeypatch.setattr(provenance_module, "PATIENCE_S", 0.2)
+    monkeypatch.setattr(provenance_module, "GIT_TIMEOUT_S", 0.2)
     begun = wall_s()
     assert checkout(tmp_path) == (None, None)
     assert wall_s() - begun < 30

@@ -256,7 +256,7 @@ def _well(counts: Counts) -> str:
         return f"{_part(under_way, counts.offered, 'message', 'under way')}, {kept}"
     if counts.offered:
         what = every(counts.offered, "message").capitalize()
-        return f"{what} {verb(counts.offered, 'is')} delivered, {kept}"
+        return f"{what} {verb(counts.offered, 'is')} delivered once, {kept}"
     return kept.capitalize()
 
 

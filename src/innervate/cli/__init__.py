@@ -15,8 +15,12 @@ def main(tokens: Sequence[str] | None = None) -> int:
     """Carry out a command line; its exit code (see app.main)."""
     try:  # the commands take a moment to load: Ctrl-C is no error then either
         words = list(sys.argv[1:] if tokens is None else tokens)
-        if len(words) == 3 and words[:2] == ["live", "node"] and not words[2].startswith("-"):
-            return _node(words[2])  # a node on a small computer needs no other command
+        if words[:2] == ["live", "node"]:
+            from innervate.live.hangup import hold
+
+            hold()  # until the node listens for it
+            if len(words) == 3 and not words[2].startswith("-"):
+                return _node(words[2])  # a node on a small computer needs no other command
         from innervate.cli import app
 
         return app.main(tokens)
@@ -30,9 +34,6 @@ def _node(file: str) -> int:
     from pathlib import Path
 
     try:
-        from innervate.live.hangup import hold
-
-        hold()  # until the node listens for it
         from innervate.live.main import run
 
         return run(Path(file))

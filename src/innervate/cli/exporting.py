@@ -10,7 +10,7 @@ from cyclopts import Parameter
 from innervate import scenario as scenarios
 from innervate.cli.errors import UserError
 from innervate.cli.options import ExportOptions
-from innervate.cli.progress import Progress, is_compiled
+from innervate.cli.progress import Progress, uncompiled
 from innervate.export import dissector
 from innervate.network import networks
 
@@ -113,7 +113,7 @@ class _Source:
         from innervate.export import capture
 
         assert wanted.pcapng is not None
-        with Progress(is_compiled(self.plan)) as progress:
+        with Progress(uncompiled(self.plan)) as progress:
             written = capture.write(
                 self.plan,
                 wanted.pcapng,
@@ -145,7 +145,7 @@ class _Source:
             from innervate import running as room
 
             if not hasattr(self, "_run"):
-                with Progress(is_compiled(self.plan)) as progress:
+                with Progress(uncompiled(self.plan)) as progress:
                     self._run = room.run(self.plan.scenario, progress=progress)
             return dict(self._run.tables)
         from innervate.trace import tables

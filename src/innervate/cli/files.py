@@ -91,7 +91,13 @@ def new(
         text = scenario.template(kind)
     if file is None:
         print(text, end="")
-        return 0
+    else:
+        _write_new(file, text, found)
+    return 0
+
+
+def _write_new(file: Path, text: str, found: str) -> None:
+    """Write a scenario, and say what of a measured network is in it and how to go on."""
     if os.path.lexists(file):
         raise UserError(f"{file} is there already; choose another name or move it away")
     files.write_text(file, text)
@@ -100,7 +106,6 @@ def new(
     word = shlex.quote(str(file))
     print(f"Written: {file}. Check it with `innervate check {word}`, run it with "
           f"`innervate run {word}`.")  # fmt: skip
-    return 0
 
 
 def _of_network(kind: str, file: Path | None, measured: MeasuredOptions) -> tuple[str, str]:

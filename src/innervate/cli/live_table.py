@@ -62,36 +62,36 @@ class LiveTable:
         if kind is KeyboardInterrupt:
             raise KeyboardInterrupt(f"interrupted; {self.kept}") from None
 
-    def __call__(self, conductor: Scheduler) -> None:
+    def __call__(self, scheduler: Scheduler) -> None:
         """The sweep has come so far."""
-        self.words = f"{conductor.done} of {_about(conductor)} runs done"
-        if conductor.failed:
-            self.words += f", {conductor.failed} failed"
-        now, ended = time.monotonic(), conductor.done == conductor.total
+        self.words = f"{scheduler.done} of {_about(scheduler)} runs done"
+        if scheduler.failed:
+            self.words += f", {scheduler.failed} failed"
+        now, ended = time.monotonic(), scheduler.done == scheduler.total
         if self._silent:
             return
-        if conductor.lacks and self._live is None:
-            print(f"{self._name}: {conductor.lacks}", file=sys.stderr, flush=True)
+        if scheduler.lacks and self._live is None:
+            print(f"{self._name}: {scheduler.lacks}", file=sys.stderr, flush=True)
         elif self._live is not None and (
-            now - self._last >= DRAW_EVERY_S or ended or conductor.lacks
+            now - self._last >= DRAW_EVERY_S or ended or scheduler.lacks
         ):
             self._last = now
-            self._live.update(self._table(conductor), refresh=True)
+            self._live.update(self._table(scheduler), refresh=True)
         elif not self._terminal and now - self._last >= LINE_EVERY_S:
             self._last = now
-            print(f"{self._name}: {self.words}{_left(conductor)}", file=sys.stderr, flush=True)
+            print(f"{self._name}: {self.words}{_left(scheduler)}", file=sys.stderr, flush=True)
 
-    def _table(self, conductor: Scheduler) -> Any:
+    def _table(self, scheduler: Scheduler) -> Any:
         from rich.table import Table
 
-        there = [m for m in self._measures if any(m in s.values for s in conductor.states)]
+        there = [m for m in self._measures if any(m in s.values for s in scheduler.states)]
         shown = there[:MEASURES_MAX]
-        title = f"{self._name}: {conductor.lacks or self.words + _left(conductor)}"
+        title = f"{self._name}: {scheduler.lacks or self.words + _left(scheduler)}"
         table = Table(title=title, title_justify="left", box=None, pad_edge=False)
         table.add_column("point", no_wrap=True, overflow="ellipsis")
         for head in ("runs", *shown):
             table.add_column(head, justify="right", no_wrap=True)
-        for state in _interesting(conductor.states):
+        for state in _interesting(scheduler.states):
             count = f"{state.done}/{state.goal}" + (" done" if state.finished else "")
             label = state.point.label or "all runs"
             table.add_row(label, count, *(_mean(state.series(name)) for name in shown))
@@ -114,13 +114,13 @@ def _mean(values: list[float]) -> str:
     return f"{found.value:.4g} +- {(found.high - found.low) / 2:.2g}"
 
 
-def _about(conductor: Scheduler) -> str:
-    until = conductor.plan.until and conductor.done < conductor.total
-    return f"{'about ' if until else ''}{conductor.total}"
+def _about(scheduler: Scheduler) -> str:
+    until = scheduler.plan.until and scheduler.done < scheduler.total
+    return f"{'about ' if until else ''}{scheduler.total}"
 
 
-def _left(conductor: Scheduler) -> str:
-    left = conductor.left_s
+def _left(scheduler: Scheduler) -> str:
+    left = scheduler.left_s
     if left is None or left < 1:
         return ""
     if left < 100:

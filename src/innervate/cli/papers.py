@@ -33,9 +33,20 @@ def papers(
     """
     from innervate.papers.book import into_page, ready_for  # draws: not before it is wanted
 
-    room: Any = import_module("innervate.papers")
     system, only = first() if paper is None else paper, only or []
     ready_for(system, page, only)
+    made = _draw(system, out, quick=quick, only=only, redraw=redraw)
+    if page is not None:
+        into_page(page, system, out, only)
+    for line in verdict_lines(made.with_suffix(".csv")):
+        print(line)
+    print(f"Look at them in a browser: {made}")
+    return 0
+
+
+def _draw(system: str, out: Path, **how: Any) -> Path:
+    """Draw behind a line that says how far it is; the page that was made."""
+    room: Any = import_module("innervate.papers")
     with Display() as display:
         display.begin(f"papers {system}: figures and table into {out}", line=True)
 
@@ -44,16 +55,11 @@ def papers(
             display.show(what, step.done, step.total, step.left_s)
 
         try:
-            made = room.main(system, out, quick=quick, only=only, progress=tell, redraw=redraw)
+            made: Path = room.main(system, out, progress=tell, **how)
         except KeyboardInterrupt:
             what = "what was done is kept, and the same command goes on from there"
             raise KeyboardInterrupt(f"interrupted; {what}") from None
-    if page is not None:
-        into_page(page, system, out, only)
-    for line in verdict_lines(made.with_suffix(".csv")):
-        print(line)
-    print(f"Look at them in a browser: {made}")
-    return 0
+    return made
 
 
 def verdict_lines(table: Path) -> list[str]:

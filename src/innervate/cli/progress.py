@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from innervate.network import networks
 
-COMPILING = "compiling the simulation, once on this machine: about half a minute"
+COMPILING = "compiling the simulation ({}), once on this machine: about half a minute"
 LINE_EVERY_S = 10.0
 STILL_EVERY_S = 30.0  # a line of what is still compiling, where there is no bar
 
@@ -86,18 +86,23 @@ class Display:
 
 
 class Progress(Display):
-    """How far a simulation is; it is called with the simulated time."""
+    """How far a simulation is; it is called with the simulated time.
 
-    def __init__(self, compiled: bool = True, quiet: bool = False) -> None:
+    Args:
+        loop: what has to be compiled first, as `uncompiled` says it; "" nothing.
+    """
+
+    def __init__(self, loop: str = "", quiet: bool = False) -> None:
         super().__init__(quiet)
-        self._compiled = compiled
+        self._loop = loop
         self._first: tuple[float, int] | None = None
         self._runs = threading.Event()  # compiling is over
 
     def __enter__(self) -> Self:
         super().__enter__()
-        self.begin("preparing" if self._compiled else COMPILING, line=not self._compiled)
-        if not (self._compiled or self._terminal or self._silent):
+        what = COMPILING.format(self._loop) if self._loop else "preparing"
+        self.begin(what, line=bool(self._loop))
+        if self._loop and not (self._terminal or self._silent):
             threading.Thread(target=self._compiling, daemon=True).start()
         return self
 
@@ -123,9 +128,11 @@ class Progress(Display):
         self.show(what, now_us, duration_us, left_s)
 
 
-def is_compiled(plan: Any) -> bool:
-    """True if the loop that a plan runs on is compiled, or needs no compiling."""
+def uncompiled(plan: Any) -> str:
+    """The loop that has to be compiled for a plan: "mesh-32", "radio, dcf"; "" none has to be."""
     from innervate.kernel import compilation
 
     name = networks()[plan.kind].loop_name(plan)
-    return not name or compilation.is_compiled(name)
+    if not name or compilation.is_compiled(name):
+        return ""
+    return name if name.startswith(plan.kind) else f"{plan.kind}, {name}"

@@ -47,6 +47,7 @@ def _theories(network: Network, as_json: bool) -> int:
             done.append(attempt(theory, tell))
             if not as_json:
                 print("\n".join([*lines(done[-1]), ""]), flush=True)
+            stop.asked = stop.asked or done[-1].ended == "stopped"
             if stop.asked:
                 break
     if as_json:

@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from innervate.cli import errors
 from innervate.cli.options import Json, RunOptions, Seed, Sets
-from innervate.cli.progress import Progress, is_compiled
+from innervate.cli.progress import Progress, uncompiled
 from innervate.folders import for_plain
 from innervate.network import networks
 
@@ -74,5 +74,5 @@ def simulate(
     folders.check_target(out)
     if plain:  # without a display, which would write over a debugger's lines
         return room.run(loaded, progress=lambda now_us, duration_us: None, plain=True)
-    with Progress(is_compiled(plan), quiet) as progress:
+    with Progress(uncompiled(plan), quiet) as progress:
         return room.run(loaded, progress=progress)

@@ -158,16 +158,24 @@ def hunted(system: str, hunts: Sequence[tuple[Mutant, Hunt]], as_json: bool, mis
         hunts: each mistake, and what hunts it.
         as_json: print what was found as JSON and nothing else.
         missed: what is said of one that nothing finds.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C; it says after how many.
     """
     found = []
     with Stop() as stop, Display(as_json) as display:
         for number, (mutant, hunt) in enumerate(hunts):
             display.show(mutant.name, number, len(hunts), None)
-            found.append(hunt(mutant))
-            if not as_json:
-                print(f"{mutant.name}: {found[-1][1] or missed}", flush=True)
+            try:
+                found.append(hunt(mutant))
+            except KeyboardInterrupt:  # while it was sought
+                stop.asked = True
+            else:
+                if not as_json:
+                    print(f"{mutant.name}: {found[-1][1] or missed}", flush=True)
             if stop.asked:
-                return errors.INTERRUPTED
+                much = f"{len(found)} of {number_of(len(hunts), 'mistake')}"
+                raise KeyboardInterrupt(f"interrupted after {much}")
     if as_json:
         print(json.dumps([row for row, _ in found], indent=2))
     elif not found:

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 
 from innervate.cli import errors
 from innervate.cli.options import PageOptions, Seed, Sets
-from innervate.cli.progress import Progress, is_compiled
+from innervate.cli.progress import Progress, uncompiled
 
 if TYPE_CHECKING:
     from innervate.web.recorded import Recorded
@@ -98,7 +98,7 @@ def _simulated(what: str, settings: Settings) -> Source:
     from innervate.web.simulated import Simulated
 
     source = Simulated(plan, settings.speed)
-    with Progress(is_compiled(plan)):
+    with Progress(uncompiled(plan)):
         source.prepare()
     return source
 
@@ -110,7 +110,7 @@ def _recorded(folder: Path, settings: Settings) -> Recorded:
         raise errors.UserError("a run is shown as it was; --set and --seed go with a scenario")
     plan = plan_of(folder)
     source = Recorded(folder, plan, settings.speed)
-    with Progress(is_compiled(plan)) as progress:
+    with Progress(uncompiled(plan)) as progress:
         source.replay(progress)
     return source
 

@@ -103,6 +103,10 @@ class DeclaredStack(CabledStack):
         self._rest = self.coder.read(data, self.inbox)
         return next(self._rest)
 
+    def begin(self) -> None:
+        """Other bytes came: what a rehearsal left of the last ones is nobody's."""
+        self._rest = iter(())
+
     def more(self) -> bool:
         """Read the next frame that was in the same bytes into the inbox; False = there is none."""
         return next(self._rest, None) == 0
@@ -141,6 +145,7 @@ class DeclaredNode(LiveNode):
         self.engine.later(attempt, partial(self._leave, paths, data))
 
     def _receive(self, path: Path, data: bytes) -> None:
+        self.stack.begin()
         super()._receive(path, data)
         while self.engine is not None and self.stack.more():
             self.engine.receive(path.port)

@@ -132,7 +132,7 @@ class LiveNode:
         if self.sealer is not None:
             self.sealer.start(self.paths)
         if self.is_warm:
-            self._warmth = Warmth(self.engine.rehearse)
+            self._keep_warm(self.engine)
         self.engine.start(0 if self.state.fresh else 1)
 
     async def stop(self) -> None:
@@ -178,6 +178,14 @@ class LiveNode:
                 f"awake = true: {IDLE_STATES}: {error.strerror}; let this user write to it, "
                 "or take the line out"
             ) from None
+
+    def _keep_warm(self, engine: Engine) -> None:
+        try:
+            self._warmth = Warmth(engine.rehearse)
+        except OSError as error:
+            self.is_warm = False
+            why = f"warm = true: no socket to itself: {error.strerror}"
+            machine().say(f"{self.name}: {why}; goes on without")
 
     def idle(self) -> str:
         """Why nothing can be handed down now; "" if it can."""

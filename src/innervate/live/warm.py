@@ -9,7 +9,6 @@ import socket
 from collections.abc import Callable
 from contextlib import suppress
 
-from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 
 EVERY_S = 0.002
@@ -18,18 +17,23 @@ FRAME = bytes(64)
 
 
 class Warmth:
-    """Sends itself a datagram every `EVERY_S`, and calls `rehearse` when it comes."""
+    """Sends itself a datagram every `EVERY_S`, and calls `rehearse` when it comes.
+
+    Raises:
+        OSError: there is no socket to oneself.
+    """
 
     def __init__(self, rehearse: Callable[[], None]) -> None:
         self._rehearse = rehearse
         self._loop = asyncio.get_running_loop()
+        self._socket = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
-            self._socket = machine().socket(socket.AF_INET, socket.SOCK_DGRAM)
             self._socket.setblocking(False)
             self._socket.bind(HERE)
             self._socket.connect(self._socket.getsockname())  # nobody else is heard
-        except OSError as error:
-            raise LiveError(f"warm = true: no socket to itself: {error.strerror}") from None
+        except OSError:
+            self._socket.close()
+            raise
         self._loop.add_reader(self._socket.fileno(), self._came)
         self._timer = self._loop.call_later(EVERY_S, self._send)
 

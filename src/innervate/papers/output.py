@@ -201,13 +201,17 @@ def as_page(
         page.section("Contents", _contents(sections, heading.readings)),
     ]
     for experiment, some in sections:
-        inside = _figure(folder, experiment) + _table(some, heading.readings)
+        inside = _figure(folder, experiment, heading.readings) + _table(some, heading.readings)
         for sheet in made.tables(experiment.name):
             cells = [[clean(text) for text in row] for row in sheet.rows]
             inside += page.element("h3", sheet.title) + page.table(sheet.head, cells)
         inside += _simulated(experiment, heading.quick)
-        parts.append(_anchored(experiment.name, page.section(experiment.title, inside)))
-    parts.append(_anchored("readings", page.section("Readings", _readings(rows, heading))))
+        section = _anchored(experiment.name, page.section(experiment.title, inside))
+        plain, head = (f"<h2>{text}</h2>" for text in (
+            clean(experiment.title), linked(experiment.title, heading.readings)
+        ))  # fmt: skip
+        parts.append(section.replace(plain, head, 1))
+    parts.append(_anchored("readings", page.section("Readings", _readings(sections, heading))))
     origin_rows = [[clean(key), clean(value)] for key, value in origin.items()]
     again = page.element("pre", heading.command, "command")
     parts.append(page.section("Run it again", again + page.table(("what", "value"), origin_rows)))
@@ -218,7 +222,7 @@ def _anchored(name: str, section: str) -> str:
     return section.replace("<section>", f'<section id="{clean(name)}">', 1)
 
 
-def _figure(folder: Path, experiment: Experiment) -> str:
+def _figure(folder: Path, experiment: Experiment, readings: Mapping[str, str]) -> str:
     image = (folder / f"{experiment.name}.svg").read_bytes()
     coded = base64.b64encode(image).decode()
     width = re.search(rb'width="([\d.]+)pt"', image)
@@ -226,8 +230,7 @@ def _figure(folder: Path, experiment: Experiment) -> str:
     return (
         f'<figure{" class=narrow" * narrow}><img alt="{clean(experiment.title)}" '
         f'src="data:image/svg+xml;base64,{coded}">\n'
-        + page.element("figcaption", experiment.caption)
-        + "</figure>\n"
+        f"<figcaption>{linked(experiment.caption, readings)}</figcaption>\n</figure>\n"
     )
 
 
@@ -271,10 +274,14 @@ def linked(text: str, readings: Mapping[str, str]) -> str:
     return re.sub(r"\b[A-Z]\d+\b", link, clean(text))
 
 
-def _readings(rows: Sequence[Claim], heading: Heading) -> str:
-    """The sentences of the labels that the claims use; nothing if they use none."""
-    said = " ".join(f"{row.claim} {row.measurement} {row.verdict} {row.reason}" for row in rows)
-    names = set(re.findall(r"\b[A-Z]\d+\b", said))
+def _readings(sections: Sections, heading: Heading) -> str:
+    """The sentences of the labels that claims, titles and captions use; nothing if none does."""
+    said = [
+        f"{experiment.title} {experiment.caption} "
+        + " ".join(f"{row.claim} {row.measurement} {row.verdict} {row.reason}" for row in rows)
+        for experiment, rows in sections
+    ]
+    names = set(re.findall(r"\b[A-Z]\d+\b", " ".join(said)))
     used = {label: said for label, said in heading.readings.items() if label in names}
     items = [
         f'<dt id="{label}">{label}</dt><dd>{linked(sentence, used)}</dd>'

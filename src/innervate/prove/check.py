@@ -34,12 +34,12 @@ class Checked:
     wall_s: float = 0.0  # how long it took
 
 
-Teller = Callable[[Step, Question, str], list[str]]
+Explainer = Callable[[Step, Question, str], list[str]]
 
 
 def check(
     step: Step,
-    tell: Teller | None = None,
+    tell: Explainer | None = None,
     simple: Iterable[Term] = (),
     first_only: bool = False,
     reach: bool = True,
@@ -100,7 +100,7 @@ def _is_refuted(step: Step, question: Question) -> bool:
 
 
 def _all_refuted(
-    step: Step, question: Question, tell: Teller | None, simple: tuple[Term, ...]
+    step: Step, question: Question, tell: Explainer | None, simple: tuple[Term, ...]
 ) -> Iterator[Refuted]:
     """All goals that do not hold, with values that refute them, as simple as they can be had."""
     for goal in step.goals:

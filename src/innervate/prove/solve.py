@@ -3,7 +3,10 @@
 The only door to z3, which is an extra.
 """
 
+import threading
 from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any
 
 import z3
@@ -149,6 +152,7 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
 
 
 STEPS_MAX = 2_000_000_000
+BREAK_S = 0.02  # a solver that has been told to stop is told so again after that long
 
 
 class Question:
@@ -205,7 +209,7 @@ class Question:
         return solver
 
     def _ask(self, solver: Any, *assumed: Any) -> bool:
-        answer = solver.check(*assumed)
+        answer = self._answer(solver, assumed)
         if answer == z3.unsat:
             return False
         if answer != z3.sat:
@@ -213,6 +217,28 @@ class Question:
             raise UnsureError(f"the solver could not say: {why}")
         self.model = solver.model()
         return True
+
+    def _answer(self, solver: Any, assumed: tuple[Any, ...]) -> Any:
+        """What the solver says; it thinks in a thread, as a signal is only heard outside of it."""
+        said: Future[Any] = Future()
+
+        def think() -> None:
+            try:
+                said.set_result(solver.check(*assumed))
+            except Exception as error:
+                said.set_exception(error)
+
+        thread = threading.Thread(target=think)
+        try:
+            thread.start()
+            thread.join()
+        except KeyboardInterrupt:
+            while thread.is_alive():  # what is let go of now it may still be thinking of
+                with suppress(KeyboardInterrupt):
+                    solver.ctx.interrupt()
+                    thread.join(BREAK_S)
+            raise
+        return said.result()
 
     def holds(self, term: Term) -> bool:
         """If a truth holds for the values that were found last."""

@@ -8,7 +8,8 @@ from functools import cache
 from typing import Any
 
 from innervate.dialect.source import Change, Function, functions, reached
-from innervate.prove.check import Checked, Teller, Way, check, unreached
+from innervate.kernel.stop import ends_at_once
+from innervate.prove.check import Checked, Explainer, Way, check, unreached
 from innervate.prove.errors import ProveError
 from innervate.prove.steps import Step
 from innervate.prove.tell import changes
@@ -94,7 +95,7 @@ class Theory:
     # "" for one that holds, else the step that must refute it: a claim that is false
     refuted_by: str = ""
     is_example: bool = False  # it plays one story, so that branches are left out on purpose
-    tell: Teller = changes  # says in sentences what happens with values that refute a goal
+    tell: Explainer = changes  # says in sentences what happens with values that refute a goal
     # what counterexamples should keep to, of a step
     simple: Callable[[Step], list[Term]] | None = None
 
@@ -159,19 +160,38 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
 
     Args:
         theory: what is claimed.
-        tell: is told how far it is; says if to stop.
+        tell: is told how far it is; says if to stop. With it Ctrl-C ends a theory where it is, and
+            what was done of it is kept.
         first_only: end with the first step that is refuted; leave out those that a planted mistake
             does not touch.
     """
     checked: list[Checked] = []
-    reach = not (first_only or theory.is_example)
-    ended = "complete"
     lines: dict[Way, str] = {}
+    try:
+        with ends_at_once():
+            ended = _steps(theory, tell, first_only, checked, lines)
+    except KeyboardInterrupt:
+        if tell is None:
+            raise
+        ended = "stopped"
+    missing = list(unreached(checked)) if ended == "complete" and not theory.is_example else []
+    named = [way for way in missing if _is_named(theory, way, lines.get(way, ""))]
+    return Outcome(theory, checked, [way for way in missing if way not in named], named, ended)
+
+
+def _steps(
+    theory: Theory,
+    tell: Progress | None,
+    first_only: bool,
+    checked: list[Checked],
+    lines: dict[Way, str],
+) -> str:
+    """Try its steps in turn, adding to `checked` and to branches' `lines`; how it ended."""
+    reach = not (first_only or theory.is_example)
     for number, make in enumerate(theory.steps):
         step = make()
         if tell is not None and tell(f"{theory.name}: {step.name}", number, len(theory.steps)):
-            ended = "stopped"
-            break
+            return "stopped"
         if first_only and not is_touched(step):
             continue
         lines.update(_lines(step))
@@ -179,11 +199,8 @@ def prove(theory: Theory, tell: Progress | None = None, first_only: bool = False
         known = {way for one in checked for way in one.reached}
         checked.append(check(step, theory.tell, simple, first_only, reach, known))
         if first_only and checked[-1].refuted:
-            ended = "stopped"
-            break
-    missing = list(unreached(checked)) if ended == "complete" and not theory.is_example else []
-    named = [way for way in missing if _is_named(theory, way, lines.get(way, ""))]
-    return Outcome(theory, checked, [way for way in missing if way not in named], named, ended)
+            return "stopped"
+    return "complete"
 
 
 def _lines(step: Step) -> Iterator[tuple[Way, str]]:

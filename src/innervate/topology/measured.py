@@ -2,7 +2,8 @@
 
 Three forms are read. JSON as community meshes publish it: `links` with `source`, `target`,
 `source_tq`, `target_tq` (the share of frames that arrives at that end) and `type`, and `nodes` with
-`id` and perhaps `x` (latitude) and `y` (longitude) in degrees. Plain lines `A B 0.9 0.7`: two
+`id` and perhaps `x` (latitude) and `y` (longitude) in degrees; their servers' `meshviewer.json` has
+`node_id` and `location` with `latitude` and `longitude` instead. Plain lines `A B 0.9 0.7`: two
 names, the quality from A to B and back; one number stands for both, none for 1. And the networks
 of the package topohub, by name.
 """
@@ -169,7 +170,7 @@ def _numbered(nodes: list[Any]) -> tuple[dict[str, int], list[tuple[float, float
     number: dict[str, int] = {}
     degrees: list[tuple[float, float] | None] = []
     for i, node in enumerate(nodes):
-        name = _name(node.get("id") if isinstance(node, dict) else None)
+        name = _name(node.get("id", node.get("node_id")) if isinstance(node, dict) else None)
         if name is None:
             raise TopologyError(f'node {i} has no "id" that is a number or a string', "file")
         if problem := _unnameable(name):
@@ -236,15 +237,24 @@ def _share(link: dict[str, Any], i: int, key: str) -> float:
 
 
 def _degrees(node: dict[str, Any], i: int) -> tuple[float, float] | None:
-    latitude, longitude = node.get("x"), node.get("y")
+    """Where a node is; what its owner typed for a map and is not on the Earth counts as none."""
+    place = node.get("location")
+    if isinstance(place, dict):
+        latitude, longitude = place.get("latitude"), place.get("longitude")
+    else:
+        latitude, longitude = node.get("x"), node.get("y")
     if latitude is None or longitude is None:
         return None
-    for value, most in ((latitude, 90), (longitude, 180)):
-        if isinstance(value, bool) or not isinstance(value, int | float) or not -most <= value <= (
-            most
-        ):  # fmt: skip
-            raise TopologyError(f"x or y of node {i} is no number of degrees", "file")
-    return float(latitude), float(longitude)
+    if _is_angle(latitude, 90) and _is_angle(longitude, 180):
+        return float(latitude), float(longitude)
+    if isinstance(place, dict):
+        return None
+    raise TopologyError(f"x or y of node {i} is no number of degrees", "file")
+
+
+def _is_angle(value: Any, most: int) -> bool:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and -most <= value <= most
 
 
 def _join(

@@ -10,7 +10,7 @@ from typing import Any
 import innervate
 
 SCHEMA = 1
-PATIENCE_S = 10  # with git
+GIT_TIMEOUT_S = 10
 PACKAGES = ("numba", "llvmlite", "numpy", "polars", "msgspec")
 
 
@@ -56,7 +56,7 @@ def checkout(root: Path | None = None) -> tuple[str | None, bool | None]:
     command = ["git", "-C", str(root), "describe", "--always", "--abbrev=40", "--exclude=*"]
     try:
         done = subprocess.run(
-            [*command, "--dirty"], capture_output=True, text=True, timeout=PATIENCE_S, check=True
+            [*command, "--dirty"], capture_output=True, text=True, timeout=GIT_TIMEOUT_S, check=True
         )
     except (OSError, subprocess.SubprocessError):
         return None, None

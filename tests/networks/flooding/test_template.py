@@ -12,7 +12,7 @@ def test_what_new_writes_sends_and_all_of_it_is_delivered():
     assert done.summary["messages"]["delivered"] == len(plan.inputs) == 5
     headline = done.summary["headline"]
     assert headline["level"] == "ok"
-    assert headline["text"].startswith("All 5 messages are delivered, ")
+    assert headline["text"].startswith("All 5 messages are delivered once, ")
     assert headline["text"].endswith(" receptions are lost.")
 
 

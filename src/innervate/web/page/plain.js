@@ -7,6 +7,7 @@ import { LAYERS } from "./stage.js";
 import { off, offWords } from "./words.js";
 
 const FONT = "12px system-ui, sans-serif";
+const FEW = 400; // up to so many links names keep off, as far as there is room
 
 /** Draws a network of which no more is known than what its nodes declare. */
 export class PlainView extends MeshView {
@@ -65,6 +66,9 @@ export class PlainView extends MeshView {
     context.font = FONT;
     context.textAlign = "left";
     const names = new Labels(context, stage.width, stage.height);
+    if (network.ends.length <= FEW) {
+      for (const [a, b] of network.ends) names.avoid(stage.x[a], stage.y[a], stage.x[b], stage.y[b]);
+    }
     nodes.forEach((_, i) => {
       const [x, y, value] = [stage.x[i], stage.y[i], values[i] ?? null];
       const fill = value === null ? colours.panel : colours.h[shade(value - least, most - least)];
@@ -73,8 +77,11 @@ export class PlainView extends MeshView {
     });
     affected(context, network, stage, dot + 5);
     nodes.forEach(({ label }, i) => {
-      const at = names.put(label, stage.x[i], stage.y[i], dot + NAME_PX);
-      if (at) word(context, label, ...at, colours.soft, colours.ground, FONT);
+      const value = values[i] ?? null; // colour alone would not tell it
+      let at = null;
+      const text = (value === null ? [label] : [`${label}: ${value}`, label])
+        .find((one) => (at = names.put(one, stage.x[i], stage.y[i], dot + NAME_PX)));
+      if (at) word(context, text, ...at, colours.soft, colours.ground, FONT);
     });
   }
 

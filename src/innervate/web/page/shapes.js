@@ -1,6 +1,7 @@
 // Shapes that several views draw.
 import { colours } from "./colours.js";
 
+const HEAD_PX = 6; // of an arrow
 const RATIO_MAX = 2; // pixels per px of the page that drawing is worth
 const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -56,15 +57,18 @@ export function cross(path, x, y, size) {
   path.lineTo(x + size, y - size);
 }
 
-/** Add a line with a head at its end, which stops `gap` px before both places. */
-export function arrow(path, x0, y0, x1, y1, gap, head = 6) {
+/** Add a line with a head at its end, which stops `gap` px before both places; of places that are
+ * near each other less, so that there is a line, and the head is smaller than it. */
+export function arrow(path, x0, y0, x1, y1, gap) {
   const long = Math.hypot(x1 - x0, y1 - y0);
-  if (long < 2 * gap + 1) return;
+  if (long < 1) return;
+  const keep = Math.min(gap, 0.3 * long);
+  const head = Math.min(HEAD_PX, 0.6 * (long - 2 * keep));
   const ux = (x1 - x0) / long;
   const uy = (y1 - y0) / long;
-  const tx = x1 - ux * gap;
-  const ty = y1 - uy * gap;
-  path.moveTo(x0 + ux * gap, y0 + uy * gap);
+  const tx = x1 - ux * keep;
+  const ty = y1 - uy * keep;
+  path.moveTo(x0 + ux * keep, y0 + uy * keep);
   path.lineTo(tx, ty);
   path.moveTo(tx - head * (ux + 0.6 * uy), ty - head * (uy - 0.6 * ux));
   path.lineTo(tx, ty);

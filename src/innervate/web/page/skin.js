@@ -13,6 +13,7 @@ const PORT_COLOURS = 8;
 const LINK_PX = 6; // a click is at most so far from the middle of a cable that it cuts
 const FEW = 0.1; // up to this share of cells is painted over one by one
 const BRICKS_PX = 5; // below this pitch hexagons are squares
+const PORT_PX = 10; // half of a port's box
 const WORDS_PX = 22; // from this pitch on cells bear a number
 
 /** Draws a skin on a stage. */
@@ -232,9 +233,9 @@ export class SkinView {
     stroke(context, colours.link, Math.max(0.6, Math.min(2.6, 0.1 * stage.scale)), tree);
     context.globalAlpha = 1;
     this.#lacks(context, stage);
+    affected(context, network, stage, Math.max(3, 0.42 * stage.scale));
     this.#cuts(context, stage);
     this.#plugs(context, stage);
-    affected(context, network, stage, Math.max(3, 0.42 * stage.scale));
   }
 
   #lacks(context, stage) {
@@ -260,11 +261,20 @@ export class SkinView {
       if (!network.isCut(link) || !shown(a) || !shown(b)) return;
       line(dashes, stage, a, b);
       const size = Math.max(3.5, Math.min(6, 0.2 * stage.scale));
-      cross(gaps, (stage.x[a] + stage.x[b]) / 2, (stage.y[a] + stage.y[b]) / 2, size);
+      cross(gaps, ...this.#gap(stage, a, b), size);
     });
     stroke(context, colours.alarm, 2.4, dashes, [4, 3]);
     stroke(context, colours.ground, 5, gaps);
     stroke(context, colours.alarm, 3, gaps);
+  }
+
+  /** The middle of what can be seen of a cable: a port's box hides an end. */
+  #gap(stage, a, b) {
+    const [near, far] = this.ports.includes(a) ? [b, a] : [a, b];
+    const [dx, dy] = [stage.x[far] - stage.x[near], stage.y[far] - stage.y[near]];
+    const hidden = this.ports.includes(far) ? PORT_PX : 0;
+    const part = Math.max(0.25, 0.5 - 0.5 * hidden / (Math.hypot(dx, dy) || 1));
+    return [stage.x[near] + part * dx, stage.y[near] + part * dy];
   }
 
   #plugs(context, stage) {
@@ -272,7 +282,7 @@ export class SkinView {
     for (const i of this.ports) {
       context.fillStyle = colours.ink;
       context.beginPath();
-      context.roundRect(stage.x[i] - 10, stage.y[i] - 9, 20, 18, 4);
+      context.roundRect(stage.x[i] - PORT_PX, stage.y[i] - 9, 2 * PORT_PX, 18, 4);
       context.fill();
       const name = String(this.network.nodes[i].port ?? "");
       word(context, name, stage.x[i], stage.y[i] + 1, colours.ground, colours.ink,

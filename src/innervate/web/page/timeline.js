@@ -9,6 +9,7 @@ const BOTTOM = 22;
 const WALL_S = 4; // so much of the reader's time is in sight
 const SPAN_S = [0.002, 10];
 const LANE_PX = 40;
+const RIM_PX = 4; // a narrower box is all of its colour, without a rim
 
 /** How boxes look, as in reports: letter, height as a share of the lane's, fill. */
 const BOXES = {
@@ -107,7 +108,7 @@ export class Timeline {
       context.fillRect(left, top, wide, high);
       context.strokeStyle = look.struck ? colours.alarm : colours.soft;
       context.lineWidth = look.struck ? 1.6 : 0.8;
-      context.strokeRect(left, top, wide, high);
+      if (look.struck || wide >= RIM_PX) context.strokeRect(left, top, wide, high);
       if (look.struck) {
         cross(struck, left + wide / 2, top + high / 2, Math.min(4, wide / 2, high / 2));
       } else if (wide > 9 * look.letter.length + 3 && high >= 11) {

@@ -179,3 +179,22 @@ def test_the_line_above_says_what_has_happened_so_far(parse, by, who):
     assert [text for _, text in told] == [
         "robot n2 is inside the fence", "robot n2 has left the fence", f"{who} raises the alarm",
         "the monitor knows, 90.0 ms later: robot 0.12 m out"]  # fmt: skip
+
+
+def test_no_name_lies_on_the_pin_of_the_crossing(parse, monkeypatch):
+    """The robot's own would stand above it: beside it is the fence."""
+    walk = [{"node": 2, "waypoints": [[50, 15], [50, 25]], "speed_mps": 1.0}]
+    monkeypatch.setitem(TABLES, "robot", walk)
+    result = result_of()
+    drawing = parse(film.film(result, crossing(), Sheet(result.plan)))
+    x, y = map(float, pins(drawing)[0].split("l")[0].split(","))
+    for text in drawing.findall(".//{*}text"):
+        if text.text in ("n0 gateway", "n1", "n2 robot"):
+            long, at, level = 6.6 * len(text.text), float(text.get("x")), float(text.get("y"))
+            left = at - {"middle": 0.5, "end": 1}.get(text.get("text-anchor"), 0) * long
+            top, low = level + film.HEAD - 9, level + film.HEAD + 2
+            assert left + long < x - 5 or left > x + 5 or low < y - 13 or top > y, text.text
+
+
+def pins(drawing):
+    return [one.get("d")[1:] for one in drawing.findall(".//{*}path") if one.get("class") == "warn"]

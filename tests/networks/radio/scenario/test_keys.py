@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from innervate.networks.radio.protocol.fields import PARAMS
 from innervate.networks.radio.scenario.traffic import exponential
 from innervate.scenario import (
     ScenarioError,
@@ -74,6 +75,14 @@ def test_mistakes(old: str, new: str, message: str) -> None:
 def test_protocol_keys_know_their_range(key: str) -> None:
     with pytest.raises(ScenarioError, match=f"protocol.{key} must be"):
         loads(SMALL, [f"protocol.{key}=-1"])
+
+
+@pytest.mark.parametrize("key", ["turns", "per_turn"])
+def test_what_a_station_takes_a_scenario_takes(key: str) -> None:
+    most = next(high for name, _, _, high, *_ in PARAMS if name == key)
+    assert plan(loads(SMALL, [f"protocol.{key}={most}"])).params[key] == most
+    with pytest.raises(ScenarioError, match=f"protocol.{key} must be at most {most}"):
+        loads(SMALL, [f"protocol.{key}={most + 1}"])
 
 
 def test_more_packets_than_can_be_kept() -> None:

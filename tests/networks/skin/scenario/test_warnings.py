@@ -58,6 +58,15 @@ def test_a_touch_that_nobody_learns_of():
     assert warned(touch={}, data={"rate_hz": 100}) == []
 
 
+@pytest.mark.parametrize(("x", "y", "felt"), [(0, -29, True), (0, -31, False), (134, 0, True),
+                                             (137, 0, False), (9000, 9000, False)])  # fmt: skip
+def test_a_touch_beside_the_skin(x, y, felt):
+    # 8 x 10 cells are 105 x 109 mm; the touch reaches 30 mm.
+    keys = {"data": {"rate_hz": 100}, "touch": {"path": [[0.0, x, y], [4.0, x, y]]}}
+    found = warned(**keys)
+    assert found == [] if felt else "the touch stays more than 30 mm away" in found[0]
+
+
 @pytest.mark.parametrize("updates", ["periodic", "triggered", "wave"])
 @pytest.mark.parametrize("k", [2, 5])
 def test_a_run_that_is_too_short_for_a_way(updates, k):

@@ -32,8 +32,8 @@ STANDBY = 1
 def plan_of(given: Given, seed: int, protocol: Options = (), more: Options = ()) -> Any:
     """The mesh of a case, in which nobody sends and nobody dies."""
     seconds = (BEGIN_US + _lasts_us(given) + END_US) / 1e6
-    bed = MeshTestbed(nodes=given["nodes"], protocol=protocol, duration_s=seconds, more=more)
-    return bed.plan(seed)
+    testbed = MeshTestbed(nodes=given["nodes"], protocol=protocol, duration_s=seconds, more=more)
+    return testbed.plan(seed)
 
 
 def _lasts_us(given: Given) -> int:

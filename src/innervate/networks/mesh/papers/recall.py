@@ -65,8 +65,8 @@ def other_uplink(quick: bool, reading: str) -> Point:
 
 def first_ones(quick: bool) -> Point:
     """The same networks with discovery tree: whom nodes heard first, and who is the best."""
-    bed = MeshTestbed(protocol=(("discovery", "tree"),), duration_s=8.0)
-    return bed.point("first and best", seeds(quick), uplinks.measure)
+    testbed = MeshTestbed(protocol=(("discovery", "tree"),), duration_s=8.0)
+    return testbed.point("first and best", seeds(quick), uplinks.measure)
 
 
 def measure(of: MeshTestbed, seed: int) -> dict[str, Any]:

@@ -69,6 +69,8 @@ class _Crossing:
         for hop in self.sent:
             if hop.to < self.plan.nodes:
                 names.block_line([places[hop.node], places[hop.to]])
+        x, y = self._pin(places)
+        names.block((x, y - 8), 8.0)
         field = mesh_map.Field(drawing, self.plan, self.sheet, names, on)
         mesh_map.ground(field)
         mesh_map.nodes(field, places)
@@ -118,10 +120,13 @@ class _Crossing:
 
     def _robot(self) -> None:
         """Where the fence was crossed, from then on."""
-        x, y = self.places[self.crossing.robot]
-        at = (x, y - self.sheet.dot - 4)
         self.drawing.seen("path", [(self.crossing.crossed_us, 1.0)], class_="warn",
-                          d=mesh_map.pin(at))  # fmt: skip
+                          d=mesh_map.pin(self._pin(self.places)))  # fmt: skip
+
+    def _pin(self, places: dict[int, Point]) -> Point:
+        """Where the tip of the crossing's pin is: above the robot."""
+        x, y = places[self.crossing.robot]
+        return x, y - self.sheet.dot - 4
 
     def _told(self) -> None:
         """Draw two rings about the monitor from the moment on when it knows."""

@@ -9,6 +9,21 @@ from innervate.sim.channel.world import RING
 from innervate.sim.tables import get
 
 
+def _overdue(plan: Any, waits: dict[int, list[int]], before_us: int, ended: bool) -> dict[int, int]:
+    """Per station how many packets wait too long; of a run that had a goal and has ended, all."""
+    goal = ended and not plan.saturated and plan.wanted > 0
+    return {
+        i: len(offers) if goal else sum(at < before_us for at in offers)
+        for i, offers in waits.items()
+    }
+
+
+def _still_ms(waits: Iterable[list[int]], now_us: int, delivered_us: int) -> float:
+    """For how long packets have waited and none was delivered."""
+    oldest = min((offers[0] for offers in waits if offers), default=now_us)
+    return max(0, now_us - max(oldest, delivered_us)) / 1e3
+
+
 def facts(
     world: Any,
     plan: Any,
@@ -23,20 +38,15 @@ def facts(
     `delivered_us`: when the newest packet was known to be delivered; 0 = none yet. `faults`: what
     was done to the team besides the plan's own. `ended`: nothing more will happen.
     """
-    count = plan.stations
     on, off, away = _presence(world, plan, now_us)
     since = switched_on(plan, faults, now_us)
-    waits = {i: waiting(world, i, since[i]) for i in range(count)}
-    timeout = timeout_us(plan.params, count)
-    goal = ended and not plan.saturated and plan.wanted > 0
-    overdue = {
-        i: len(waits[i]) if goal else sum(now_us - at > timeout for at in waits[i]) for i in on
-    }
+    waits = {i: waiting(world, i, since[i]) for i in range(plan.stations)}
+    timeout = timeout_us(plan.params, plan.stations)
+    overdue = _overdue(plan, {i: waits[i] for i in on}, now_us - timeout, ended)
     believed_us = [plan.params["dmin_us"], plan.params["dmax_us"]]
     run = {name: int(get(world.run, 0, name)) for name in _COUNTS}
-    oldest = min((waits[i][0] for i in on if waits[i]), default=now_us)
     return RadioFacts(
-        stations=count,
+        stations=plan.stations,
         off=off,
         away=away,
         offered=run["offers"],
@@ -48,7 +58,7 @@ def facts(
         partial=run["partial"],
         overdue=sum(overdue.values()),
         waiting=tuple(i for i in on if overdue[i]),
-        still_ms=max(0, now_us - max(oldest, delivered_us)) / 1e3,
+        still_ms=_still_ms((waits[i] for i in on), now_us, delivered_us),
         timeout_ms=timeout / 1e3,
         hidden=plan.pairs.hidden,
         bounds=None if plan.pairs.within(*believed_us) else {"believed_us": believed_us},

@@ -66,7 +66,7 @@ class MediumAccessTable(keys.Table, frozen=True, kw_only=True):
         Meta(description="two numbers of microseconds, [least, most]"),
     ] = None
     turns: Annotated[int, keys.whole("turns", 1, 65_535)] = 20
-    per_turn: Annotated[int, keys.whole("packets", 1, 7)] = 1
+    per_turn: Annotated[int, keys.whole("packets", 1, 8)] = 1
     wait_us: keys.Micros = 0
     p: Annotated[float, Meta(gt=0, le=1, description="a probability > 0, at most 1")] = 0.1
     cw_min: Annotated[int, keys.whole("slots", 1, 1024)] = 32

@@ -78,7 +78,7 @@ class Rules(NamedTuple):
     """What the stations of CSMA/CD-R have agreed on."""
 
     turns: int = 20  # turns of a round between two open windows
-    per_turn: int = 1  # most packets in one turn, 1 .. 7
+    per_turn: int = 1  # most packets in one turn, 1 .. 8
     wait_us: int = 0  # W, bound of the random wait (paper); 0 = two packets
     tail_rule: int = 1  # T1, without which the last and the second to last both report (paper)
     overlap_rule: int = 1  # T4, without which CR-Rs that overlap count as one (paper)

@@ -4,7 +4,10 @@ from math import ceil
 
 from innervate.networks.skin.scenario.plan import RULES, UPDATES, Plan
 from innervate.networks.skin.scenario.rules import ONE
+from innervate.networks.skin.scenario.touch import Touch
 from innervate.scenario.cables import LOSS_ONE
+from innervate.topology import Graph
+from innervate.topology.layout import cell_places
 from innervate.topology.weak import weak_points
 
 SETTLE_PERIODS = 3  # beyond the beacons that have to be heard: measured on lines and patches
@@ -20,9 +23,28 @@ def warnings(made: Plan) -> list[str]:
 
 
 def _touch(made: Plan) -> list[str]:
-    if made.touch is None or made.data_period_us:
+    touch = made.touch
+    if touch is None:
         return []
-    return ["there is a [touch], but cells send no data, so nobody learns of it; set data.rate_hz"]
+    if not made.data_period_us:
+        return ["there is a [touch], but cells send no data, so nobody learns of it; "
+                "set data.rate_hz"]  # fmt: skip
+    if _comes_near(touch, made.graph):
+        return []
+    return [
+        f"the touch stays more than {touch.radius_um / 1000:g} mm away from all cells, so none "
+        "feels it; see touch.path, in mm from the top left cell"
+    ]
+
+
+def _comes_near(touch: Touch, graph: Graph) -> bool:
+    """True if it reaches into the rectangle around all cells, which begins at 0, 0."""
+    radius = touch.radius_um
+    right, bottom = (1000 * max(along) for along in zip(*cell_places(graph), strict=True))
+    return any(
+        -radius <= x <= right + radius and -radius <= y <= bottom + radius
+        for x, y in zip(touch.x_um, touch.y_um, strict=True)
+    )
 
 
 def start_up_us(made: Plan) -> int:
