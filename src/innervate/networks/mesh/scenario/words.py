@@ -166,7 +166,8 @@ def _astray(made: MeshPlan) -> list[str]:
         if noise_m > least:
             found.append(
                 f"positions of {who} err by {noise_m:g} m, and the fence warns {least:.3g} m "
-                "before it is reached (speed times fence.predict_s): warnings come no sooner than alarms"
+                "before it is reached (speed times fence.predict_s): warnings come no sooner than "
+                "alarms"
             )
     return found
 
