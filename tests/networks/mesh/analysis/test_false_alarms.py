@@ -72,7 +72,8 @@ def test_of_alarms_before_and_after_the_crossing_each_counts_once():
 
 
 def test_who_is_inside_again_raises_a_false_alarm_not_that_of_the_crossing():
-    _, it = found(own(9.2), own(9.4, CLEAR), own(18), own(18.5, CLEAR), told=[9_204_000, 18_004_000])
+    rows = [own(9.2), own(9.4, CLEAR), own(18), own(18.5, CLEAR)]
+    _, it = found(*rows, told=[9_204_000, 18_004_000])
     assert crossed(it) == [(5, None, None), (19, None, None)]
     assert [one.raised_us for one in it.false] == [9_200_000, 18 * S]
 

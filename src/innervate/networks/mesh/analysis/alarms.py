@@ -221,9 +221,7 @@ def robot_hours(result: Any) -> float:
     return float(len(result.plan.walks) * result.ended_us / 3.6e9)
 
 
-def alarms(
-    found: list[Crossing], false: Sequence[FalseAlarm] = (), hours: float = 0.0
-) -> Alarms:
+def alarms(found: list[Crossing], false: Sequence[FalseAlarm] = (), hours: float = 0.0) -> Alarms:
     """The summary's part on alarms; a crossing that nobody noticed counts as not delivered.
 
     `hours` are those of all robots together, 0 if there is none.

@@ -66,10 +66,10 @@ def headline(
 
     `elsewhere` are nodes of which only others' words are known, which are believed.
 
-    degraded: a message or an alarm was lost or came twice, an alarm was false, a broadcast missed somebody, a packet
-    met a node twice, a node is off, cut off or without a way, the network is in parts. down:
-    nobody's messages get through to a gateway, nor did anything come to anybody else since, or
-    the only node hears nobody. no data: nobody has heard a gateway yet.
+    degraded: a message or an alarm was lost or came twice, an alarm was false, a broadcast missed
+    somebody, a packet met a node twice, a node is off, cut off or without a way, the network is in
+    parts. down: nobody's messages get through to a gateway, nor did anything come to anybody else
+    since, or the only node hears nobody. no data: nobody has heard a gateway yet.
     """
     lost = traffic.crossings + traffic.decided - traffic.learned - traffic.delivered
     if not (ways.on & ways.joined).any() and not ways.off.any() and not lost:

@@ -14,8 +14,8 @@ from innervate.networks.mesh.scenario.plan import Walk
 from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
 from innervate.networks.mesh.sim.over_channel import KEPT
-from innervate.sim.field import build as field
 from innervate.sim.field import astray, powers, queue
+from innervate.sim.field import build as field
 from innervate.sim.field.loop import NEVER
 from innervate.sim.field.world import COMMAND
 from innervate.sim.recorded import Recorded
