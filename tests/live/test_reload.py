@@ -156,3 +156,16 @@ def test_whatever_it_is_told_to_run_on_a_node_holds_hangups_before_it_loads_comm
         hangup.let_in()
         assert cli.main(["live", "node", "n0.toml", *more]) == 0
     assert [signal.SIGHUP in one for one in blocked] == [True]
+
+
+def test_nodes_of_a_network_are_started_with_hangups_held(monkeypatch, tmp_path):
+    network = Processes(scenarios.plan(scenarios.from_dict(LINE)), tmp_path, "udp")
+    blocked = []
+
+    def begin(*_, **__):
+        blocked.append(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+
+    monkeypatch.setattr(subprocess, "Popen", begin)
+    network.start_node("n0")
+    assert [signal.SIGHUP in one for one in blocked] == [True]
+    assert signal.SIGHUP not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
