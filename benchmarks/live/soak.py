@@ -318,8 +318,9 @@ def tell(soak, found, cpu):
     sizes = list(soak.grown())
     if sizes:
         first, last = max(size for _, size, _ in sizes), max(size for _, _, size in sizes)
+        used = "no node ran all the time" if math.isnan(cpu) else f"CPU of a node {cpu:.1f} %"
         print(f"largest life of a node {first:.1f} MiB after {SETTLED_S:g} s, {last:.1f} MiB at "
-              f"its end; CPU of a node {cpu:.1f} %")  # fmt: skip
+              f"its end; {used}")  # fmt: skip
 
 
 if __name__ == "__main__":
