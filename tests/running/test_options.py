@@ -1,4 +1,6 @@
-"""A misspelt argument of a public function is refused, with the names that there are."""
+"""Options by name: shown by `help`, and a misspelt one is refused, with those that there are."""
+
+from inspect import Parameter, signature
 
 import pytest
 
@@ -15,6 +17,22 @@ CALLS = {
     "size takes no vary; it takes workers, kind, dask":
         lambda: innervate.size(innervate.Question("none", "*"), vary=()),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("function", "shown"),
+    [
+        (innervate.run, {"checks": True, "received": None, "plain": False, "seed": None}),
+        (innervate.sweep, {"vary": (), "repeat": None, "workers": None, "kind": "processes"}),
+        (innervate.size, {"repeat": 20, "workers": None, "dask": ""}),
+        (innervate.explore, {"reduce": True, "plain": False}),
+        (make_plan, {"vary": (), "until": ()}),
+    ],
+)
+def test_help_shows_options_and_what_is_usual(function, shown):
+    found = signature(function).parameters
+    assert {name: found[name].default for name in shown} == shown
+    assert all(one.kind is not Parameter.VAR_KEYWORD for one in found.values())
 
 
 @pytest.mark.parametrize("said", CALLS)

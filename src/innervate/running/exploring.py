@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import TypedDict, Unpack
 
 from innervate.network import Network, NetworkError, networks, use
-from innervate.running.options import refuse_others
+from innervate.running.options import refuse_others, takes
 from innervate.running.showing import Bar
 from innervate.verify.cases import USUAL, Case, notice_of
 
@@ -47,6 +47,7 @@ class Wanted(TypedDict, total=False):
     plain: bool
 
 
+@takes(Wanted, USUAL)
 def explore(network: str | os.PathLike[str] | Network, **wanted: Unpack[Wanted]) -> list[Case]:
     """Explore every order of events of a protocol on small graphs, as `innervate verify` does.
 

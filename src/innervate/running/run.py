@@ -15,7 +15,7 @@ from innervate.folders import for_plain
 from innervate.network import networks
 from innervate.running import folder as folders
 from innervate.running.errors import RunError
-from innervate.running.options import refuse_others
+from innervate.running.options import refuse_others, takes
 from innervate.running.showing import Bar
 from innervate.scenario import Scenario
 from innervate.scenario.given import Changes, Given, load
@@ -172,6 +172,7 @@ class Run(Summaries):
         return self.written
 
 
+@takes(How, USUAL)
 def run(
     scenario: Given,
     *,

@@ -13,7 +13,7 @@ from typing import Any, Literal, TypedDict, Unpack
 from msgspec import Struct
 
 from innervate import scenario as scenarios
-from innervate.running.options import refuse_others
+from innervate.running.options import refuse_others, takes
 from innervate.running.showing import Bar
 from innervate.scenario import Scenario, ScenarioError
 from innervate.sweeping import planfile, tables
@@ -81,6 +81,12 @@ class Asked(Planned, Crew, total=False):
     """What a sweep is asked for besides its scenario and its folder."""
 
 
+AS_WRITTEN: Planned = {"vary": (), "overrides": (), "derive": None, "repeat": None, "seed": None,
+                       "until": (), "batch": None, "paired": ()}  # fmt: skip
+ALL_CORES: Crew = {"workers": None, "kind": "processes", "dask": ""}
+
+
+@takes(Asked, {**AS_WRITTEN, **ALL_CORES})
 def sweep(
     scenario: Source | SweepPlan,
     *,
@@ -111,8 +117,8 @@ def sweep(
         KeyboardInterrupt: Ctrl-C; with `out` what was done is kept, and the same call goes on.
     """
     refuse_others("a sweep", asked, Asked.__annotations__)
-    workers, dask = asked.pop("workers", None), asked.pop("dask", "")
-    crew = engine(asked.pop("kind", "processes"), workers, dask)
+    workers, dask = asked.pop("workers", ALL_CORES["workers"]), asked.pop("dask", ALL_CORES["dask"])
+    crew = engine(asked.pop("kind", ALL_CORES["kind"]), workers, dask)
     planned: Planned = asked
     plan = scenario if isinstance(scenario, SweepPlan) else make_plan(scenario, **planned)
     plan, made = _checked(plan)
@@ -162,6 +168,7 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
     return done
 
 
+@takes(Planned, AS_WRITTEN)
 def make_plan(scenario: Source, **planned: Unpack[Planned]) -> SweepPlan:
     """The plan that these describe, as in sweep(); what they say goes before a plan file's."""
     refuse_others("a sweep", planned, Planned.__annotations__)

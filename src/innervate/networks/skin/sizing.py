@@ -10,12 +10,12 @@ from typing import Any, Unpack
 import polars
 
 from innervate import scenario as scenarios
-from innervate.running.options import refuse_others
+from innervate.running.options import refuse_others, takes
 from innervate.scenario import ScenarioError
 from innervate.sweeping.errors import SweepError
 from innervate.sweeping.plan import SweepPlan
 from innervate.sweeping.result import Sweep
-from innervate.sweeping.sweep import Crew, Progress, make_plan, sweep
+from innervate.sweeping.sweep import ALL_CORES, Crew, Progress, make_plan, sweep
 from innervate.sweeping.vary import Named
 from innervate.topology import Graph, TopologyError, cells_from_urdf
 from innervate.topology.body import body_graph, joining_reach
@@ -130,6 +130,7 @@ class Answer:
         return figure.write(self, folder)
 
 
+@takes(Crew, ALL_CORES)
 def size(
     question: Question,
     *,
