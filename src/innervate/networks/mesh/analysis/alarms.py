@@ -71,7 +71,9 @@ def all_crossings(result: Any) -> list[Crossing]:
 
 def judged(result: Any) -> Judged:
     """Every crossing of a run, and every alarm that is of none; none without a fence."""
-    plan, found, false = result.plan, [], []
+    plan = result.plan
+    found: list[Crossing] = []
+    false: list[FalseAlarm] = []
     edges = edges_of(plan)
     if not edges:
         return Judged([], [])
