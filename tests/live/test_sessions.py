@@ -11,6 +11,7 @@ from innervate.live.keyring import is_same_end
 from innervate.live.rotation import Rotation
 from innervate.live.session import COUNTERS, REKEY_US, Session
 from innervate.wire import seal
+from tests.live import time_by_hand
 from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, settle, two
 from tests.live.test_rotation import timed
 
@@ -211,3 +212,13 @@ async def test_keys_leave_each_at_its_own_time_and_one_that_is_wanted_back_stays
     rotation.stop()
     await look(300.0)
     assert seen[-1] == (1, [1, 3])
+
+
+def test_an_event_loop_is_not_kept_busy_by_nobody():
+    async def main():
+        a = Wire()
+        begin(network_sealer(1), a)
+        await settle(60.0)
+        return len(a.said)
+
+    assert 40 < time_by_hand.run(main()) < 90
