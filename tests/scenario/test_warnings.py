@@ -57,6 +57,9 @@ CASES = [
     ("skin", "over the only cable between them", TIGHT + "[data]\nrate_hz = 5473",
      TIGHT + "[data]\nrate_hz = 5472"),
     ("skin", "nobody learns of it", patch(0) + "[touch]\n", patch(1) + "[touch]\n"),
+    ("skin", "the touch stays more than 30 mm away", *(
+        patch(1) + f"[touch]\npath = [[0, {x}, 0], [1, {x}, 10]]\n" for x in (9000, 0)
+    )),
     ("skin", "the run may end before", patch(0, "duration_s = 0.01"), patch(0, "duration_s = 1")),
     ("skin", "nobody gets any frame", patch(0) + "[timing]\nloss = 1.0\n",
      patch(0) + "[timing]\nloss = 0.99\n"),

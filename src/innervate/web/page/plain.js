@@ -67,7 +67,9 @@ export class PlainView extends MeshView {
     context.textAlign = "left";
     const names = new Labels(context, stage.width, stage.height);
     if (network.ends.length <= FEW) {
-      for (const [a, b] of network.ends) names.avoid(stage.x[a], stage.y[a], stage.x[b], stage.y[b]);
+      for (const [a, b] of network.ends) {
+        names.avoid(stage.x[a], stage.y[a], stage.x[b], stage.y[b]);
+      }
     }
     nodes.forEach((_, i) => {
       const [x, y, value] = [stage.x[i], stage.y[i], values[i] ?? null];

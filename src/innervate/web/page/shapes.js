@@ -57,6 +57,14 @@ export function cross(path, x, y, size) {
   path.lineTo(x + size, y - size);
 }
 
+/** The middle of what can be seen of a line: of its end at i `hidden(i)` px cannot. */
+export function middle(stage, a, b, hidden) {
+  const [dx, dy] = [stage.x[b] - stage.x[a], stage.y[b] - stage.y[a]];
+  const part = 0.5 + (0.5 * (hidden(a) - hidden(b))) / (Math.hypot(dx, dy) || 1);
+  const held = Math.max(0.25, Math.min(0.75, part));
+  return [stage.x[a] + held * dx, stage.y[a] + held * dy];
+}
+
 /** Add a line with a head at its end, which stops `gap` px before both places; of places that are
  * near each other less, so that there is a line, and the head is smaller than it. */
 export function arrow(path, x0, y0, x1, y1, gap) {

@@ -4,7 +4,7 @@ import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
   affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hexagon,
-  stroke, word,
+  middle, stroke, word,
 } from "./shapes.js";
 import { off, offWord, plural } from "./words.js";
 
@@ -261,20 +261,11 @@ export class SkinView {
       if (!network.isCut(link) || !shown(a) || !shown(b)) return;
       line(dashes, stage, a, b);
       const size = Math.max(3.5, Math.min(6, 0.2 * stage.scale));
-      cross(gaps, ...this.#gap(stage, a, b), size);
+      cross(gaps, ...middle(stage, a, b, (i) => (this.ports.includes(i) ? PORT_PX : 0)), size);
     });
     stroke(context, colours.alarm, 2.4, dashes, [4, 3]);
     stroke(context, colours.ground, 5, gaps);
     stroke(context, colours.alarm, 3, gaps);
-  }
-
-  /** The middle of what can be seen of a cable: a port's box hides an end. */
-  #gap(stage, a, b) {
-    const [near, far] = this.ports.includes(a) ? [b, a] : [a, b];
-    const [dx, dy] = [stage.x[far] - stage.x[near], stage.y[far] - stage.y[near]];
-    const hidden = this.ports.includes(far) ? PORT_PX : 0;
-    const part = Math.max(0.25, 0.5 - 0.5 * hidden / (Math.hypot(dx, dy) || 1));
-    return [stage.x[near] + part * dx, stage.y[near] + part * dy];
   }
 
   #plugs(context, stage) {

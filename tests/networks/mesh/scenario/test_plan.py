@@ -55,7 +55,7 @@ def test_the_same_on_any_machine() -> None:
     """Numbers that were computed with logarithms and rounded: they must not depend on a libm."""
     p = plan(load("mesh-field"))
     text = repr((p.positions_cm, p.radio, p.good, p.walks, p.offers, p.faults, p.starts_us))
-    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "5fb24602d271769f"
+    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "f7652eccbe11cf88"
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
