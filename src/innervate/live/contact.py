@@ -92,9 +92,9 @@ class Contact:
     def renew_all(self) -> None:
         """Have all sessions made anew; they are taken until that is done."""
         self._due.update(self.sessions)
-        self.hurry()
+        self.ask_at_once()
 
-    def hurry(self) -> None:
+    def ask_at_once(self) -> None:
         """Ask now, and often at first."""
         if self._timer is not None:
             self._timer.cancel()
@@ -257,7 +257,7 @@ class Contact:
         if gone or not self.sessions:
             self._answered.clear()
             self._asked.clear()
-            self.hurry()
+            self.ask_at_once()
         return bool(gone)
 
     def all_sessions(self) -> list[Session]:

@@ -150,7 +150,7 @@ def test_a_gateway_that_has_much_to_send_begins_its_rounds():
 
 def test_where_answers_were_late_a_few_questions_in_vain_prove_nothing():
     net = guarded(count=4, links=[(0, 1), (1, 2), (2, 3)], standbys=(3,))
-    assert net.nodes[3].patience == 0
+    assert net.nodes[3].tolerance == 0
     for silence in (700_000, 1_500_000, 2_200_000):
         since = net.now
         net.lost = lambda frame, to, until=since + silence: to == 3 and net.now < until

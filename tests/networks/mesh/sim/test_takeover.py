@@ -19,8 +19,8 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.route import NONE, planned
 from innervate.networks.mesh.protocol.standby import (
     IN_VAIN,
-    PATIENCE_MAX,
     SPARE_HOPS,
+    TOLERANCE_MAX,
 )
 from innervate.networks.mesh.sim.simulate import simulate
 from tests.networks.mesh.net import Net, geometric, line, ring
@@ -166,7 +166,7 @@ def test_nor_is_that_of_a_patient_standby_which_leads_within_three_and_a_half_se
     """It waited a second and more between questions, up to 15 s in all."""
     net = guarded(count=20, links=geometric(20, 6, 2), standbys=(3,))
     most = net.nodes[3].depth + SPARE_HOPS
-    net.nodes[3].patience = PATIENCE_MAX
+    net.nodes[3].tolerance = TOLERANCE_MAX
     died = kill(net, 0)
     net.run(died + 3_500_000)
     assert leaders(net) == [3]

@@ -135,7 +135,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 | a `rank`   | `TICK`, it led, neighbours say  | `on_tick`, `tick`, `lead`        | leads          |
 | any        | `REQUEST` that `is_newer`       | `on_request`, `begin`            | follows        |
 | a `rank`   | `TICK`, `dead` silent ticks     | `on_tick`, `tick`, `lead`        | leads          |
-| a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns patience   |                |
+| a `rank`   | `JOBS`, no sign of life         | `guard`: asks; learns tolerance  |                |
 | a `rank`   | the gateway's frames            | `hear_of_gateway`: it lives      |                |
 | a `rank`   | ... and all questions in vain   | `guard`, `lead`, `inherit`       | leads          |
 | any        | `REQUEST` of another gateway,   | `redirect`: alarms go to it; who |                |
@@ -224,7 +224,7 @@ Timers
 |                | at most 4 times                                                                 |
 | `JOBS = 5`     | gateway: a table's acks: `job_us`, more by tries, parts and hops; standby:      |
 |                | `guard_us`, so many as stand by before it; before a question more with          |
-|                | `patience`; after a request of who is new or has no table `collect_us` more     |
+|                | `tolerance`; after a request of who is new or has no table `collect_us` more    |
 | `BACKOFF = 0`  | access: a draw below 2^exponent times `backoff_us`                              |
 
 `TIMERS = 6`, of access `TIMERS = 1`. Exponents: `exponent_min` and a transmission each, at most
@@ -321,8 +321,8 @@ Constants and settings
 | `SLACK = 2`                                    | ticks: nodes count them from different moments  |
 | `guard_us`                                     | decision 0042: a standby's wait; one more for   |
 |                                                | each that is before it                          |
-| `IN_VAIN = 4`, `PATIENCE = 40`,                | questions in vain; eighths of one more: at      |
-| `PATIENCE_MAX = 64`                            | first, after a late answer (decision 0067)      |
+| `IN_VAIN = 4`, `TOLERANCE = 40`,               | questions in vain; eighths of one more: at      |
+| `TOLERANCE_MAX = 64`                           | first, after a late answer (decision 0067)      |
 | `SPARE_HOPS = 3`                               | decision 0053: of a question, beyond the depth  |
 | `COUNTED_MAX = 15`, `UPLINKS_TOLD = 3`         | neighbours in a response: counted; table-free   |
 | `REQUEST_BYTES = 7`, `ASKED_MAX = 20`          | of a request, before names; most names, for an  |

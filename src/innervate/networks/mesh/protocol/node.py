@@ -103,7 +103,7 @@ from innervate.networks.mesh.protocol.round import (
 )
 from innervate.networks.mesh.protocol.route import learn_way
 from innervate.networks.mesh.protocol.send import is_upward, on_ack_timeout, send_up
-from innervate.networks.mesh.protocol.standby import PATIENCE, guard, hear_of_gateway, on_guard
+from innervate.networks.mesh.protocol.standby import TOLERANCE, guard, hear_of_gateway, on_guard
 from innervate.networks.mesh.protocol.table import on_activate, on_graph, on_table
 from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, watch
 
@@ -132,7 +132,7 @@ def on_start(node, gate, params, now, cause, out):
     node.due = 0
     node.quiet = 0
     node.leading = 0
-    node.patience = PATIENCE
+    node.tolerance = TOLERANCE
     node.round_trip = 0
     node.strain = 0
     node.search_backoff = 0

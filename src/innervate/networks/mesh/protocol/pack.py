@@ -2,7 +2,7 @@
 
 from innervate.networks.mesh.protocol.constants import CRC_BYTES, HEADER_BYTES
 from innervate.networks.mesh.protocol.frames import add8
-from innervate.networks.mesh.protocol.paths import NONE, hops, list_near
+from innervate.networks.mesh.protocol.paths import NONE, hops, list_neighbours
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, PART_HEAD
 
 
@@ -22,15 +22,15 @@ def pack(node, gate, params, s, room, wanted, i):
 
     Part `wanted` is appended to the payload in place i.
     """
-    degree = list_near(gate, params, s)
+    degree = list_neighbours(gate, params, s)
     part = 0
     used = 0
     for k in range(degree):
-        main = gate.near[k]
+        main = gate.neighbours[k]
         for side in range(degree + 1):
             alt = NONE
             if side < degree:
-                alt = gate.near[side]
+                alt = gate.neighbours[side]
             count = 0  # of the group that is being written
             start = 0
             for d in range(params.nodes):

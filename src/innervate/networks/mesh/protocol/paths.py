@@ -69,7 +69,7 @@ def build_graph(gate, params):
     """Links from reports; how many, and a mark that tells graphs apart in gate.sum_a."""
     links = 0
     mark = 1
-    gate.near_of = NONE
+    gate.neighbours_of = NONE
     for k in range(params.width * params.row):
         gate.known[k] = 0
     for a in range(params.nodes):
@@ -95,21 +95,21 @@ def fold(mark, value):
     return x ^ (x >> 13)
 
 
-def list_near(gate, params, a):
-    """Neighbours of node a into gate.near, lowest first, should they not be there; how many."""
-    if gate.near_of != a:
-        gate.near_of = a
-        gate.near_count = 0
+def list_neighbours(gate, params, a):
+    """Neighbours of node a into gate.neighbours, lowest first, if they are not there; how many."""
+    if gate.neighbours_of != a:
+        gate.neighbours_of = a
+        gate.neighbour_count = 0
         for byte in range(params.row):
             bits = gate.known[a * params.row + byte]
             b = byte * BITS
             while bits:
                 if bits & 1:
-                    gate.near[gate.near_count] = b
-                    gate.near_count = gate.near_count + 1
+                    gate.neighbours[gate.neighbour_count] = b
+                    gate.neighbour_count = gate.neighbour_count + 1
                 bits = bits >> 1
                 b = b + 1
-    return gate.near_count
+    return gate.neighbour_count
 
 
 def measure(gate, params, source, without):
@@ -125,8 +125,8 @@ def measure(gate, params, source, without):
             return
         a = gate.line[at]
         at = at + 1
-        for k in range(list_near(gate, params, a)):
-            b = gate.near[k]
+        for k in range(list_neighbours(gate, params, a)):
+            b = gate.neighbours[k]
             if gate.far[b] == FAR and b != without:
                 gate.far[b] = gate.far[a] + 1
                 gate.line[last] = b
@@ -148,16 +148,16 @@ def hops(gate, params, a, b):
 
 def first_hop(gate, params, s, d, pick):
     """A first hop of a shortest path from s to d: of several the pick-th, from the lowest id on."""
-    degree = list_near(gate, params, s)
+    degree = list_neighbours(gate, params, s)
     count = 0
     for k in range(degree):
-        if hops(gate, params, gate.near[k], d) + 1 == hops(gate, params, s, d):
+        if hops(gate, params, gate.neighbours[k], d) + 1 == hops(gate, params, s, d):
             count = count + 1
     if count == 0:
         return NONE
     left = pick % count
     for k in range(degree):
-        who = gate.near[k]
+        who = gate.neighbours[k]
         if hops(gate, params, who, d) + 1 == hops(gate, params, s, d):
             if left == 0:
                 return who
@@ -172,8 +172,8 @@ def alternate_of(gate, params, s, d, main):
     """
     best = NONE
     best_protects = 0
-    for k in range(list_near(gate, params, s)):
-        who = gate.near[k]
+    for k in range(list_neighbours(gate, params, s)):
+        who = gate.neighbours[k]
         far = hops(gate, params, who, d)
         if (
             who != main
@@ -214,8 +214,8 @@ def walk_back(gate, params, s, d, without):
         if gate.far[at] == 1:
             return at
         best = NONE
-        for k in range(list_near(gate, params, at)):
-            who = gate.near[k]
+        for k in range(list_neighbours(gate, params, at)):
+            who = gate.neighbours[k]
             if (
                 who != without
                 and gate.far[who] + 1 == gate.far[at]

@@ -181,7 +181,7 @@ def arm_guard(node, params, now, out):
     if node.rank >= 0 and params.guard_us:
         waits = max(node.rank, 1)
         if node.silent == 0:  # who is answered late asks less often
-            waits = waits + (node.patience >> 5)
+            waits = waits + (node.tolerance >> 5)
         set_timer(out, JOBS, (now + params.guard_us * waits) & MASK30)
 
 

@@ -21,8 +21,8 @@ from innervate.networks.mesh.protocol.send import send_on
 from innervate.networks.mesh.protocol.table import PART_HEAD, part_count, read_edges
 
 IN_VAIN = 4  # questions, each with a wait of its own: then the gateway is dead
-PATIENCE = 40  # eighths of a question more, at first
-PATIENCE_MAX = 64  # after an answer that came late
+TOLERANCE = 40  # eighths of a question more, at first
+TOLERANCE_MAX = 64  # after an answer that came late
 SPARE_HOPS = 3  # of a question: it is not looked for everywhere
 
 
@@ -36,7 +36,7 @@ def hear_of_gateway(node, frame):
         node.gone = ALL
     if frame.origin == node.gateway and frame.table_ver:
         if node.silent > 2:
-            node.patience = PATIENCE_MAX
+            node.tolerance = TOLERANCE_MAX
         node.silent = 0
 
 
@@ -44,8 +44,8 @@ def guard(node, gate, params, now, out):
     """A standby's wait is over: ask if no sign of life came, lead if all questions were in vain."""
     node.silent = node.silent + 1
     if node.silent == 1:
-        node.patience = max(node.patience - 1, 0)
-    elif node.silent > 1 + IN_VAIN + (node.patience >> 3):
+        node.tolerance = max(node.tolerance - 1, 0)
+    elif node.silent > 1 + IN_VAIN + (node.tolerance >> 3):
         lead(node, gate, params, now, out)
         return
     else:
