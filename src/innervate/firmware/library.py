@@ -12,7 +12,7 @@ from innervate.firmware.errors import FirmwareError
 from innervate.firmware.texts import filled, renamed, shipped
 from innervate.firmware.wire import Wire, coded_of
 from innervate.folders import not_for_boards
-from innervate.live.board import CABLES, Role, roles_of
+from innervate.live.board import CABLES, Role, only, roles_of
 from innervate.live.parameters import check_parameters
 from innervate.network import Network, networks, use
 
@@ -125,7 +125,9 @@ def made_of(
     if prefix and not PREFIX.fullmatch(prefix):
         raise FirmwareError(f"--prefix {prefix}: begin with a letter; small letters, digits, _")
     network, role = role_of(name, nodes)
-    library = Library(role, parameters_of(network, role, settings), prefix)
+    params = parameters_of(network, role, settings)
+    chosen = {name: params[name] for name in role.made_in}
+    library = Library(role._replace(params=only(role.params, chosen)), params, prefix)
     return Files(library, files_of(library, network, sealed))
 
 
