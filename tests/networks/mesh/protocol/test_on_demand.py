@@ -144,15 +144,55 @@ def test_who_has_others_frames_to_send_does_not_pass_a_flood_on():
     assert sent(bench, DATA) == [(0, ALL)]
 
 
-def test_a_way_that_fails_is_forgotten_and_the_message_flooded():
-    bench = flooded(silent([(3, 2), (2, 1), (1, 0), (0, 5), (3, 6), (6, 7), (7, 5), (5, 4)]))
-    (way,) = {planned(bench.nodes[3], bench.params, 5)}
-    bench.kill(way)
-    bench.sent.clear()
-    bench.send(3, 5)
+@pytest.mark.parametrize(("on_demand", "left"), [(1, NONE), (0, 1)])
+def test_a_way_that_fails_is_forgotten(on_demand, left):
+    """What comes next is flooded, and does not wait until the neighbour is trusted again."""
+    bench = silent(line(4))
+    bench.send(0, 3)
+    bench.run(SPAN_US)
+    assert planned(bench.nodes[0], bench.params, 3) == 1
+    bench.params.on_demand = on_demand
+    bench.kill(1)
+    bench.send(0, 3)
+    bench.run(2 * SPAN_US)
+    assert planned(bench.nodes[0], bench.params, 3) == left
+
+
+def test_who_has_a_table_that_leaves_the_recipient_out_does_not_flood():
+    bench = Net(9, COMB, on_demand=1)
     bench.run(5_000_000)
-    assert len(bench.delivered) == 2
-    assert planned(bench.nodes[3], bench.params, 5) == (2 if way == 6 else 6)
+    bench.sent.clear()
+    node = bench.nodes[3]
+    node.next[node.bank * bench.params.width + 5] = NONE
+    bench.send(3, 5)
+    bench.run(bench.now + SPAN_US)
+    assert node.version
+    assert ALL not in {to for _, to in sent(bench, DATA)}
+
+
+def test_where_there_are_many_ways_each_passes_it_on_once():
+    bench = silent([(a, b) for a in range(6) for b in range(a) if (a, b) != (5, 0)])
+    bench.send(0, 5)
+    bench.run(SPAN_US)
+    assert sorted(sent(bench, DATA)) == [(i, ALL) for i in range(5)]
+    assert len(sent(bench, E2E_ACK)) == 2
+
+
+def test_after_two_floods_the_message_is_looked_for_as_ever():
+    """Who passed a flood on takes the same packet over when it comes to it alone."""
+    bench, lost = silent(line(3)), []
+    bench.lost = lambda frame, to: (
+        frame.kind == REQUEST
+        or (frame.kind == DATA and frame.link_dst == ALL and to == 2 and not lost.append(to))
+    )
+    bench.send(2, 1)
+    bench.run(SPAN_US)
+    bench.delivered.clear()
+    bench.send(0, 2)
+    bench.run(10_000_000)
+    assert len(lost) == 2
+    assert [hop for hop in sent(bench, DATA) if hop[1] != ALL] == [(0, 1), (1, 2)]
+    assert [i for _, i, _ in bench.delivered] == [2]
 
 
 def test_without_tables_the_way_that_was_found_is_taken_and_then_the_one_up():
@@ -172,6 +212,7 @@ def test_the_gateway_writes_ways_and_does_not_look_for_them():
     bench = Net(9, COMB, mode=TABLE_FREE, on_demand=1)
     bench.run(5_000_000)
     bench.sent.clear()
+    bench.nodes[0].next[4] = NONE
     bench.send(0, 4)
     bench.run(bench.now + SPAN_US)
     assert sent(bench, DATA) == [(0, 1), (1, 2), (2, 3), (3, 4)]

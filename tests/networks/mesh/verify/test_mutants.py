@@ -14,6 +14,7 @@ QUICK = (
     "nobody waits for a hop's ack",
     "a packet that was delivered is delivered again",
     "a retry is never due",
+    "who is looked for takes nothing",
 )
 
 

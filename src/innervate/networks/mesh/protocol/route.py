@@ -272,13 +272,11 @@ def is_wanted(node, params, i):
     """
     dest = node.q_dest[i]
     owner = node.q_owner[i]
-    if not params.on_demand or node.q_kind[i] != DATA or owner < 0:
+    if not params.on_demand or node.version or node.q_kind[i] != DATA or owner < 0:
         return 0
-    if node.q_flags[i] & ORDERED or node.wait_tries[owner] > CALLS or node.q_path_len[i] > 1:
+    if node.q_flags[i] & ORDERED or node.wait_tries[owner] > CALLS:
         return 0
-    if node.version or dest == node.gateway or (params.mode == TABLE_FREE and node.leading):
-        return 0
-    if planned(node, params, dest) != NONE:
+    if dest == node.gateway or planned(node, params, dest) != NONE:
         return 0
     return not is_strong(node, params, place_of(node, params, dest))
 
