@@ -4,15 +4,18 @@ import pytest
 
 from innervate.networks.mesh.protocol.constants import (
     ALL,
+    ALTERNATE,
     DATA,
     E2E_ACK,
     END_TO_END,
     FLOOD,
     ORDERED,
     PARITY,
+    RANDOM,
     REQUEST,
     TABLE,
     TABLE_FREE,
+    WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.fields import FORWARDED
 from innervate.networks.mesh.protocol.queue import enqueue
@@ -36,8 +39,13 @@ def sent(bench, kind):
     return [(i, f.link_dst) for _, i, f in bench.sent if f.kind == kind]
 
 
-def test_a_message_without_a_way_is_flooded_and_its_ack_comes_back_by_the_trace():
-    bench = silent(COMB)
+LIVE = {"queue": 48, "kept": 32, "hop_frames": 16, "gather": 1, "ack_adapt": 1, "e2e_adapt": 1}
+
+
+@pytest.mark.parametrize("settings", [{}, {"told": 1}, {"mode": WHOLE_GRAPH}, LIVE,
+                                      {"failover": ALTERNATE}, {"failover": RANDOM, "retry": 0}])  # fmt: skip
+def test_a_message_without_a_way_is_flooded_and_its_ack_comes_back_by_the_trace(settings):
+    bench = silent(COMB, **settings)
     bench.send(3, 5)
     bench.run(SPAN_US)
     assert [(i, bytes(f.body[: f.length])) for _, i, f in bench.delivered] == [(5, b"hello")]
