@@ -42,8 +42,10 @@ def sent(bench, kind):
 LIVE = {"queue": 48, "kept": 32, "hop_frames": 16, "gather": 1, "ack_adapt": 1, "e2e_adapt": 1}
 
 
-@pytest.mark.parametrize("settings", [{}, {"told": 1}, {"mode": WHOLE_GRAPH}, LIVE,
-                                      {"failover": ALTERNATE}, {"failover": RANDOM, "retry": 0}])  # fmt: skip
+@pytest.mark.parametrize("settings", [
+    {}, {"told": 1}, {"mode": WHOLE_GRAPH}, LIVE, {"failover": ALTERNATE},
+    {"failover": RANDOM, "retry": 0},
+])  # fmt: skip
 def test_a_message_without_a_way_is_flooded_and_its_ack_comes_back_by_the_trace(settings):
     bench = silent(COMB, **settings)
     bench.send(3, 5)
