@@ -159,22 +159,6 @@ def test_the_documents_reading() -> None:
     assert [params[name] for name in names] == [3, 3, 1, 1, 3, 0]
 
 
-@pytest.mark.parametrize(("settings", "values"), [
-    ("", [3, 0, 0]), ('failover = "rssi"', [1, 0, 0]), ('failover = "heard"', [1, 1, 0]),
-    ("on_demand = true", [3, 0, 1]), ('failover = "heard"\navoid = "origin"', [1, 1, 0]),
-])  # fmt: skip
-def test_a_rule_by_both_words_and_ways_on_demand(settings: str, values: list[int]) -> None:
-    params = made(f"nodes = 30\n[protocol]\n{settings}").params
-    assert [params[name] for name in ("failover", "recent", "on_demand")] == values
-
-
-def test_ways_on_demand_want_acks() -> None:
-    for settings in ("on_demand = true", "reliable = false"):
-        made(f"nodes = 30\n[protocol]\n{settings}")
-    with pytest.raises(ScenarioError, match="there are none; leave one out"):
-        made("nodes = 30\n[protocol]\non_demand = true\nreliable = false")
-
-
 def test_modes() -> None:
     for settings, mode in (("", 0), ('failover = "graph"', 1), ("tables = false", 2)):
         assert made(f"nodes = 30\n[protocol]\n{settings}").params["mode"] == mode
