@@ -110,6 +110,22 @@ def test_what_others_cut_is_said_and_begins_a_recovery_what_is_put_back_only_sai
     assert nodes.marks()[-4:] == ["loss", "return", "loss", "loss"], "as plots show clicks"
 
 
+def test_those_that_end_at_once_are_told_in_a_line_and_leave_a_gap_in_plots(nodes):
+    nodes.look(1.0)
+    nodes.look(1.0)
+    everybody, nodes.told = nodes.told, {}
+    for _ in range(4):
+        nodes.look(1.0)  # once they may only be slow
+    assert nodes.texts()[-1] == "a, b and c do not answer any more"
+    assert nodes.marks() == ["loss"]
+    assert nodes.source.fields()["recovery"]["cause"] == "3 nodes do not answer any more"
+    nobody = {"unconnected": None, "frames": None, "dropped": None}
+    assert nodes.points()[2:] == [nobody], "once: what is silent is told seldom"
+    nodes.told = everybody
+    nodes.look(1.0)
+    assert nodes.points()[3:] == [{"unconnected": 0.0, "frames": 0.0, "dropped": 0.0}]
+
+
 @pytest.mark.parametrize(("apart_s", "told"), [(1.0, 18), (6.0, 24)])
 def test_what_others_cut_is_told_again_once_it_was_calm(nodes, apart_s, told):
     """Of a flood the first eight, and that there is more."""
@@ -219,10 +235,8 @@ def test_several_that_go_are_one_cause(nodes):
     nodes.told = gone
     shown = nodes.look(0.5)
     assert shown["recovery"]["cause"] == "2 nodes do not answer any more"
-    assert [text for text in nodes.texts() if "not answer" in text] == [
-        "b does not answer any more", "c does not answer any more",
-    ]  # fmt: skip
-    assert nodes.marks()[-2:] == ["loss", "loss"]
+    assert nodes.texts()[-1] == "b and c do not answer any more"
+    assert nodes.marks()[-1] == "loss"
     nodes.told = all_of_them()
     nodes.look(0.5)
     assert "c answers again" in nodes.texts()

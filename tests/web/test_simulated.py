@@ -100,6 +100,16 @@ def test_frames_on_their_way_only_where_they_can_be_seen():
     assert made.fields()["flights"] == []
 
 
+def test_a_long_run_of_which_nobody_sees_the_points_has_no_more_of_them_than_plots_show():
+    made = simulated({**SKIN, "duration_s": 300.0}, speed=1.0)
+    made.run_to_end()
+    points = made.history.after(SERIES, 0, made.history.newest, 10_000)
+    assert 500 <= len(points) <= 501
+    made.back_to(0)
+    go_to(made, 0.2)
+    assert made.fields()["t_s"] == 0.2
+
+
 @pytest.mark.parametrize(
     "event", [("cut", {"interface": 0}), ("kill", {"cell": {"row": 1, "column": 2}})]
 )

@@ -107,6 +107,11 @@ def test_when_a_fence_was_crossed_is_on_one_line_on_a_phone_too(field):
     assert len(re.findall(r"<td>[\d.]+\u00a0m</td>", rows)) == 2
 
 
+def test_what_a_node_sent_is_on_one_line_on_a_phone_too(plain):
+    rows = plain.report().partition("<h2>Node by node</h2>")[2].partition("</table>")[0]
+    assert len(re.findall(r"<td>[\d.]+\u00a0%</td>", rows)) == plain.result.plan.nodes
+
+
 def test_a_mesh_without_a_fence_has_no_crossings(plain):
     page = plain.report()
     assert "A crossing, in slow motion" not in page
