@@ -61,12 +61,28 @@ def test_legends_say_of_one_sign_all_that_it_means():
     ("live", [[[3, 1], [4, 0]], [], [[7, 5]]]), ("simulation", [[[3, 1], [4, 0], [7, 5]]]),
 ])  # fmt: skip
 def test_a_plot_has_a_gap_while_no_live_node_answers(source, shown):
+    points = [[1, 9], [2, 8], [3, 1], [4, 0], [5, None], [6, None], [7, 5]]
+    assert plotted(source, points, "network.curves('load', 3.5)") == shown
+
+
+@pytest.mark.parametrize(("times", "source", "span_s"), [
+    ([], "simulation", 10), ([3], "simulation", 10), ([3, 3.1, 3.2], "simulation", 10),
+    ([0, 200, 400], "simulation", 8000), ([0, 200, 200.1], "simulation", 8000),
+    ([0, 200, 200.1, 200.2], "simulation", 10), ([0, 200, 400], "live", 10),
+])  # fmt: skip
+def test_a_plot_shows_more_time_where_that_goes_fast(times, source, span_s):
+    assert plotted(source, [[t, 1] for t in times], "network.span('load')") == span_s
+
+
+def plotted(source, points, call):
+    """What a network says of its plot of these points."""
     scene = {"kind": "mesh", "source": source, "nodes": [], "links": [], "can": [],
              "series": [{"id": "load"}]}  # fmt: skip
-    points = [[1, 9], [2, 8], [3, 1], [4, 0], [5, None], [6, None], [7, 5]]
-    value = f"""(() => {{
+    return found(
+        "network.js",
+        f"""(() => {{
       const network = new it.Network({json.dumps(scene)});
       network.apply({{ series: {{ load: {json.dumps(points)} }} }});
-      return network.curves("load", 3.5);
-    }})()"""
-    assert found("network.js", value) == shown
+      return {call};
+    }})()""",
+    )

@@ -5,6 +5,8 @@ const OUT_OF_RANGE = 2; // in link_up
 const KEPT = 20000; // boxes of the timeline
 const POINTS = 3000; // of a plot
 const MARKS = 500;
+const SPAN_S = 10; // of the network's time in a plot; more where it goes so fast
+const SPAN_POINTS = 40; // that fewer points than these would be in it
 
 /** One network as it is looked at: a scene and what became of it. */
 export class Network {
@@ -106,6 +108,14 @@ export class Network {
   linkName(link) {
     const [a, b] = this.ends[link];
     return `${this.nodes[a].label} - ${this.nodes[b].label}`;
+  }
+
+  /** How much of the network's time a plot shows, s. */
+  span(id) {
+    if (this.hasGaps) return SPAN_S;
+    const times = this.series.get(id).slice(-3).map(([t]) => t);
+    const apart = times.slice(1).map((t, i) => t - times[i]);
+    return Math.max(SPAN_S, SPAN_POINTS * Math.max(0, ...apart));
   }
 
   /** The points of a plot from a time on, in curves: one ends where nobody answered. */

@@ -3,7 +3,6 @@ import { colours } from "./colours.js";
 import { prepared, stroke, word } from "./shapes.js";
 import { ticks, value } from "./words.js";
 
-const SPAN_S = 10; // of the network's time, at most
 const LEAST_S = 0.05;
 const FEW = 40; // points that are marked one by one
 const GUTTER = 46; // px on the left, for values
@@ -57,7 +56,7 @@ export class Plots {
     const context = prepared(canvas, width, height);
     const to = this.network.now.t_s;
     const first = points[0]?.[0] ?? 0;
-    const from = Math.max(first, to - SPAN_S);
+    const from = Math.max(first, to - this.network.span(series.id));
     const span = Math.max(LEAST_S, to - from);
     const curves = this.network.curves(series.id, from);
     const shown = curves.flat();
