@@ -227,6 +227,26 @@ def test_how_a_recovery_went_is_told_from_the_cut_on(nodes):
     assert shown["since_cut_s"] == pytest.approx(5.8, abs=0.06)
 
 
+def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
+    def keys(*revoked):
+        return {"identity": {"serial": 2, "list": 1, "revoked": [*revoked]}}
+
+    nodes.told = all_of_them(n2={"onward": (0,)})
+    nodes.told[2]["keys"] = keys()
+    nodes.look(1.0)
+    nodes.told = all_of_them()
+    nodes.told[2]["keys"] = keys(2)
+    shown = nodes.look(1.0)
+    assert shown["link_up"].tolist() == [1, 0, 0]
+    assert shown["recovery"]["cause"] == "c put out: revoked"
+    assert nodes.texts() == ["c put out: revoked",
+                             "every node but 1 that is cut off kept its way, as they say"]  # fmt: skip
+    assert nodes.marks() == ["loss"]
+    texts = nodes.texts()
+    nodes.look(1.0)
+    assert nodes.texts() == texts
+
+
 def test_several_that_go_are_one_cause(nodes):
     nodes.look(1.0)
     gone = {0: nodes.told[0]}

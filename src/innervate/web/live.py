@@ -225,6 +225,10 @@ class Live(Source):
             self._log.often("back", self._now_us(), self._words(what, True), mark=RETURN)
         if cut:
             self._lose(self._words(cut[0], False), len(cut) - 1)
+        if out := sorted(self._state.put_out - before.put_out):
+            words = f"{some([self._names[i] for i in out])} put out: revoked"
+            self._log.say(self._now_us(), words, mark=LOSS)
+            self._lose(words)
 
     def _words(self, what: Link | Place, up: bool) -> str:
         """What became of a link, or of a station on its channel."""
