@@ -239,10 +239,11 @@ def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
     shown = nodes.look(1.0)
     assert shown["link_up"].tolist() == [1, 0, 0]
     assert shown["recovery"]["cause"] == "c put out: revoked"
-    assert nodes.texts() == ["c put out: revoked",
-                             "every node but 1 that is cut off kept its way, as they say"]  # fmt: skip
-    assert nodes.marks() == ["loss"]
     texts = nodes.texts()
+    assert texts == [
+        "c put out: revoked", "every node but 1 that is cut off kept its way, as they say",
+    ]  # fmt: skip
+    assert nodes.marks() == ["loss"]
     nodes.look(1.0)
     assert nodes.texts() == texts
 
