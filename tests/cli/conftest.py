@@ -6,27 +6,10 @@ from pathlib import Path
 import pytest
 
 from innervate.cli import main
+from tests.fixtures.scenarios import FOUR
 
 SOURCES = Path(__file__).resolve().parents[2] / "src"
-FOUR = """\
-kind = "skin"
-name = "four"
-duration_s = 0.4
-
-[[patch]]
-columns = 4
-rows = 1
-
-[[interface]]
-row = 0
-column = 0
-port = "W"
-
-[[interface]]
-row = 0
-column = 3
-port = "E"
-
+CUT = """
 [data]
 rate_hz = 100
 
@@ -54,7 +37,7 @@ def sh(capsys, monkeypatch, tmp_path):
     """A shell in an empty folder with the scenario four.toml."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("INNERVATE_TRACEBACK", raising=False)
-    (tmp_path / "four.toml").write_text(FOUR)
+    (tmp_path / "four.toml").write_text(FOUR + CUT)
     return Shell(capsys)
 
 

@@ -14,6 +14,11 @@ from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.live.stack import CellStack, SinkStack
 
 WAIT_S = 20.0
+LINE = {
+    "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
+    "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
+    "protocol": {"ack_us": 30_000, "e2e_s": 0.3},
+}  # fmt: skip
 
 
 async def until(what, limit_s=WAIT_S):

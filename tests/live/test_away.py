@@ -12,15 +12,10 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.netns import Lab
-from tests.live.net import running, until
+from tests.live.net import LINE, running, until
 
 FIRST_S = 40.0
 MANY = 40
-LINE = {
-    "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
-    "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
-    "protocol": {"ack_us": 30_000, "e2e_s": 0.3},
-}  # fmt: skip
 
 
 def told(where):

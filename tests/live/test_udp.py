@@ -28,15 +28,21 @@ def free_port():
         return sock.getsockname()[1]
 
 
+async def started_in(group, sealer_of=lambda i: None):
+    """Three nodes of a multicast group."""
+    nodes = []
+    for i in range(3):
+        stack = MeshStack(i, 0 if i == 0 else -1, PARAMS, 7919 * (i + 1))
+        nodes.append(MeshNode(f"n{i}", stack, [MulticastLink(group, "127.0.0.1")], sealer_of(i)))
+    for node in reversed(nodes):
+        await node.start()
+    return nodes
+
+
 def test_a_multicast_group_is_one_channel_for_all():
     async def main():
         group = ("239.77.12.1", free_port())
-        nodes = []
-        for i in range(3):
-            stack = MeshStack(i, 0 if i == 0 else -1, PARAMS, 7919 * (i + 1))
-            nodes.append(MeshNode(f"n{i}", stack, [MulticastLink(group, "127.0.0.1")]))
-        for node in reversed(nodes):
-            await node.start()
+        nodes = await started_in(group)
         states = [await nodes[a].send_message(b, b"x").wait() for a, b in ((0, 2), (2, 1))]
         near = {row["node"] for row in nodes[1].status()["neighbours"]}
         for node in nodes:

@@ -6,27 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.fixtures.scenarios import FOUR
+
 SOURCES = Path(__file__).resolve().parents[2] / "src"
 TIMEOUT_S = 120
-FOUR = """\
-kind = "skin"
-name = "four"
-duration_s = 0.4
-
-[[patch]]
-columns = 4
-rows = 1
-
-[[interface]]
-row = 0
-column = 0
-port = "W"
-
-[[interface]]
-row = 0
-column = 3
-port = "E"
-
+CUT = """
 [[event]]
 at_s = [0.25, 0.3]
 action = "cut"
@@ -64,5 +48,5 @@ def four(tmp_path, monkeypatch):
     """The scenario four.toml in an empty working folder."""
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "four.toml"
-    path.write_text(FOUR)
+    path.write_text(FOUR + CUT)
     return path
