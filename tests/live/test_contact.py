@@ -9,17 +9,7 @@ from innervate.live.session import REKEY_US
 from innervate.wire import seal
 from tests.live import time_by_hand
 from tests.live.net import Mesh
-from tests.live.pair import (
-    KEY,
-    OTHER,
-    Wire,
-    begin,
-    join,
-    network_sealer,
-    own_sealer,
-    settle,
-    two,
-)
+from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, own_sealer, settle, two
 
 VALVE = b"OPEN VALVE"
 

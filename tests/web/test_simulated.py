@@ -14,17 +14,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from tests.networks.skin.runs import patch
-from tests.web.runs import (
-    KINDS,
-    MESH,
-    RADIO,
-    SKIN,
-    few_points,
-    go_to,
-    items,
-    simulated,
-    texts,
-)
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, items, simulated, texts
 
 __all__ = ["few_points"]
 

@@ -14,17 +14,7 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
-from tests.web.runs import (
-    KINDS,
-    RADIO,
-    SKIN,
-    few_points,
-    go_to,
-    items,
-    plan_of,
-    simulated,
-    texts,
-)
+from tests.web.runs import KINDS, RADIO, SKIN, few_points, go_to, items, plan_of, simulated, texts
 
 __all__ = ["few_points"]
 

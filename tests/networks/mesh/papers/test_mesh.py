@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 
 from innervate.networks.mesh import papers as mesh
-from innervate.networks.mesh.papers import (
-    FIGURES,
-    alarms,
-    gateway,
-    scale,
-    stretch,
-)
+from innervate.networks.mesh.papers import FIGURES, alarms, gateway, scale, stretch
 from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
