@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 
 from innervate.cli import main
-from tests.fixtures.scenarios import FOUR
+from tests.fixtures.scenarios import FOUR_CELLS
 
 SOURCES = Path(__file__).resolve().parents[2] / "src"
-CUT = """
+FOUR = f"""\
+{FOUR_CELLS}
 [data]
 rate_hz = 100
 
@@ -37,7 +38,7 @@ def sh(capsys, monkeypatch, tmp_path):
     """A shell in an empty folder with the scenario four.toml."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("INNERVATE_TRACEBACK", raising=False)
-    (tmp_path / "four.toml").write_text(FOUR + CUT)
+    (tmp_path / "four.toml").write_text(FOUR)
     return Shell(capsys)
 
 

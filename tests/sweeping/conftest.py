@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.fixtures.scenarios import FOUR
+from tests.fixtures.scenarios import FOUR_CELLS
 
 SOURCES = Path(__file__).resolve().parents[2] / "src"
 TIMEOUT_S = 120
-CUT = """
+FOUR = f"""\
+{FOUR_CELLS}
 [[event]]
 at_s = [0.25, 0.3]
 action = "cut"
@@ -48,5 +49,5 @@ def four(tmp_path, monkeypatch):
     """The scenario four.toml in an empty working folder."""
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "four.toml"
-    path.write_text(FOUR + CUT)
+    path.write_text(FOUR)
     return path
