@@ -1,20 +1,10 @@
 """Other keys: nobody is shut out, whoever is started anew meanwhile, and every change ends."""
 
 from innervate.live.rotation import Rotation
-from tests.live import time_by_hand
 from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, settle, two
+from tests.live.time_by_hand import timed
 
 VALVE = b"OPEN VALVE"
-
-
-def timed(test):
-    """Run a test under simulated time."""
-
-    def run():
-        time_by_hand.run(test())
-
-    run.__name__, run.__doc__ = test.__name__, test.__doc__
-    return run
 
 
 @timed
