@@ -52,7 +52,7 @@ def folder_of(path, files, number, uarts):
 
 
 @contextlib.contextmanager
-def started(folder, *devices):
+def board(folder, *devices):
     """A process that is a board with these serial ports as UARTs 0, 1 ..."""
     command = ["node", nodejs.HERE / "cell.mjs", nodejs.home(), folder, *devices]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
@@ -84,7 +84,7 @@ def test_two_boards_and_a_pc_on_serial_cables(tmp_path, files):
         link = SerialLink(cables.devices[0], 1_000_000)
         pc = SinkNode("pc", SinkStack(skin_parameters(PARAMS), 1), [link])
         pc.receive_touch(lambda touch: heard[touch.cell].append(touch))
-        with started(near, *cables.devices[1:3]), started(far, cables.devices[3]):
+        with board(near, *cables.devices[1:3]), board(far, cables.devices[3]):
             await pc.start()
             await until(lambda: len(heard[8]) >= FAR_SAMPLES and pc.status()["cells"] == [2])
             await command(pc, lambda: heard[8][-1].proximity == 503, 3, 500, cell=8)

@@ -15,7 +15,7 @@ from innervate.live.declared import DeclaredNode, DeclaredStack
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
 from innervate.network import networks
-from tests.boards.test_boards_cell import started
+from tests.boards.test_boards_cell import board as started
 from tests.live.net import until
 
 LOADED = 'kind = "tokenring"\nloads = true\n' + "".join(
