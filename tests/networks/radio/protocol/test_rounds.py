@@ -10,7 +10,14 @@ from innervate.dialect.outbox import SEND
 from innervate.networks.radio.papers.delay import PRACTICAL, Offered
 from innervate.networks.radio.protocol import fields, idle, modes, turn
 from innervate.networks.radio.protocol.constants import DATA, MAIN, NONE, OPEN, REPORT
-from innervate.networks.radio.protocol.modes import ACTIVE, CALM, CALM_MOST, EARNED, FLOWING, QUIET
+from innervate.networks.radio.protocol.modes import (
+    ACTIVE,
+    CALM,
+    CALM_MOST,
+    EARNED,
+    FLOWING,
+    QUIET,
+)
 from innervate.networks.radio.protocol.times import asking, is_few, pass_slots, probe, retry_within
 from innervate.networks.radio.scenario.plan import RadioFault, parameters
 from innervate.networks.radio.sim.simulate import simulate
