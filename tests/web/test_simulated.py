@@ -14,21 +14,13 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from tests.networks.skin.runs import patch
-from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, simulated
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, items, simulated, texts
 
 __all__ = ["few_points"]
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
          "station"}  # fmt: skip
 NODE_FIELDS = ("node_up", "parent", "port", "depth", "load", "touch", "alarm", "outside")
-
-
-def items(made, stream):
-    return made.history.after(stream, 0, made.history.newest, 100_000)
-
-
-def texts(made):
-    return [item.what["text"] for item in items(made, LOG)]
 
 
 @pytest.mark.parametrize("kind", KINDS)
