@@ -257,7 +257,7 @@ EDGES = [
      [[barred(SEARCHED, first=[[9899, 10_000]])]]),
     ("bars", "unknown dead, graph", [barred(GRAPHED, first=[[10_000, 10_000]])],
      [[barred(GRAPHED, first=[[9999, 10_000]])]]),
-    ("bars", "^alarms with 8", [crossed(alarms.BOTH, 8)],
+    ("bars", "^alarms with 8 dead: delivered", [crossed(alarms.BOTH, 8)],
      [[crossed(alarms.BOTH, 8, arrived=False)]]),
     ("bars", "latency, 99 %", [crossed(alarms.BOTH, 8, 70.0)], [[crossed(alarms.BOTH, 8, 70.1)]]),
     ("bars", "overrun at 1 m/s", [crossed(alarms.BOTH, 8, over=0.15)],
