@@ -18,6 +18,7 @@ QUICK = (
     ("mesh", "nobody waits for a hop's ack"),
     ("mesh", "a packet that was delivered is delivered again"),
     ("mesh", "a retry is never due"),
+    ("mesh", "who is looked for takes nothing"),
 )
 MUTANTS = {(kind, one.name): one for kind, hunts in HUNTS.items() for one in hunts.MUTANTS}
 
