@@ -32,7 +32,7 @@ MUTANTS = planted(
      "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
     ("what is behind the newest is new", "    if node.window[word] & bit:\n        return 0\n", ""),
     ("a flood is passed on each time",
-     "    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
+     "    note_forwarded(node, -1, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
     ("a standby never takes over", "if node.quiet >= silence or node.gateway == node.number:",
      "if node.quiet >= 60_000:"),
     ("a gateway does not answer who asks it",
