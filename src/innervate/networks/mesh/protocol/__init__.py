@@ -357,8 +357,8 @@ Constants and settings
 |                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
 | `COPIES_MORE = 4`                              | decision 0049: of the request of who takes over |
-| `FAINT_DB = 2`                                 | decision 0052: so much below `min_rssi` a link  |
-|                                                | is faint                                        |
+| `FAINT_DB = 2`                                 | 0052: a link so much below `min_rssi` is faint  |
+| `FOR_WHAT_COMES_DOWN = 3`                      | decision 0073: places, kept where all climbs    |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
 | `TIME = 1073741823`, `TICKS_MAX = 32767`       | clocks wrap at 2^30; longest suspicion          |
