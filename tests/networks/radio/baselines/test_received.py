@@ -62,8 +62,12 @@ def test_frame_errors_are_made_good_only_if_all_must_have_a_packet(told):
     assert (found.counts["partial"] == 0) == (told == "everybody")
 
 
-@pytest.mark.parametrize(("answers", "kept"), [("instant", 2 * SLOT_US),
-                                               ("turnaround", 2 * (TURN_US + TAU_US) + SLOT_US)])  # fmt: skip
+SWITCHED_US = 2 * (TURN_US + TAU_US) + SLOT_US
+
+
+@pytest.mark.parametrize(
+    ("answers", "kept"), [("instant", 2 * SLOT_US), ("turnaround", SWITCHED_US)]
+)
 def test_a_receiver_answers_a_sifs_behind_the_end_and_others_leave_time_for_it(answers, kept):
     """IEEE 802.11-1999, 9.2.8; DIFS passes behind the answer, or behind a frame nobody could read.
 
