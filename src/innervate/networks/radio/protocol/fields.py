@@ -92,6 +92,8 @@ PRACTICAL = (
     ("busy", 0, 0, 15, "windows", "somebody asked, twice, less those in which nobody did"),
     ("calm", 0, 0, 7, "windows", "since one that brought a newcomer"),
     ("wide", 0, 0, 3, "doublings", "of the greatest configured delay that we believe in"),
+    ("joint", 0, 0, 1, "flag", "what begins before `apart` began with what we heard last"),
+    ("apart", 0, 0, 1073741823, "us", "u behind the beginning of that"),
     ("used", 0, 0, 3, "doublings", "... that this sequence allows for"),
 )
 
