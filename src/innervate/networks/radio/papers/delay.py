@@ -287,8 +287,8 @@ def _below(got: Measured, n: int, load: float, rivals: tuple[str, ...], per_turn
 
 
 _REASONS = {
-    0.1: "an opening lasts a turnaround and two slots, so that two of them overlap everywhere, and "
-    "a pulse proves it: whoever pulses is deaf for two turnarounds; DCF is told for nothing",
+    0.1: "a pulse proves an opening, a turnaround and two slots behind its beginning, when nobody "
+    "else can have begun: whoever pulses is deaf for two turnarounds; DCF is told for nothing",
     0.3: "who comes while others send asks for a place: a window and a report cost two "
     "turnarounds, more than its packet",
     0.6: "as at 30 %: kept places are asked in one window, but a window and its report are two "

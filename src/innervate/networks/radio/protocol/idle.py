@@ -106,13 +106,16 @@ def open_now(station, params, now, out):
     if station.queued == 0 or station.cd:
         return
     frame = blank(out)
+    least = probe_slots(params, station.wide)
+    frame.slots = least
     count = 0
+    silence = 0
     most = loads(station, params)
     if most:
         count = load_packets(station, frame, most)
-    silence = silence_behind(params, station.wide, frame.slots) if count else 0
-    if silence == 0:
-        frame.slots = max(frame.slots, probe_slots(params, station.wide))
+        silence = silence_behind(params, station.wide, frame.slots)
+        if silence == 0:
+            frame.slots = max(frame.slots, least)
     frame.kind = OPEN
     rest_round(station, params)
     frame.pos = take_place(station, params)
