@@ -18,7 +18,7 @@ from boards.roles import kind_of, roles
 from innervate.folders import NetworkError, not_for_boards
 from innervate.live.board import Program, Role
 from innervate.live.errors import LiveError
-from innervate.live.parameters import check_parameters
+from innervate.live.parameters import check_parameters, settings_of
 from innervate.network import networks
 
 HERE = Path(__file__).resolve().parent / "micropython"
@@ -72,13 +72,7 @@ def numbers_of(role: Role, arguments: list[str]) -> dict[str, int]:
     Raises:
         LiveError: not of this form, no such parameter, or out of its range.
     """
-    changes = {}
-    for argument in arguments:
-        name, _, value = argument.partition("=")
-        if not value.lstrip("-").isdigit():
-            like = next((p[0] for p in role.params if p[4] == "us"), "name")
-            raise LiveError(f"{argument}: give a whole number, like {like}=20000")
-        changes[name] = int(value)
+    changes = settings_of(arguments, role.params)
     program_of(role)
     if role.parameters:
         made: dict[str, int] = part(role.parameters)(changes, "boards")

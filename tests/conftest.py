@@ -20,11 +20,7 @@ pytest_plugins = [
 ]
 HERE = Path(__file__).parent
 REAL_TIME = {"browser", "live", "sweeping"}  # folders of tests with processes and sockets
-NEEDS = {
-    "needs_root": "root",
-    "needs_netns": "network namespaces",
-    "needs_gpu": "an NVIDIA GPU",
-}
+NEEDS = {"needs_root": "root", "needs_netns": "network namespaces", "needs_gpu": "an NVIDIA GPU"}
 
 
 # What a worker has gathered stays to its end, and is not looked through again for what is in use:

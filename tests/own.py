@@ -1,5 +1,7 @@
 """A network of one's own for tests: written by `innervate new network`, and changed."""
 
+import contextlib
+import io
 import shutil
 import sys
 from importlib import import_module
@@ -71,13 +73,31 @@ def made(folder, medium="cables", over=""):
     """A network's folder of the medium, above a medium access if one is named."""
     shutil.rmtree(folder, ignore_errors=True)
     below = ["--over", over] if over else []
-    assert main(["new", "network", str(folder), "--on", medium, *below]) == 0
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(["new", "network", str(folder), "--on", medium, *below]) == 0
     return Own(folder)
 
 
 @pytest.fixture
-def own(alone, capsys):
+def own(alone):
     """A network over cables called gossip, as it is written."""
-    network = made(alone / "gossip")
-    capsys.readouterr()
-    return network
+    return made(alone / "gossip")
+
+
+@pytest.fixture
+def talk(alone):
+    """A network on a channel, as it is written."""
+    return made(alone / "talk", "channel")
+
+
+@pytest.fixture
+def bare(alone):
+    """A network over a field with no medium access below it, as it is written."""
+    return made(alone / "flood", "field")
+
+
+def refused(network, capsys, command="check"):
+    """The one line that a command says of its scenario, or of what that stands on."""
+    assert main([command, str(network.scenario)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    return line

@@ -71,7 +71,7 @@ def left():
 def test_waits(left):
     open("begun", "w").close()
     time.sleep(60)
-""",
+"""
 }
 
 
@@ -89,7 +89,7 @@ def count():
 
 forks = 0
 os.register_at_fork(before=count, after_in_child=lambda: forks == 2 and wait())
-""",
+"""
 }
 
 

@@ -34,8 +34,8 @@ def on_frame(node, params, now, port, frame, out):
         if node.waiting and node.tries == 0:
             plan(node, params, now, out)
     elif frame.kind == MESSAGE and frame.to == node.number:
-        if not node.sending:
-            answer(node, frame, out)
+        if not node.sending:  # at once, in the rest of its slot
+            say(node, out, ACK, 2, frame.source, frame.seq)
         if node.seen[frame.source & 15] != frame.seq + 1:
             node.seen[frame.source & 15] = frame.seq + 1
             up = out.frame[deliver(out, MESSAGE)]
@@ -50,19 +50,6 @@ def on_frame(node, params, now, port, frame, out):
         node.waiting = 0
 
 
-def answer(node, frame, out):
-    """Acknowledge a message at once, in the rest of its slot."""
-    node.sending = 1
-    ack = out.frame[send(out, 0, 0, 0)]
-    ack.kind = ACK
-    ack.slots = 2
-    ack.source = node.number
-    ack.to = frame.source
-    ack.seq = frame.seq
-    ack.value = 0
-    ack.made_at = 0
-
-
 def on_carrier(node, params, now, cd, voc, out):
     """Silence, or our own frame has ended."""
     node.sending = 0
@@ -72,17 +59,9 @@ def on_timer(node, params, now, timer, out):
     """Our slot has come, or the next beacon is due."""
     if timer == TICK:
         if not node.sending:
-            node.sending = 1
             node.phase = now
             node.synced = 1
-            beacon = out.frame[send(out, 0, 0, 0)]
-            beacon.kind = BEACON
-            beacon.slots = 1
-            beacon.source = node.number
-            beacon.to = 0
-            beacon.seq = 0
-            beacon.value = 0
-            beacon.made_at = 0
+            say(node, out, BEACON, 1, 0, 0)
         wait = params.beacon_slots * params.slot_length_us
         set_timer(out, TICK, (now + wait) & MASK30)
     elif node.waiting:
@@ -93,20 +72,21 @@ def on_timer(node, params, now, timer, out):
             return
         if not node.sending:
             node.tries = node.tries + 1
-            node.sending = 1
-            fill(out.frame[send(out, 0, 0, 0)], node)
+            say(node, out, MESSAGE, 5, node.to, node.seq)
         plan(node, params, now, out)
 
 
-def fill(frame, node):
-    """A frame with our message."""
-    frame.kind = MESSAGE
-    frame.slots = 5
+def say(node, out, kind, slots, to, seq):
+    """Send a frame; only a message has something in it."""
+    node.sending = 1
+    frame = out.frame[send(out, 0, 0, 0)]
+    frame.kind = kind
+    frame.slots = slots
     frame.source = node.number
-    frame.to = node.to
-    frame.seq = node.seq
-    frame.value = node.value
-    frame.made_at = node.made_at
+    frame.to = to
+    frame.seq = seq
+    frame.value = node.value if kind == MESSAGE else 0
+    frame.made_at = node.made_at if kind == MESSAGE else 0
 
 
 def plan(node, params, now, out):

@@ -1,12 +1,6 @@
 """Who has a way, told from next hops, on networks that can be counted by hand."""
 
-from innervate.analysis.parents import (
-    Harm,
-    Ways,
-    most_without,
-    settled_us,
-    time_without_us,
-)
+from innervate.analysis.parents import Harm, Ways, most_without, settled_us, time_without_us
 
 # 0 is the sink; 1 and 2 are cabled to it, 3 to both, 1 and 2 to each other.
 CABLES = ((0, 0, 1, 0), (0, 1, 2, 0), (1, 1, 3, 0), (2, 1, 3, 1), (1, 2, 2, 2))

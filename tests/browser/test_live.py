@@ -18,6 +18,8 @@ from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.networks.skin.sim.simulate import simulation
 from tests.browser.servers import WAIT_MS, click, expect, serving
+from tests.browser.test_design import WRITTEN
+from tests.browser.test_kinds import written
 from tests.firmware.test_patch_of_twelve import hops
 
 pytestmark = pytest.mark.slow
@@ -87,6 +89,19 @@ def test_a_station_is_cut_off_and_let_back(look, short, monkeypatch):
         click(other, "s1")
         expect(page.locator("#selected-facts")).to_have_text("idle")
         expect(page.locator("#unconnected output")).to_have_text("0")
+
+
+def test_nobody_says_that_a_channel_is_free_of_which_nobody_answers(look, short, monkeypatch):
+    network = ExitStack()
+    network.enter_context(up(RADIO, short, monkeypatch))
+    with network, serving("live") as address:
+        page = look(address, script=WRITTEN)
+        expect(page.locator("#unconnected .more")).to_have_text("of 3 stations")
+        assert "nobody answers" not in written(page)
+        network.close()
+        expect(page.locator("#level")).to_have_text("? no data")
+        assert {"nobody answers"} <= written(page)
+        assert "channel free" not in written(page)
 
 
 def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
@@ -213,6 +228,8 @@ def test_what_was_not_clicked_is_seen_and_that_nobody_answers_is_said(look, shor
         expect(page.locator("#unconnected output")).to_have_text(nothing)
         expect(page.locator("#connection")).to_have_text("page connected, nodes silent")
         assert page.locator(".number.done").count() == 0
+        expect(page.locator(".plot b")).to_have_text([nothing] * 3)
+        expect(page.locator("#state-spoken")).to_have_text("no data: None of the 5 nodes answers.")
 
 
 def test_a_network_that_only_declares_itself_is_drawn_by_its_fields(look, short, monkeypatch):

@@ -94,6 +94,8 @@ def test_the_state_of_the_network_is_one_line(look, fresh):
     click(page, "p0 r3 c3")
     expect(level).to_have_text("! degraded")
     expect(line).to_contain_text("1 of 48 cells (p0 r3 c3) is switched off")
+    spoken = page.locator("#state-spoken[role=status]")
+    expect(spoken).to_contain_text("degraded: 1 of 48 cells (p0 r3 c3) is switched off")
     click(page, "p0 r3 c3")
     expect(page.locator("#selected-facts")).to_contain_text("through port")
     click(page, CABLE)

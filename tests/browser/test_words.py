@@ -1,4 +1,4 @@
-"""Words of the page, by its sources: what is said of a node that is not there."""
+"""The page by its sources: what is said of a node that is not there, what plots show of silence."""
 
 import json
 import shutil
@@ -7,15 +7,20 @@ from pathlib import Path
 
 import pytest
 
-WORDS = Path(__file__).resolve().parents[2] / "src" / "innervate" / "web" / "page" / "words.js"
+PAGE = Path(__file__).resolve().parents[2] / "src" / "innervate" / "web" / "page"
 
 
-def said(networks, call="off(network, 0)"):
+def said(networks, call="it.off(network, 0)"):
     """What off() says of node 0 of each of these, or what else is called."""
+    return found("words.js", f"{json.dumps(networks)}.map((network) => {call})")
+
+
+def found(file, value):
+    """A value in JavaScript where `it` is one of the page's sources."""
     if shutil.which("node") is None:
         pytest.skip("Node.js is missing")
-    text = f"""const {{ off, offWords }} = await import({json.dumps(WORDS.as_uri())});
-    console.log(JSON.stringify({json.dumps(networks)}.map((network) => {call})));"""
+    text = f"""const it = await import({json.dumps((PAGE / file).as_uri())});
+    console.log(JSON.stringify({value}));"""
     done = subprocess.run(
         ["node", "--input-type=module", "-e", text], capture_output=True, check=True, timeout=60
     )
@@ -49,4 +54,35 @@ def test_legends_say_of_one_sign_all_that_it_means():
         "switched off": network("mesh"),
         "cut off, or silent": network("radio", source="live"),
     }
-    assert said(list(cases.values()), "offWords(network)") == list(cases)
+    assert said(list(cases.values()), "it.offWords(network)") == list(cases)
+
+
+@pytest.mark.parametrize(("source", "shown"), [
+    ("live", [[[3, 1], [4, 0]], [], [[7, 5]]]), ("simulation", [[[3, 1], [4, 0], [7, 5]]]),
+])  # fmt: skip
+def test_a_plot_has_a_gap_while_no_live_node_answers(source, shown):
+    points = [[1, 9], [2, 8], [3, 1], [4, 0], [5, None], [6, None], [7, 5]]
+    assert plotted(source, points, "network.curves('load', 3.5)") == shown
+
+
+@pytest.mark.parametrize(("times", "source", "span_s"), [
+    ([], "simulation", 10), ([3], "simulation", 10), ([3, 3.1, 3.2], "simulation", 10),
+    ([0, 200, 400], "simulation", 8000), ([0, 200, 200.1], "simulation", 8000),
+    ([0, 200, 200.1, 200.2], "simulation", 10), ([0, 200, 400], "live", 10),
+])  # fmt: skip
+def test_a_plot_shows_more_time_where_that_goes_fast(times, source, span_s):
+    assert plotted(source, [[t, 1] for t in times], "network.span('load')") == span_s
+
+
+def plotted(source, points, call):
+    """What a network says of its plot of these points."""
+    scene = {"kind": "mesh", "source": source, "nodes": [], "links": [], "can": [],
+             "series": [{"id": "load"}]}  # fmt: skip
+    return found(
+        "network.js",
+        f"""(() => {{
+      const network = new it.Network({json.dumps(scene)});
+      network.apply({{ series: {{ load: {json.dumps(points)} }} }});
+      return {call};
+    }})()""",
+    )

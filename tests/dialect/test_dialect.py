@@ -12,17 +12,6 @@ from innervate.dialect.checker import broken_rules, functions_of, imports_of, is
 HOME = Path(innervate.__file__).parent
 FOLDERS = (HOME / "dialect", *sorted((HOME / "networks").glob("*/protocol")))
 SOURCES = [path for folder in FOLDERS for path in sorted(folder.rglob("*.py"))]
-PYTHON = {
-    "plain.py",
-    "copies.py",
-    "source.py",
-    "checker.py",
-    "clocks.py",
-    "folder.py",
-    "sends.py",
-    "counted.py",
-    "__init__.py",
-}  # about protocols, in full Python
 ABOUT = {
     "copies.py",
     "source.py",
@@ -32,6 +21,7 @@ ABOUT = {
     "sends.py",
     "counted.py",
 }  # read files, so import what that takes
+PYTHON = {"plain.py", "__init__.py", *ABOUT}  # about protocols, in full Python
 
 
 def dialect_sources():

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import innervate
+from boards.roles import roles
 from innervate.cli import main
 from innervate.firmware import library
 from innervate.firmware.emit import Library
@@ -52,6 +53,17 @@ def test_compilers_have_nothing_to_say(made, name):
         source = made / role / f"{role}.c"
         done = subprocess.run([*command, *WARNINGS, source], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr[:2000]
+
+
+@pytest.mark.parametrize("value", [0, 1])
+def test_what_is_made_in_is_a_number_and_no_field(value):
+    """A branch that is never taken takes no room; the other parameters stay fields."""
+    made = library.made_of("mesh", [f"on_demand={value}"]).library
+    source = made.source()
+    assert "params->on_demand" not in source
+    assert "params->failover" in source
+    assert f"if ({value} && frame->dest != MESH_ALL)" in source
+    assert "params->on_demand" in Library(roles()["mesh"], {}).source(), "which tests hold"
 
 
 def test_nothing_of_libc_is_included_and_everything_has_the_prefix(made):

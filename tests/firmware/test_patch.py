@@ -13,8 +13,7 @@ from innervate import scenario as scenarios
 from innervate.cli import main
 from innervate.firmware import patch
 from innervate.live import status
-from innervate.live.up import Processes
-from tests.live.net import until
+from tests.live.net import running, until
 
 FIRST_S = 60.0
 FOUR = {
@@ -62,9 +61,7 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
     assert sorted(images) == ["c0", "c1", "c3"]  # c2 stays in Python, the PC is a PC
 
     async def go():
-        network = Processes(plan, tmp_path / "run", "udp", None, images)
-        await network.up()
-        try:
+        async with running(plan, tmp_path / "run", "udp", None, images) as network:
             await heals(network, 2, 2)
             await network.change(network.links.index((0, 4)), "cut")
             await until(lambda: asked(network, "c0")["dist"] == 3, FIRST_S)
@@ -86,8 +83,6 @@ def test_four_cells_of_firmware_come_up_and_heal(tmp_path):
                 r"c1: its board is gone: \S+qemu-system-arm ended \(SIGKILL\)", said
             )
             await until(lambda: asked(network, "pc")["cells"] == [0, 3], FIRST_S)
-        finally:
-            await network.down()
 
     asyncio.run(go())
 

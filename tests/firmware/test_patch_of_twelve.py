@@ -21,11 +21,10 @@ import pytest
 
 from innervate import scenario as scenarios
 from innervate.firmware import patch
-from innervate.live.up import Processes
 from innervate.networks.skin.sim.simulate import simulation
 from innervate.sim.cables.world import ALIVE
 from tests.firmware.test_patch import FIRST_S, asked, samples, tools
-from tests.live.net import until
+from tests.live.net import running, until
 
 HZ = 1
 PERIOD_US = 1_000_000 // HZ
@@ -200,9 +199,7 @@ STAGES = (Stage(CUT, Emulated.cut), Stage(KILL, Emulated.kill), Stage(REVIVE, Em
 
 async def measured(tmp_path, plan, images, wanted):
     """Periods of each stage on emulated boards; the first is until all were there."""
-    network = Processes(plan, tmp_path / "run", "udp", None, images)
-    await network.up()
-    try:
+    async with running(plan, tmp_path / "run", "udp", None, images) as network:
         boards = Emulated(network)
         took = [await boards.heals(wanted[0])]
         for stage, hops_then in zip(STAGES, wanted[1:], strict=True):
@@ -213,8 +210,6 @@ async def measured(tmp_path, plan, images, wanted):
         got = samples(network)
         await until(lambda: samples(network) > got + 24, FIRST_S)
         return took
-    finally:
-        await network.down()
 
 
 @pytest.mark.slow

@@ -48,6 +48,14 @@ static unsigned long micros() { return 0; }
 """
 
 
+@pytest.fixture
+def cmake():
+    """CMake, and what it needs."""
+    for tool in ("cmake", "gcc", "make"):
+        if shutil.which(tool) is None:
+            pytest.skip(f"{tool} is not installed")
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     folder, files = tmp_path_factory.mktemp("lib"), files_of("skin")
@@ -55,10 +63,8 @@ def made(tmp_path_factory):
     return files.library, folder
 
 
+@pytest.mark.usefixtures("cmake")
 def test_a_cmake_package_is_installed_and_found(made, tmp_path):
-    for tool in ("cmake", "gcc", "make"):
-        if shutil.which(tool) is None:
-            pytest.skip(f"{tool} is not installed")
     skin, folder = made
     (tmp_path / "CMakeLists.txt").write_text(USER)
     (tmp_path / "main.c").write_text(MAIN)
@@ -112,10 +118,8 @@ target_link_libraries(user PRIVATE made)
 """
 
 
+@pytest.mark.usefixtures("cmake")
 def test_a_zephyr_module_compiles_with_what_it_calls_of_zephyr(made, tmp_path):
-    for tool in ("cmake", "gcc", "make"):
-        if shutil.which(tool) is None:
-            pytest.skip(f"{tool} is not installed")
     skin, folder = made
     (tmp_path / "CMakeLists.txt").write_text(ZEPHYR)
     (tmp_path / "main.c").write_text(MAIN)

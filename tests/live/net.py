@@ -2,8 +2,10 @@
 
 import asyncio
 import time
+from contextlib import asynccontextmanager
 
 from innervate.live import local
+from innervate.live.up import Processes
 from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
@@ -12,6 +14,11 @@ from innervate.networks.skin.live.parameters import skin_parameters
 from innervate.networks.skin.live.stack import CellStack, SinkStack
 
 WAIT_S = 20.0
+LINE = {
+    "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
+    "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
+    "protocol": {"ack_us": 30_000, "e2e_s": 0.3},
+}  # fmt: skip
 
 
 async def until(what, limit_s=WAIT_S):
@@ -21,6 +28,17 @@ async def until(what, limit_s=WAIT_S):
         assert time.monotonic() - began < limit_s, "it did not happen in time"
         await asyncio.sleep(0.005)
     return time.monotonic() - began
+
+
+@asynccontextmanager
+async def running(plan, folder, cables="udp", *others):
+    """The processes of a plan, up and later down again."""
+    network = Processes(plan, folder, cables, *others)
+    await network.up()
+    try:
+        yield network
+    finally:
+        await network.down()
 
 
 class Mesh:

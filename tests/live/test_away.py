@@ -12,16 +12,10 @@ import pytest
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.netns import Lab
-from innervate.live.up import Processes
-from tests.live.net import until
+from tests.live.net import LINE, running, until
 
 FIRST_S = 40.0
 MANY = 40
-LINE = {
-    "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
-    "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
-    "protocol": {"ack_us": 30_000, "e2e_s": 0.3},
-}  # fmt: skip
 
 
 def told(where):
@@ -31,9 +25,7 @@ def told(where):
 def test_a_node_that_is_told_to_end_gets_rid_of_its_messages_first(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(LINE))
-        network = Processes(plan, tmp_path, "udp")
-        await network.up()
-        try:
+        async with running(plan, tmp_path) as network:
             where, far = network.socket("n0"), network.socket("n2")
             await until(lambda: all(told(network.socket(n))["table"] for n in network.names), 40)
             with socket.socket(socket.AF_UNIX) as sock:
@@ -48,8 +40,6 @@ def test_a_node_that_is_told_to_end_gets_rid_of_its_messages_first(tmp_path):
                 network.processes["n0"].send_signal(signal.SIGTERM)
                 code = await asyncio.to_thread(network.processes["n0"].wait)
             return code, left, told(far)["counters"]["messages received"]
-        finally:
-            await network.down()
 
     code, left, received = asyncio.run(main())
     assert code == 0

@@ -16,8 +16,7 @@ from innervate import scenario as scenarios
 from innervate.cli import capturing
 from innervate.cli.errors import UserError
 from innervate.export.reading import Capture
-from innervate.live.up import Processes
-from tests.live.net import Mesh, until
+from tests.live.net import Mesh, running, until
 from tests.live.test_capture import serving
 
 FIRST_S = 30.0
@@ -109,13 +108,9 @@ def on_a_skin(folder, what):
     """What comes of something done beside a running skin of processes."""
 
     async def main():
-        network = Processes(scenarios.plan(scenarios.from_dict(SKIN)), folder, "udp")
-        await network.up()
-        try:
+        async with running(scenarios.plan(scenarios.from_dict(SKIN)), folder) as network:
             done = await asyncio.to_thread(what, network)
             assert all(process.poll() is None for process in network.processes.values())
-        finally:
-            await network.down()
         return done
 
     return asyncio.run(main())

@@ -14,6 +14,7 @@ from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from tests.live import time_by_hand
 from tests.live.noted import HERE, THERE, Noted
+from tests.live.time_by_hand import timed
 
 
 class Full:
@@ -89,17 +90,15 @@ def test_what_a_medium_takes_of_a_station(frame, is_taken):
     assert time_by_hand.run(main()) == is_taken
 
 
-def test_a_station_sends_one_frame_at_a_time():
-    async def main():
-        air = Noted()
-        air.join(0)
-        assert air.send(0, slots=3)
-        await asyncio.sleep(0.0299)  # the first is on the air until 35 ms, a turnaround after
-        assert not air.send(0)
-        await asyncio.sleep(0.0002)
-        assert air.send(0)
-
-    time_by_hand.run(main())
+@timed
+async def test_a_station_sends_one_frame_at_a_time():
+    air = Noted()
+    air.join(0)
+    assert air.send(0, slots=3)
+    await asyncio.sleep(0.0299)  # the first is on the air until 35 ms, a turnaround after
+    assert not air.send(0)
+    await asyncio.sleep(0.0002)
+    assert air.send(0)
 
 
 @pytest.mark.parametrize(("gone_s", "is_let_in"), [(2.499, False), (2.5, True)])

@@ -28,6 +28,7 @@ from tests.live.pair import (
     public_authority,
     settle,
 )
+from tests.live.time_by_hand import timed
 
 VALVE = b"OPEN VALVE"
 OTHERS = bytes([77]) * 32
@@ -74,20 +75,18 @@ def test_a_list_is_of_its_authority_alone():
     ],
     ids=["another authority", "another number", "another's certificate"],
 )
-def test_a_node_that_says_it_is_another_is_refused(liar):
-    async def main():
-        a, b = Wire(), Wire()
-        join(a, b)
-        begin(own_sealer(1), a)
-        begin(liar(), b)
-        await settle(3.0)
-        a.frame(VALVE)
-        await settle()
-        assert a.sealer.counts["handshakes"] == 0
-        assert a.sealer.dropped["sealed: not of our authority"] > 0
-        assert not any(said[0] == seal.FRAME for said in a.said)
-
-    time_by_hand.run(main())
+@timed
+async def test_a_node_that_says_it_is_another_is_refused(liar):
+    a, b = Wire(), Wire()
+    join(a, b)
+    begin(own_sealer(1), a)
+    begin(liar(), b)
+    await settle(3.0)
+    a.frame(VALVE)
+    await settle()
+    assert a.sealer.counts["handshakes"] == 0
+    assert a.sealer.dropped["sealed: not of our authority"] > 0
+    assert not any(said[0] == seal.FRAME for said in a.said)
 
 
 def as_number(sealer, number):
@@ -129,62 +128,58 @@ def test_every_list_of_who_is_put_out_is_said_however_soon_it_follows():
     assert second.endswith("certificate 217 and 2 more, list 2")
 
 
-def test_a_node_that_leaked_is_put_out_and_the_others_go_on():
-    async def main():
-        one, two, three, four = await line(1, 2, 3, 4)
-        for left, right in ((one, two), (two, three), (three, four)):
-            left[1].frame(VALVE)
-            await settle()
-            assert right[0].frames() == [VALVE]
-        before = two[0].sealer._contacts[0].all_sessions()
-        made = identities.revoke(AUTHORITY, 1, frozenset({103}))
-        heard = []
-        for ends in (one, two, three):
-            ends[0].sealer.said = lambda matter, text: heard.append((matter, text))
-        assert one[0].sealer.revoke(made.data)  # one is told, and tells the next
+@timed
+async def test_a_node_that_leaked_is_put_out_and_the_others_go_on():
+    one, two, three, four = await line(1, 2, 3, 4)
+    for left, right in ((one, two), (two, three), (three, four)):
+        left[1].frame(VALVE)
         await settle()
-        # Who is put out is told, too, and those behind it, as long as it does what it should.
-        assert heard == [("revoked by list 1", text) for text in (
-            "put out: certificate 103, list 1", "put out: certificate 103 of node 3, list 1",
-            "this node's identity is put out, list 1")]  # fmt: skip
-        for ends in (one, two, three, four):
-            assert ends[0].sealer.ring.revoked == made
-            assert identities.read_revoked(public_authority(), ends[0].sealer.state.revoked)
-        got = len(two[1].got)
-        three[0].frame(b"still here")
-        for said in list(three[0].said):
-            two[1].hear(said)
-        await settle(5.0)
-        assert len(two[1].got) == got
-        assert 3 not in two[1].sealer._contacts[1].sessions
-        assert two[0].sealer._contacts[0].all_sessions() == before  # nothing was made anew
-        one[1].frame(b"we go on")
-        await settle()
-        assert two[0].frames()[-1] == b"we go on"
-        assert not one[0].sealer.revoke(made.data)
-        older = identities.revoke(AUTHORITY, 1, frozenset())
-        assert not one[0].sealer.revoke(older.data)  # nobody is let in again by an old list
-        forged = identities.revoke(OTHERS, 9, frozenset())
-        assert not one[0].sealer.revoke(forged.data)
+        assert right[0].frames() == [VALVE]
+    before = two[0].sealer._contacts[0].all_sessions()
+    made = identities.revoke(AUTHORITY, 1, frozenset({103}))
+    heard = []
+    for ends in (one, two, three):
+        ends[0].sealer.said = lambda matter, text: heard.append((matter, text))
+    assert one[0].sealer.revoke(made.data)  # one is told, and tells the next
+    await settle()
+    # Who is put out is told, too, and those behind it, as long as it does what it should.
+    assert heard == [("revoked by list 1", text) for text in (
+        "put out: certificate 103, list 1", "put out: certificate 103 of node 3, list 1",
+        "this node's identity is put out, list 1")]  # fmt: skip
+    for ends in (one, two, three, four):
+        assert ends[0].sealer.ring.revoked == made
+        assert identities.read_revoked(public_authority(), ends[0].sealer.state.revoked)
+    got = len(two[1].got)
+    three[0].frame(b"still here")
+    for said in list(three[0].said):
+        two[1].hear(said)
+    await settle(5.0)
+    assert len(two[1].got) == got
+    assert 3 not in two[1].sealer._contacts[1].sessions
+    assert two[0].sealer._contacts[0].all_sessions() == before  # nothing was made anew
+    one[1].frame(b"we go on")
+    await settle()
+    assert two[0].frames()[-1] == b"we go on"
+    assert not one[0].sealer.revoke(made.data)
+    older = identities.revoke(AUTHORITY, 1, frozenset())
+    assert not one[0].sealer.revoke(older.data)  # nobody is let in again by an old list
+    forged = identities.revoke(OTHERS, 9, frozenset())
+    assert not one[0].sealer.revoke(forged.data)
 
-    time_by_hand.run(main())
 
-
-def test_who_was_away_hears_of_it_at_its_next_contact(tmp_path):
-    async def main():
-        a, b = Wire(), Wire()
-        begin(own_sealer(1), a)
-        made = identities.revoke(AUTHORITY, 4, frozenset({103}))
-        a.sealer.revoke(made.data)
-        state = State(tmp_path / "n2.state")
-        join(a, b)
-        begin(own_sealer(2, state=state), b)
-        await settle()
-        assert b.sealer.ring.revoked == made
-        again = own_sealer(2, state=State(tmp_path / "n2.state"))
-        assert again.ring.revoked == made  # and remembers
-
-    time_by_hand.run(main())
+@timed
+async def test_who_was_away_hears_of_it_at_its_next_contact(tmp_path):
+    a, b = Wire(), Wire()
+    begin(own_sealer(1), a)
+    made = identities.revoke(AUTHORITY, 4, frozenset({103}))
+    a.sealer.revoke(made.data)
+    state = State(tmp_path / "n2.state")
+    join(a, b)
+    begin(own_sealer(2, state=state), b)
+    await settle()
+    assert b.sealer.ring.revoked == made
+    again = own_sealer(2, state=State(tmp_path / "n2.state"))
+    assert again.ring.revoked == made  # and remembers
 
 
 MAKERS = pytest.mark.parametrize("make", [network_sealer, own_sealer], ids=["network", "identity"])
@@ -200,107 +195,96 @@ async def group(make, *numbers):
 
 
 @MAKERS
-def test_a_group_hears_what_one_seals_once(make):
-    async def main():
-        wires = await group(make, 1, 2, 3, 4)
-        for wire in wires:
-            wire.frame(b"from " + wire.name.encode())
-            assert len(wire.said[-1]) == 6 + 25 + (64 if make is own_sealer else 0)
-        await settle()
-        for wire in wires:
-            others = {other.name for other in wires} - {wire.name}
-            assert sorted(wire.got) == sorted((int(n), b"from " + n.encode()) for n in others)
-            recorded = [data for other in wires for data in other.said]
-            got = len(wire.got)
-            for data in recorded:
-                wire.hear(data)
-            assert len(wire.got) == got
-
-    time_by_hand.run(main())
+@timed
+async def test_a_group_hears_what_one_seals_once(make):
+    wires = await group(make, 1, 2, 3, 4)
+    for wire in wires:
+        wire.frame(b"from " + wire.name.encode())
+        assert len(wire.said[-1]) == 6 + 25 + (64 if make is own_sealer else 0)
+    await settle()
+    for wire in wires:
+        others = {other.name for other in wires} - {wire.name}
+        assert sorted(wire.got) == sorted((int(n), b"from " + n.encode()) for n in others)
+        recorded = [data for other in wires for data in other.said]
+        got = len(wire.got)
+        for data in recorded:
+            wire.hear(data)
+        assert len(wire.got) == got
 
 
 @MAKERS
-def test_who_comes_later_or_again_to_a_group_is_heard_and_hears(make):
-    async def main():
-        wires = await group(make, 1, 2)
-        recorded = list(wires[0].said)
-        wires[0].frame(VALVE)
-        recorded += wires[0].said[-1:]
-        wires[1].sealer.stop()
-        late, again = Wire("3", is_group=True), Wire("2", is_group=True)
-        members = [wires[0], late, again]
-        join(*members)
-        begin(make(3), late)
-        begin(make(2), again)
-        await settle(1.0)
-        for data in recorded:  # what was said before they came
-            late.hear(data)
-            again.hear(data)
-        assert late.got == again.got == []
-        wires[0].frame(b"both of you")
-        late.frame(b"late")
-        again.frame(b"again")
-        await settle()
-        assert sorted(late.got) == [(1, b"both of you"), (2, b"again")]
-        assert sorted(again.got) == [(1, b"both of you"), (3, b"late")]
-        assert sorted(wires[0].got)[-2:] == [(2, b"again"), (3, b"late")]
-
-    time_by_hand.run(main())
+@timed
+async def test_who_comes_later_or_again_to_a_group_is_heard_and_hears(make):
+    wires = await group(make, 1, 2)
+    recorded = list(wires[0].said)
+    wires[0].frame(VALVE)
+    recorded += wires[0].said[-1:]
+    wires[1].sealer.stop()
+    late, again = Wire("3", is_group=True), Wire("2", is_group=True)
+    members = [wires[0], late, again]
+    join(*members)
+    begin(make(3), late)
+    begin(make(2), again)
+    await settle(1.0)
+    for data in recorded:  # what was said before they came
+        late.hear(data)
+        again.hear(data)
+    assert late.got == again.got == []
+    wires[0].frame(b"both of you")
+    late.frame(b"late")
+    again.frame(b"again")
+    await settle()
+    assert sorted(late.got) == [(1, b"both of you"), (2, b"again")]
+    assert sorted(again.got) == [(1, b"both of you"), (3, b"late")]
+    assert sorted(wires[0].got)[-2:] == [(2, b"again"), (3, b"late")]
 
 
 @MAKERS
-def test_a_member_that_missed_anothers_new_key_asks_for_it(make):
-    async def main():
-        one, two, three = await group(make, 1, 2, 3)
-        one.sealer._contacts[0].renew()  # and nobody was told
-        one.frame(b"not understood")
-        await settle(1.0)
-        one.frame(VALVE)
-        await settle()
-        assert two.got == three.got == [(1, VALVE)]
-        assert {**two.sealer.dropped} == {"sealed: unknown sender": 1}
-
-    time_by_hand.run(main())
+@timed
+async def test_a_member_that_missed_anothers_new_key_asks_for_it(make):
+    one, two, three = await group(make, 1, 2, 3)
+    one.sealer._contacts[0].renew()  # and nobody was told
+    one.frame(b"not understood")
+    await settle(1.0)
+    one.frame(VALVE)
+    await settle()
+    assert two.got == three.got == [(1, VALVE)]
+    assert {**two.sealer.dropped} == {"sealed: unknown sender": 1}
 
 
-def test_no_member_of_a_group_can_seal_as_another():
+@timed
+async def test_no_member_of_a_group_can_seal_as_another():
     """It knows the other's key, as all do; it cannot sign."""
-
-    async def main():
-        one, two, three = await group(own_sealer, 1, 2, 3)
-        liar = two.sealer._contacts[0]
-        place = next(place for place in liar._heard if place[0] == 1)
-        head = seal.header(seal.GROUP, place[0] << 16 | place[1], 500)
-        cipher, signing = liar._heard[place].cipher, liar._signing
-        for end in (signing.sign(head + VALVE), bytes(64), b""):
-            plain = VALVE + end
-            three.hear(head + cipher.encrypt(identities.noise.nonce(500), plain, head))
-        assert three.got == []
-        assert three.sealer.dropped["sealed: signed by another than it is from"] == 3
-        one.frame(VALVE)
-        await settle()
-        assert three.got == [(1, VALVE)]
-
-    time_by_hand.run(main())
+    one, two, three = await group(own_sealer, 1, 2, 3)
+    liar = two.sealer._contacts[0]
+    place = next(place for place in liar._heard if place[0] == 1)
+    head = seal.header(seal.GROUP, place[0] << 16 | place[1], 500)
+    cipher, signing = liar._heard[place].cipher, liar._signing
+    for end in (signing.sign(head + VALVE), bytes(64), b""):
+        plain = VALVE + end
+        three.hear(head + cipher.encrypt(identities.noise.nonce(500), plain, head))
+    assert three.got == []
+    assert three.sealer.dropped["sealed: signed by another than it is from"] == 3
+    one.frame(VALVE)
+    await settle()
+    assert three.got == [(1, VALVE)]
 
 
-def test_who_is_put_out_of_a_group_does_not_understand_it_any_more():
-    async def main():
-        one, two, three = await group(own_sealer, 1, 2, 3)
-        old = dict(three.sealer._contacts[0]._heard)
-        one.sealer.revoke(identities.revoke(AUTHORITY, 1, frozenset({103})).data)
-        await settle(1.0)
-        one.frame(VALVE)
-        three.frame(b"I am three")
-        await settle(1.0)
-        assert two.got == [(1, VALVE)]
-        assert three.got == []
-        sealed = next(data for data in reversed(one.said) if data[0] == seal.GROUP)
-        for heard in old.values():
-            with pytest.raises(InvalidTag):
-                heard.cipher.decrypt(identities.noise.nonce(0), sealed[9:], sealed[:9])
-
-    time_by_hand.run(main())
+@timed
+async def test_who_is_put_out_of_a_group_does_not_understand_it_any_more():
+    one, two, three = await group(own_sealer, 1, 2, 3)
+    old = dict(three.sealer._contacts[0]._heard)
+    one.sealer.revoke(identities.revoke(AUTHORITY, 1, frozenset({103})).data)
+    await settle(1.0)
+    one.frame(VALVE)
+    three.frame(b"I am three")
+    await settle(1.0)
+    assert two.got == [(1, VALVE)]
+    assert three.got == []
+    sealed = next(data for data in reversed(one.said) if data[0] == seal.GROUP)
+    for heard in old.values():
+        with pytest.raises(InvalidTag):
+            heard.cipher.decrypt(identities.noise.nonce(0), sealed[9:], sealed[:9])
 
 
 FILE = """kind = "mesh"

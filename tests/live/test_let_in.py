@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from innervate.live import only_from as filters
 from innervate.live import udp
 from innervate.live.errors import LiveError
-from innervate.live.multicast import MulticastLink
 from innervate.live.only_from import Doors, of_peer, only_from, packed, unread
 from innervate.live.receipts import DELIVERED
 from innervate.live.udp import UdpLink, UdpPath
@@ -23,7 +22,7 @@ from innervate.networks.mesh.live.stack import MeshStack
 from innervate.wire import seal
 from tests.live.net import until
 from tests.live.pair import network_sealer, own_sealer
-from tests.live.test_udp import PARAMS, free_port
+from tests.live.test_udp import PARAMS, free_port, started_in
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="a filter of Linux")
 
@@ -169,13 +168,7 @@ def test_what_was_recorded_long_ago_is_dropped_unread():
 def test_a_group_hears_its_members_while_strangers_flood_it():
     async def main():
         group = ("239.77.12.9", free_port())
-        nodes = []
-        for i in range(3):
-            stack = MeshStack(i, 0 if i == 0 else -1, PARAMS, 7919 * (i + 1))
-            link = MulticastLink(group, "127.0.0.1")
-            nodes.append(MeshNode(f"n{i}", stack, [link], network_sealer(i)))
-        for node in reversed(nodes):
-            await node.start()
+        nodes = await started_in(group, network_sealer)
         states = [await nodes[0].send_message(2, b"x").wait()]
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
             own = socket.inet_aton("127.0.0.1")

@@ -161,8 +161,7 @@ async def test_of_a_group_everybody_is_heard_again_after_keys_were_used_up():
 
 
 @pytest.mark.parametrize(
-    ("own", "far", "whole"),
-    [("a", "bcd", True), ("", "", True), ("ö" * 200, "", False)],
+    ("own", "far", "whole"), [("a", "bcd", True), ("", "", True), ("ö" * 200, "", False)]
 )
 def test_what_a_node_says_of_itself_is_as_the_formats_have_it(own, far, whole):
     said = About(5, ANYBODY, b"12345678", 0x01020304, own, far, b"rest").encode()

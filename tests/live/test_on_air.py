@@ -13,20 +13,12 @@ from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
 from innervate.live.on_channel import ChannelDeployment
 from innervate.live.play import events
-from innervate.live.up import Processes
 from innervate.network import networks
-from tests.live.net import until
-from tests.own import alone, made
+from tests.live.net import running, until
+from tests.own import alone, talk
 
-__all__ = ["alone"]
+__all__ = ["alone", "talk"]
 FIRST_S = 20
-
-
-@pytest.fixture
-def talk(alone, capsys):
-    network = made(alone / "talk", "channel")
-    capsys.readouterr()
-    return network
 
 
 def planned(talk, **changes):
@@ -38,9 +30,7 @@ def test_its_nodes_hear_each_other_over_a_channel_of_processes(talk, monkeypatch
     plan = planned(talk, input=[])
 
     async def main():
-        network = Processes(plan, talk.folder / "run", "udp")
-        await network.up()
-        try:
+        async with running(plan, talk.folder / "run") as network:
             give = {"do": "input", "kind": 1, "item": {"value": 41}}
             assert status.ask_one(network.socket("n0"), give) == {"ok": True}
             await until(lambda: heard(network) == [0, 1, 1], FIRST_S)
@@ -50,8 +40,6 @@ def test_its_nodes_hear_each_other_over_a_channel_of_processes(talk, monkeypatch
             assert told["fields"]["value"] == 41
             assert live_status.lines(told)[0].startswith("n0: talk node, up ")
             assert live_status.headline([told], []).startswith("ok: ")
-        finally:
-            await network.down()
 
     asyncio.run(main())
 

@@ -8,8 +8,7 @@ import sys
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.live.enrolment import Authority
-from innervate.live.up import Processes
-from tests.live.net import until
+from tests.live.net import running, until
 from tests.live.test_reload import FIRST_S, LINE, told
 
 
@@ -30,9 +29,7 @@ def test_a_node_is_put_out_by_a_command_and_the_others_go_on(tmp_path):
 
     async def main():
         keys = {"identity": "keys/n{number}.identity"}
-        network = Processes(plan, tmp_path, "udp", keys)
-        await network.up()
-        try:
+        async with running(plan, tmp_path, "udp", keys) as network:
             await until(lambda: all(told(network, n)["table"] for n in network.names), FIRST_S)
             assert await asyncio.to_thread(last_state, network, "n0", 2) == "delivered"
             words = [sys.executable, "-m", "innervate.cli", "live", "revoke", "keys", "2"]
@@ -46,7 +43,5 @@ def test_a_node_is_put_out_by_a_command_and_the_others_go_on(tmp_path):
             assert await asyncio.to_thread(last_state, network, "n0", 1) == "delivered"
             assert await asyncio.to_thread(last_state, network, "n0", 2) == "expired"
             assert told(network, "n1")["counters"]["dropped: sealed: revoked"] > 0
-        finally:
-            await network.down()
 
     asyncio.run(main())

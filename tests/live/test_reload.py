@@ -13,16 +13,12 @@ from innervate import cli
 from innervate import scenario as scenarios
 from innervate.live import hangup, status
 from innervate.live.up import Processes
-from tests.live.net import until
+from tests.live.net import LINE, running, until
 
 FIRST_S = 40.0
 OLD, NEW = "11" * 32, "22" * 32
 GRACE_S = 0.5
-LINE = {
-    "kind": "mesh", "nodes": 3, "radio": {"profile": "ip"},
-    "link": [{"a": 0, "b": 1}, {"a": 1, "b": 2}],
-    "protocol": {"ack_us": 30_000, "e2e_s": 0.3},
-}  # fmt: skip
+KEYS = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
 
 
 def told(network, name):
@@ -67,10 +63,7 @@ def log(network, name):
 def test_other_keys_are_taken_over_node_by_node_and_no_message_is_lost(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(LINE))
-        keys = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
-        network = Processes(plan, tmp_path, "udp", keys)
-        await network.up()
-        try:
+        async with running(plan, tmp_path, "udp", KEYS) as network:
             await until(lambda: all(told(network, n)["table"] for n in network.names), FIRST_S)
             sender = Sender(network)
             sender.start()
@@ -87,8 +80,6 @@ def test_other_keys_are_taken_over_node_by_node_and_no_message_is_lost(tmp_path)
             sender.enough.set()
             await asyncio.to_thread(sender.join)
             counters = [told(network, name)["counters"] for name in network.names]
-        finally:
-            await network.down()
         return sender.states, counters
 
     states, counters = asyncio.run(main())
@@ -100,10 +91,7 @@ def test_other_keys_are_taken_over_node_by_node_and_no_message_is_lost(tmp_path)
 def test_what_cannot_be_reloaded_is_said_and_nothing_changes(tmp_path):
     async def main():
         plan = scenarios.plan(scenarios.from_dict(LINE))
-        keys = {"use": 1, "secret.1": OLD, "grace_s": GRACE_S}
-        network = Processes(plan, tmp_path, "udp", keys)
-        await network.up()
-        try:
+        async with running(plan, tmp_path, "udp", KEYS) as network:
             path, process = tmp_path / "n0.toml", network.processes["n0"]
             good = path.read_text()
             for text, says in (
@@ -115,8 +103,6 @@ def test_what_cannot_be_reloaded_is_said_and_nothing_changes(tmp_path):
                 process.send_signal(signal.SIGHUP)
                 await until(lambda says=says: says in log(network, "n0"), FIRST_S)
                 assert told(network, "n0")["keys"] == {"use": 1, "accepted": [1]}
-        finally:
-            await network.down()
 
     asyncio.run(main())
 

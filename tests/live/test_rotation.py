@@ -1,20 +1,10 @@
 """Other keys: nobody is shut out, whoever is started anew meanwhile, and every change ends."""
 
 from innervate.live.rotation import Rotation
-from tests.live import time_by_hand
 from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, settle, two
+from tests.live.time_by_hand import timed
 
 VALVE = b"OPEN VALVE"
-
-
-def timed(test):
-    """Run a test under simulated time."""
-
-    def run():
-        time_by_hand.run(test())
-
-    run.__name__, run.__doc__ = test.__name__, test.__doc__
-    return run
 
 
 @timed
@@ -53,11 +43,16 @@ async def test_keys_are_changed_without_a_frame_lost():
     assert a.sealer.dropped == b.sealer.dropped == {}
 
 
-@timed
-async def test_changes_closer_than_the_grace_come_to_an_end():
+def rotating():
+    """A node alone on its path, and the changes of its key."""
     a = Wire()
     begin(network_sealer(1), a)
-    rotation = Rotation(a.sealer)
+    return a, Rotation(a.sealer)
+
+
+@timed
+async def test_changes_closer_than_the_grace_come_to_an_end():
+    a, rotation = rotating()
     for k in range(2, 12):
         rotation.begin({k: bytes([k]) * 32}, k, 10.0)
         await settle(3.0)
@@ -71,9 +66,7 @@ async def test_changes_closer_than_the_grace_come_to_an_end():
 
 @timed
 async def test_a_change_that_is_taken_back_leaves_the_old_key():
-    a = Wire()
-    begin(network_sealer(1), a)
-    rotation = Rotation(a.sealer)
+    a, rotation = rotating()
     rotation.begin({2: OTHER}, 2, 10.0)
     await settle(3.0)
     rotation.begin({1: KEY}, 1, 10.0)
@@ -83,9 +76,7 @@ async def test_a_change_that_is_taken_back_leaves_the_old_key():
 
 @timed
 async def test_a_long_grace_followed_by_none_leaves_a_key_that_is_there():
-    a = Wire()
-    begin(network_sealer(1), a)
-    rotation = Rotation(a.sealer)
+    a, rotation = rotating()
     rotation.begin({2: OTHER}, 2, 1000.0)
     await settle(3.0)
     rotation.begin({3: bytes([3]) * 32}, 3, 0.0)

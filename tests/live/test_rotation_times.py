@@ -8,6 +8,7 @@ from innervate.live.errors import LiveError
 from innervate.live.keys import Sealer, ring_of
 from innervate.live.rotation import Rotation
 from tests.live import time_by_hand
+from tests.live.time_by_hand import timed
 
 KEYS = {number: bytes([number]) * 32 for number in range(4)}
 GRACE_S = 10.0
@@ -99,10 +100,8 @@ def test_a_change_to_what_is_there_already_changes_nothing():
     assert seen((1, [0], 0)) == {0: ([0], 0)}
 
 
-def test_a_number_has_one_key():
-    async def main():
-        rotation = Rotation(Sealer(ring_of("mesh", some(0), 0), 1))
-        with pytest.raises(LiveError, match=r"keys\.secret\.0 is another key now"):
-            rotation.begin({0: KEYS[1]}, 0, GRACE_S)
-
-    time_by_hand.run(main())
+@timed
+async def test_a_number_has_one_key():
+    rotation = Rotation(Sealer(ring_of("mesh", some(0), 0), 1))
+    with pytest.raises(LiveError, match=r"keys\.secret\.0 is another key now"):
+        rotation.begin({0: KEYS[1]}, 0, GRACE_S)

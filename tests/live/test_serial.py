@@ -173,9 +173,7 @@ def test_a_frame_is_kept_whole_however_full_the_line_is():
     assert count == 200 * sent
 
 
-def test_what_waited_when_the_plug_came_out_is_gone_and_nothing_goes_out_until_it_is_back(
-    tmp_path,
-):
+def test_what_waited_when_the_plug_came_out_is_gone_and_nothing_goes_out_until_it_is_back(tmp_path):
     async def main():
         name = tmp_path / "tty"
         async with Port() as port, Port() as other:

@@ -7,7 +7,8 @@ from innervate.live.contact import TWIN
 from innervate.live.keyring import LIFE_BYTES, Proven
 from innervate.live.keys import LIVES, TELL_US, TWIN_US
 from innervate.wire import seal
-from tests.live.pair import Wire, begin, network_sealer, settle, two
+from tests.live import time_by_hand
+from tests.live.pair import Wire, begin, join, network_sealer, own_sealer, settle, two
 from tests.live.test_rotation import timed
 
 
@@ -89,6 +90,49 @@ async def test_a_node_is_told_of_its_twin_but_not_of_itself():
 
 def contact_of(wire):
     return wire.sealer._contacts[wire.port]
+
+
+@pytest.mark.parametrize("make", [network_sealer, own_sealer])
+@pytest.mark.parametrize("is_group", [False, True])
+def test_two_that_hear_each_other_with_one_number_both_say_so(make, is_group):
+    async def main():
+        wires = [Wire(name, is_group=is_group) for name in "ab"]
+        join(*wires)
+        for wire in wires:
+            begin(make(1), wire)
+        await settle(2.0)
+        assert [wire.sealer.twins for wire in wires] == [{1: "it is on a"}, {1: "it is on b"}]
+        assert all(not contact_of(wire).sessions for wire in wires)
+        calls = [len(wire.said) for wire in wires]
+        await settle(2.0)
+        assert all(
+            len(wire.said) - before < 20 for wire, before in zip(wires, calls, strict=True)
+        ), "they do not answer each other for ever"
+
+    time_by_hand.run(main())
+
+
+@pytest.mark.parametrize("make", [network_sealer, own_sealer])
+@pytest.mark.parametrize("is_group", [False, True])
+def test_a_recording_of_its_own_calls_is_no_twin(make, is_group):
+    async def main():
+        before = Wire(is_group=is_group)
+        begin(make(1), before)
+        await settle()
+        before.sealer.stop()
+        calls = [data for data in before.said if data[0] >= seal.FIRST]
+        now, listener = Wire(is_group=is_group), Wire()
+        now.others = [listener]
+        begin(make(1), now)
+        for data in calls:
+            now.hear(data)
+            await settle()
+        assert len(calls) >= 2
+        assert now.sealer.dropped["sealed: another with our number"] == len(calls)
+        assert now.sealer.twins == {}
+        assert not contact_of(now).sessions
+
+    time_by_hand.run(main())
 
 
 @pytest.mark.parametrize(("number", "why"), [

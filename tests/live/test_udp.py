@@ -18,6 +18,7 @@ from innervate.networks.mesh.live.node import MeshNode
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from tests.live import time_by_hand
+from tests.live.time_by_hand import timed
 
 PARAMS = mesh_parameters(3, {"ack_us": 30_000, "e2e_us": 300_000})
 
@@ -28,15 +29,21 @@ def free_port():
         return sock.getsockname()[1]
 
 
+async def started_in(group, sealer_of=lambda i: None):
+    """Three nodes of a multicast group."""
+    nodes = []
+    for i in range(3):
+        stack = MeshStack(i, 0 if i == 0 else -1, PARAMS, 7919 * (i + 1))
+        nodes.append(MeshNode(f"n{i}", stack, [MulticastLink(group, "127.0.0.1")], sealer_of(i)))
+    for node in reversed(nodes):
+        await node.start()
+    return nodes
+
+
 def test_a_multicast_group_is_one_channel_for_all():
     async def main():
         group = ("239.77.12.1", free_port())
-        nodes = []
-        for i in range(3):
-            stack = MeshStack(i, 0 if i == 0 else -1, PARAMS, 7919 * (i + 1))
-            nodes.append(MeshNode(f"n{i}", stack, [MulticastLink(group, "127.0.0.1")]))
-        for node in reversed(nodes):
-            await node.start()
+        nodes = await started_in(group)
         states = [await nodes[a].send_message(b, b"x").wait() for a, b in ((0, 2), (2, 1))]
         near = {row["node"] for row in nodes[1].status()["neighbours"]}
         for node in nodes:
@@ -175,26 +182,24 @@ def test_paths_are_down_while_their_interface_is_and_come_back_by_themselves(fla
     assert link.socket is None
 
 
-def test_a_link_that_is_closed_while_its_interface_is_away_stays_closed(flaky):
-    async def main():
-        port, near = free_port(), free_port()
-        link = UdpLink(("127.0.0.1", port), [("127.0.0.1", near)])
-        await link.open(print)
-        Flaky.away = Flaky.gone = True
-        poke(port, near)
-        await passes(0.1)
-        link.close()
-        Flaky.away = Flaky.gone = False
-        await passes(5 * udp.REOPEN_S)
-        assert link.socket is None
-        assert not link.paths[0].up
-        await link.open(print)  # until it is opened again
-        assert link.paths[0].up
-        link.close()
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-            sock.bind(("127.0.0.1", port))  # given back to the system
-
-    time_by_hand.run(main())
+@timed
+async def test_a_link_that_is_closed_while_its_interface_is_away_stays_closed(flaky):
+    port, near = free_port(), free_port()
+    link = UdpLink(("127.0.0.1", port), [("127.0.0.1", near)])
+    await link.open(print)
+    Flaky.away = Flaky.gone = True
+    poke(port, near)
+    await passes(0.1)
+    link.close()
+    Flaky.away = Flaky.gone = False
+    await passes(5 * udp.REOPEN_S)
+    assert link.socket is None
+    assert not link.paths[0].up
+    await link.open(print)  # until it is opened again
+    assert link.paths[0].up
+    link.close()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", port))  # given back to the system
 
 
 def test_a_neighbour_that_is_not_there_yet_takes_no_path_away(flaky):

@@ -15,7 +15,7 @@ from innervate.live.errors import LiveError
 from innervate.live.up import Processes
 from innervate.networks.mesh.live import walks
 from innervate.networks.mesh.scenario.plan import Walk
-from tests.live.net import until
+from tests.live.net import running, until
 
 FIRST_S = 40.0
 YARD = {
@@ -111,15 +111,11 @@ def test_a_skins_cable_comes_out_at_its_time(tmp_path):
 
     async def main():
         plan = scenarios.plan(scenarios.from_dict(skin))
-        network = Processes(plan, tmp_path, "udp")
-        happening = play.events(network.deployment)
-        await network.up()
-        try:
+        async with running(plan, tmp_path) as network:
+            happening = play.events(network.deployment)
             await until(lambda: sum(ask(network, "pc")["cells"]) == 4, FIRST_S)
             await play.Player(network, happening, lambda event: None).play()
             await until(lambda: ask(network, "pc")["cells"][1] == 4, FIRST_S)
-        finally:
-            await network.down()
 
     asyncio.run(main())
 
@@ -133,10 +129,8 @@ def test_a_radio_team_comes_up_and_stations_leave_and_join(tmp_path):
 
     async def main():
         plan = scenarios.plan(scenarios.from_dict(team))
-        network = Processes(plan, tmp_path, "udp")
-        happening = play.events(network.deployment)
-        await network.up()
-        try:
+        async with running(plan, tmp_path) as network:
+            happening = play.events(network.deployment)
             assert not status.answers(network.socket("s2"))  # it joins later
             await play.Player(network, happening, lambda event: None).play()
             assert network.processes["s1"].poll() == 0
@@ -146,8 +140,6 @@ def test_a_radio_team_comes_up_and_stations_leave_and_join(tmp_path):
             states = [answer["state"] for answer in _answers(network.socket("s2"), request)]
             assert next(listening) == {"from": 2, "payload": b"here".hex()}
             return states, ask(network, "s0")["counters"]
-        finally:
-            await network.down()
 
     states, heard = asyncio.run(main())
     assert states[-1] == "delivered"

@@ -2,6 +2,7 @@
 
 import asyncio
 import selectors
+from functools import wraps
 
 from innervate.live.machine import Machine, on
 
@@ -48,3 +49,13 @@ def run(coroutine):
     loop = SimulatedLoop()
     with on(Clocked(loop)), asyncio.Runner(loop_factory=lambda: loop) as runner:
         return runner.run(coroutine)
+
+
+def timed(test):
+    """A test that is a coroutine, run under simulated time."""
+
+    @wraps(test)
+    def run_it(*args, **kwargs):
+        run(test(*args, **kwargs))
+
+    return run_it

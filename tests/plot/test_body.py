@@ -119,7 +119,7 @@ def test_what_an_interrupted_run_did_not_come_to_is_not_among_its_events():
     run = innervate.run(made, plain=True)
     run.result.ended_us = 30_000
     shown = body.body(run.result, run.summary)
-    assert re.findall(r"<td>(0\.0\d+ s)</td>", shown) == ["0.020 s"]
+    assert re.findall(r"<td>(0\.0\d+\u00a0s)</td>", shown) == ["0.020\u00a0s"]
     assert shown.count('class="mark"') == shown.count('class="series"') > 0
 
 

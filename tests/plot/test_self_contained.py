@@ -36,3 +36,11 @@ def test_a_report_needs_nothing_else_and_can_be_had_again(kind):
 def test_a_table_is_not_made_with_a_column_that_has_no_head(head):
     with pytest.raises(AssertionError):
         pages.table(head, [("1", "2 s")])
+
+
+@pytest.mark.parametrize(("cell", "shown"), [
+    ("0.5 %", "0.5\u00a0%"), ("-1,204 ms", "-1,204\u00a0ms"), ("3, flooded", "3, flooded"),
+    ("12 nodes went", "12 nodes went"), ("", ""),
+])  # fmt: skip
+def test_a_number_in_a_table_stays_with_its_unit(cell, shown):
+    assert f"<td>{shown}</td>" in pages.table(("what",), [(cell,)])

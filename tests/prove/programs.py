@@ -2,6 +2,20 @@
 
 import random
 
+# What handlers call to have something done.
+ACTIONS = """
+def send(out, port, delay_us, flags):
+    pass
+
+def deliver(out, kind):
+    pass
+
+def set_timer(out, timer, at):
+    pass
+
+def report(out, code, a, b):
+    pass
+"""
 HELPERS = """
 def bump(s, n):
     s.b = (s.b + 1) % 4

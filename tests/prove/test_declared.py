@@ -14,20 +14,11 @@ from innervate.prove.errors import ProveError
 from innervate.prove.steps import SENT
 from innervate.prove.tell import changes
 from innervate.scenario.declared.shared import InputTable
+from tests.prove.programs import ACTIONS
 
-SOURCE = """
-def report(out, code, a, b):
-    pass
-
-def send(out, port, delay_us, flags):
-    pass
-
-def deliver(out, kind):
-    pass
-
-def set_timer(out, timer, at):
-    pass
-
+SOURCE = (
+    ACTIONS
+    + """
 def on_start(state, params, now, cause, out):
     state.x = cause
 
@@ -80,6 +71,7 @@ def often(state, params, now, timer, out):
     for i in range(params.z):
         report(out, 1, 2, 3)
 """
+)
 OUT = ("report", "send", "deliver", "set_timer")
 NODES = {node.name: node for node in ast.parse(SOURCE).body}
 KNOWN = {

@@ -17,10 +17,7 @@ from innervate.prove.express import greatest, least
 from innervate.prove.solve import Formulas, Question
 from innervate.prove.steps import Goal, Stage, own_goals
 
-FIELDS = (
-    ("a", 0, -5, 200, "x", "one"),
-    ("list", 4, 0, 9, "x", "four"),
-)
+FIELDS = (("a", 0, -5, 200, "x", "one"), ("list", 4, 0, 9, "x", "four"))
 SOURCE = """
 def least(s, n):
     found = 99

@@ -11,23 +11,14 @@ from innervate.prove import execute
 from innervate.prove.check import check
 from innervate.prove.errors import ProveError
 from innervate.prove.steps import RANGES, ROOM, SENT, Goal, Stage, own_goals, room, sent
+from tests.prove.programs import ACTIONS
 
 STATE = (("a", 0, -5, 200, "x", "one"), ("list", 4, 0, 9, "x", "four"))
 FRAME = (("kind", 0, 0, 7, "kind", ""), ("to", 2, 1, 30, "x", ""))
 ROOM_MOST, TIMERS, PORTS, MOST = 3, 2, 4, (1 << 31) - 1
-SOURCE = """
-def send(out, port, b, c):
-    pass
-
-def deliver(out, kind):
-    pass
-
-def set_timer(out, timer, at):
-    pass
-
-def report(out, code, a, b):
-    pass
-
+SOURCE = (
+    ACTIONS
+    + """
 def draw(state, count):
     pass
 
@@ -179,6 +170,7 @@ def behind_break(s, n, m, out):
             break
         s.list[i] = 1
 """
+)
 NODES = {node.name: node for node in ast.parse(SOURCE).body}
 BUILT_IN = {name: execute.OUTBOX for name in ("send", "deliver", "set_timer", "report")}
 KNOWN = {

@@ -2,16 +2,7 @@
 
 import pytest
 
-from innervate.prove.records import (
-    Either,
-    Partly,
-    Record,
-    State,
-    each_of,
-    either,
-    merged,
-    name_of,
-)
+from innervate.prove.records import Either, Partly, Record, State, each_of, either, merged, name_of
 from innervate.prove.terms import Terms
 
 CALL = object()  # that states are of

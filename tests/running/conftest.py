@@ -11,10 +11,7 @@ def tables(**changes):
         "name": "four",
         "duration_s": 0.5,
         "patch": [{"columns": 4, "rows": 1}],
-        "interface": [
-            {"row": 0, "column": 0, "port": "W"},
-            {"row": 0, "column": 3, "port": "E"},
-        ],
+        "interface": [{"row": 0, "column": 0, "port": "W"}, {"row": 0, "column": 3, "port": "E"}],
         "data": {"rate_hz": 100},
         "event": [{"at_s": 0.3, "action": "cut", "interface": 1}],
     } | changes

@@ -1,8 +1,6 @@
 import json
 import re
 import signal
-import subprocess
-import sys
 
 import pytest
 
@@ -11,6 +9,7 @@ from innervate import scenario
 from innervate.networks.skin import run as skin
 from innervate.running import RunError, run
 from innervate.scenario import ScenarioError
+from tests.fixtures.loading import loaded_by
 
 
 @pytest.mark.parametrize("how", ["dict", "scenario", "file", "path"])
@@ -137,18 +136,11 @@ def test_an_interrupted_run_keeps_what_was_done(four, tmp_path, page, monkeypatc
 
 
 def test_import_innervate_stays_cheap():
-    code = "import innervate, sys; print([m for m in ('numba', 'numpy') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert loaded_by("import innervate", "numba", "numpy") == []
 
 
 def test_running_needs_neither_polars_nor_matplotlib():
-    code = (
-        "import innervate, sys; innervate.run('line');"
-        "print([m for m in ('polars', 'matplotlib') if m in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert loaded_by("import innervate; innervate.run('line')", "polars", "matplotlib") == []
 
 
 @pytest.mark.parametrize("name", ["line", "radio-disaster"])

@@ -12,10 +12,8 @@ __all__ = ["alone"]
 
 
 @pytest.fixture(params=["cables", "channel", "field"])
-def own(request, alone, capsys):
-    network = made(alone / "own", request.param)
-    capsys.readouterr()
-    return network
+def own(request, alone):
+    return made(alone / "own", request.param)
 
 
 def loaded(own, **changes):

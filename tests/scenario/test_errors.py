@@ -27,12 +27,8 @@ WRONG = [
     ("column = 1", "column = 9", "10: interface.0: there is no column 9; columns are 0 to 3"),
     ("row = 0", "row = 1", "8: interface.0: p0 r1 c1 has no free port; choose a border cell"),
     ("row = 0", "row = 0\npatch = 2", "10: interface.0: there is no patch 2; the only patch is 0"),
-    (
-        "column = 1",
-        'column = 1\nport = "E"',
-        "11: interface.0: port p0 r0 c1 E is already cabled to p0 r0 c2 W, so pc.0 cannot be "
-        "joined to it; free on p0 r0 c1: up",
-    ),
+    ("column = 1", 'column = 1\nport = "E"', "11: interface.0: port p0 r0 c1 E is already cabled "
+     "to p0 r0 c2 W, so pc.0 cannot be joined to it; free on p0 r0 c1: up"),
     ("k = 3", "k = 3\nr_f = 0.2", "18: protocol.k and protocol.r_f say the same thing twice; "
      "leave one out"),
     ("k = 3", "r_f = 2.2", "17: protocol.r_f must be at most 2.0, not 2.2"),

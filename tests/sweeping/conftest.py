@@ -6,27 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.fixtures.scenarios import FOUR_CELLS
+
 SOURCES = Path(__file__).resolve().parents[2] / "src"
 TIMEOUT_S = 120
-FOUR = """\
-kind = "skin"
-name = "four"
-duration_s = 0.4
-
-[[patch]]
-columns = 4
-rows = 1
-
-[[interface]]
-row = 0
-column = 0
-port = "W"
-
-[[interface]]
-row = 0
-column = 3
-port = "E"
-
+FOUR = f"""\
+{FOUR_CELLS}
 [[event]]
 at_s = [0.25, 0.3]
 action = "cut"

@@ -1,12 +1,10 @@
-import subprocess
-import sys
-
 import numpy
 import polars
 import pytest
 
 from innervate.networks.skin.tables import LOOPS, RECEIVED, TABLES
 from innervate.trace import tables
+from tests.fixtures.loading import loaded_by
 
 
 def test_names_and_types_are_declared_once():
@@ -43,12 +41,8 @@ def test_missing_and_strange_columns_are_refused():
 
 
 def test_the_room_loads_without_numpy_and_polars():
-    code = (
-        "import sys, innervate.trace.tables, innervate.trace.provenance, innervate.trace.streams;"
-        "print([m for m in ('numpy', 'polars', 'numba') if m in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    code = "import innervate.trace.tables, innervate.trace.provenance, innervate.trace.streams"
+    assert loaded_by(code, "numpy", "polars", "numba") == []
 
 
 def test_columns_that_lack_values_are_floats_and_others_stay_whole():

@@ -3,6 +3,7 @@
 import pytest
 
 from innervate import scenario
+from innervate.web.history import LOG
 from innervate.web.simulated import Simulated
 from tests.networks.skin.runs import patch
 
@@ -40,3 +41,13 @@ def go_to(made, t_s):
     made._seek(t_s)
     while made._target_us is not None:
         made.work()
+
+
+def items(made, stream):
+    """All that the page is told of a stream."""
+    return made.history.after(stream, 0, made.history.newest, 100_000)
+
+
+def texts(made):
+    """What the page's log says."""
+    return [item.what["text"] for item in items(made, LOG)]

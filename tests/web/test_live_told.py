@@ -110,6 +110,22 @@ def test_what_others_cut_is_said_and_begins_a_recovery_what_is_put_back_only_sai
     assert nodes.marks()[-4:] == ["loss", "return", "loss", "loss"], "as plots show clicks"
 
 
+def test_those_that_end_at_once_are_told_in_a_line_and_leave_a_gap_in_plots(nodes):
+    nodes.look(1.0)
+    nodes.look(1.0)
+    everybody, nodes.told = nodes.told, {}
+    for _ in range(4):
+        nodes.look(1.0)  # once they may only be slow
+    assert nodes.texts()[-1] == "a, b and c do not answer any more"
+    assert nodes.marks() == ["loss"]
+    assert nodes.source.fields()["recovery"]["cause"] == "3 nodes do not answer any more"
+    nobody = {"unconnected": None, "frames": None, "dropped": None}
+    assert nodes.points()[2:] == [nobody], "once: what is silent is told seldom"
+    nodes.told = everybody
+    nodes.look(1.0)
+    assert nodes.points()[3:] == [{"unconnected": 0.0, "frames": 0.0, "dropped": 0.0}]
+
+
 @pytest.mark.parametrize(("apart_s", "told"), [(1.0, 18), (6.0, 24)])
 def test_what_others_cut_is_told_again_once_it_was_calm(nodes, apart_s, told):
     """Of a flood the first eight, and that there is more."""
@@ -211,6 +227,27 @@ def test_how_a_recovery_went_is_told_from_the_cut_on(nodes):
     assert shown["since_cut_s"] == pytest.approx(5.8, abs=0.06)
 
 
+def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
+    def keys(*revoked):
+        return {"identity": {"serial": 2, "list": 1, "revoked": [*revoked]}}
+
+    nodes.told = all_of_them(n2={"onward": (0,)})
+    nodes.told[2]["keys"] = keys()
+    nodes.look(1.0)
+    nodes.told = all_of_them()
+    nodes.told[2]["keys"] = keys(2)
+    shown = nodes.look(1.0)
+    assert shown["link_up"].tolist() == [1, 0, 0]
+    assert shown["recovery"]["cause"] == "c put out: revoked"
+    texts = nodes.texts()
+    assert texts == [
+        "c put out: revoked", "every node but 1 that is cut off kept its way, as they say",
+    ]  # fmt: skip
+    assert nodes.marks() == ["loss"]
+    nodes.look(1.0)
+    assert nodes.texts() == texts
+
+
 def test_several_that_go_are_one_cause(nodes):
     nodes.look(1.0)
     gone = {0: nodes.told[0]}
@@ -219,10 +256,8 @@ def test_several_that_go_are_one_cause(nodes):
     nodes.told = gone
     shown = nodes.look(0.5)
     assert shown["recovery"]["cause"] == "2 nodes do not answer any more"
-    assert [text for text in nodes.texts() if "not answer" in text] == [
-        "b does not answer any more", "c does not answer any more",
-    ]  # fmt: skip
-    assert nodes.marks()[-2:] == ["loss", "loss"]
+    assert nodes.texts()[-1] == "b and c do not answer any more"
+    assert nodes.marks()[-1] == "loss"
     nodes.told = all_of_them()
     nodes.look(0.5)
     assert "c answers again" in nodes.texts()

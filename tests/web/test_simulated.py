@@ -14,21 +14,13 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.simulated import Simulated
 from innervate.web.snapshot import DeltaEncoder, Part, Snapshot
 from tests.networks.skin.runs import patch
-from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, simulated
+from tests.web.runs import KINDS, MESH, RADIO, SKIN, few_points, go_to, items, simulated, texts
 
 __all__ = ["few_points"]
 
 ROLES = {"cell", "sink", "port", "node", "gateway", "standby", "robot", "post", "monitor",
          "station"}  # fmt: skip
 NODE_FIELDS = ("node_up", "parent", "port", "depth", "load", "touch", "alarm", "outside")
-
-
-def items(made, stream):
-    return made.history.after(stream, 0, made.history.newest, 100_000)
-
-
-def texts(made):
-    return [item.what["text"] for item in items(made, LOG)]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -98,6 +90,16 @@ def test_frames_on_their_way_only_where_they_can_be_seen():
     assert {frame["kind"] for frame in frames} <= {"beacon", "data"}
     made.carry_out(messages.Speed(1.0))
     assert made.fields()["flights"] == []
+
+
+def test_a_long_run_of_which_nobody_sees_the_points_has_no_more_of_them_than_plots_show():
+    made = simulated({**SKIN, "duration_s": 300.0}, speed=1.0)
+    made.run_to_end()
+    points = made.history.after(SERIES, 0, made.history.newest, 10_000)
+    assert 500 <= len(points) <= 501
+    made.back_to(0)
+    go_to(made, 0.2)
+    assert made.fields()["t_s"] == 0.2
 
 
 @pytest.mark.parametrize(

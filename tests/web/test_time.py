@@ -14,17 +14,9 @@ from innervate.web.history import LOG, SERIES, TIMELINE
 from innervate.web.recorded import Recorded
 from innervate.web.recorded import plan_of as plan_of_folder
 from innervate.web.saving import saved
-from tests.web.runs import KINDS, RADIO, SKIN, few_points, go_to, plan_of, simulated
+from tests.web.runs import KINDS, RADIO, SKIN, few_points, go_to, items, plan_of, simulated, texts
 
 __all__ = ["few_points"]
-
-
-def items(made, stream):
-    return made.history.after(stream, 0, made.history.newest, 100_000)
-
-
-def texts(made):
-    return [item.what["text"] for item in items(made, LOG)]
 
 
 @pytest.mark.parametrize("kind", KINDS)

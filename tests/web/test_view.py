@@ -107,6 +107,16 @@ def test_the_newest_that_took_something_away_is_what_is_recovered_from():
     assert view.fields(False)["since_cut_s"] == 0.5
 
 
+def test_of_what_goes_at_one_moment_the_first_is_named_and_the_others_counted():
+    view = MadeUp(*(fault(5, name=f"node {i} switched off") for i in range(8)), fault(6))
+    view.engine.now_us = 6
+    view.tell_faults()
+    assert view.fields(False)["recovery"]["cause"] == "node 0 switched off, and 7 more"
+    view.engine.now_us = 7
+    view.tell_faults()
+    assert view.fields(False)["recovery"]["cause"] == "fault of 6"
+
+
 def test_without_faults_nothing_is_recovered_from():
     fields = MadeUp().fields(False)
     assert (fields["recovery"], fields["since_cut_s"]) == (None, None)

@@ -3,15 +3,7 @@
 import pytest
 
 from innervate.wire import seal
-from innervate.wire.seal import (
-    CONTROL,
-    COUNTER_MAX,
-    FRAME,
-    GROUP,
-    OVERHEAD_BYTES,
-    WINDOW,
-    Window,
-)
+from innervate.wire.seal import CONTROL, COUNTER_MAX, FRAME, GROUP, OVERHEAD_BYTES, WINDOW, Window
 
 
 def test_the_header_byte_by_byte():

@@ -29,9 +29,7 @@ EVENT = "event: "  # what happened, without a frame
 
 
 def capture(
-    *nodes: str,
-    out: Path | None = None,
-    for_: Annotated[float, Parameter(name=["--for"])] = 0.0,
+    *nodes: str, out: Path | None = None, for_: Annotated[float, Parameter(name=["--for"])] = 0.0
 ) -> int:
     """Capture until Ctrl-C, until `for_` seconds are over, or until all nodes are gone.
 

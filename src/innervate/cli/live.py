@@ -183,13 +183,7 @@ def listen(node: str, /, *, count: int = 0, in_order: Flag = False, as_json: Jso
 
 
 def command(
-    node: str,
-    code: Whole,
-    value: Whole = 0,
-    /,
-    *,
-    cell: Whole | None = None,
-    as_json: Json = False,
+    node: str, code: Whole, value: Whole = 0, /, *, cell: Whole | None = None, as_json: Json = False
 ) -> int:
     """Have the PC of a skin send a command down; 0 if somebody was there to hand it down.
 
@@ -229,11 +223,7 @@ def change(node: str, port: int, /, *, restore: Flag = False) -> int:
 
 
 def medium(
-    address: str = "127.0.0.1:4600",
-    /,
-    *,
-    slot_us: Whole = 10_000,
-    turnaround_us: Whole = 5_000,
+    address: str = "127.0.0.1:4600", /, *, slot_us: Whole = 10_000, turnaround_us: Whole = 5_000
 ) -> int:
     """Run a radio channel until it is ended.
 
@@ -249,12 +239,7 @@ def medium(
 
 
 def modem(
-    device: str,
-    address: str = "127.0.0.1:4600",
-    /,
-    *,
-    number: Whole = 0,
-    baud: Whole = 1_000_000,
+    device: str, address: str = "127.0.0.1:4600", /, *, number: Whole = 0, baud: Whole = 1_000_000
 ) -> int:
     """Put a board on a radio channel until it is ended.
 

@@ -256,7 +256,8 @@ class VerifyOptions:
     (
         "Skin: feasible (if left out), strict, paper, paper-lax or all. Radio: practical (if left\n"
         "out) or paper.\n"
-        "Mesh: a failover, search or graph (both if left out), alternate, random or all."
+        "Mesh: a failover, search or graph (both if left out), alternate, random, rssi, heard or\n"
+        "all."
     )
     updates: str = "all"
     """periodic, triggered or all."""

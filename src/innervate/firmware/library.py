@@ -12,8 +12,8 @@ from innervate.firmware.errors import FirmwareError
 from innervate.firmware.texts import filled, renamed, shipped
 from innervate.firmware.wire import Wire, coded_of
 from innervate.folders import not_for_boards
-from innervate.live.board import CABLES, Role, roles_of
-from innervate.live.parameters import check_parameters
+from innervate.live.board import CABLES, Role, only, roles_of
+from innervate.live.parameters import check_parameters, settings_of
 from innervate.network import Network, networks, use
 
 BESIDE = ("innervate_wire.h", "innervate_wire.c", "innervate_port.h")
@@ -89,16 +89,9 @@ def parameters_of(network: Network, role: Role, settings: list[str]) -> dict[str
     """A role's parameters by name, some as `name=value` says.
 
     Raises:
-        FirmwareError: not of this form.
-        LiveError: no such parameter, or out of its range.
+        LiveError: not of this form, no such parameter, or out of its range.
     """
-    changes = {}
-    for setting in settings:
-        name, _, value = setting.partition("=")
-        if not value.lstrip("-").isdigit():
-            like = next((p[0] for p in role.params if p[4] == "us"), "name")
-            raise FirmwareError(f"{setting}: give a whole number, like {like}=20000")
-        changes[name] = int(value)
+    changes = settings_of(settings, role.params)
     if role.parameters:
         made: dict[str, Any] = resolve_name(role.parameters)(changes, role.name)
         return made
@@ -125,7 +118,9 @@ def made_of(
     if prefix and not PREFIX.fullmatch(prefix):
         raise FirmwareError(f"--prefix {prefix}: begin with a letter; small letters, digits, _")
     network, role = role_of(name, nodes)
-    library = Library(role, parameters_of(network, role, settings), prefix)
+    params = parameters_of(network, role, settings)
+    chosen = {name: params[name] for name in role.made_in}
+    library = Library(role._replace(params=only(role.params, chosen)), params, prefix)
     return Files(library, files_of(library, network, sealed))
 
 

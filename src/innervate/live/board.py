@@ -136,6 +136,7 @@ class Role(NamedTuple):
         counted: fields that say how much of an array is used, by the array's name.
         gate: declaration of a second record that handlers are given behind the state, on nodes
             that have one; () = the protocol knows none.
+        made_in: parameters that are numbers in C as it is made: what they leave out takes no room.
         parameters: "module:function", (changes, where) -> all parameters by name; "" = those of
             the network's plainest scenario.
         action: declaration of what an action of the outbox has.
@@ -168,6 +169,7 @@ class Role(NamedTuple):
     noted: frozenset[str] = frozenset()
     counted: Mapping[str, str] = {}
     gate: Declaration = ()
+    made_in: tuple[str, ...] = ()
     parameters: str = ""
     action: Declaration = ACTION
     frames: int = 0
@@ -203,6 +205,14 @@ WATCHED = {
     "channel": Watched(simulation="innervate.sim.channel.declared:simulation", table="stations"),
     "field": Watched(simulation="innervate.sim.field.declared:simulation", table="stations"),
 }
+
+
+def only(declared: Declaration, numbers: dict[str, int]) -> Declaration:
+    """A declaration where some numbers are always the same: C has those in place of the fields."""
+    return tuple(
+        (name, length, numbers.get(name, low), numbers.get(name, high), unit, meaning)
+        for name, length, low, high, unit, meaning in declared
+    )
 
 
 def on_wire(fields: Any) -> tuple[tuple[str, Any], ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from innervate.live.engine import clock_us
 from innervate.live.keyring import ANYBODY, MAC_BYTES, About, Proven, read_about
@@ -17,7 +17,7 @@ from innervate.live.knocks import ANSWERED, Knocks
 from innervate.live.links import Path
 from innervate.live.machine import machine
 from innervate.live.noise import KEY_BYTES, Broken, Handshake
-from innervate.live.session import COUNTERS, REKEY_US, Session
+from innervate.live.session import COUNTERS, REKEY_US, Answer, Session
 from innervate.wire import seal
 
 if TYPE_CHECKING:
@@ -39,16 +39,7 @@ HELD_US = 100_000
 ALIVE, ANSWER = 0, 1  # control frames: "are you there", "I am"
 REVOKED = 2
 TWIN = 3
-
-
-class Answer(NamedTuple):
-    """What was answered to a first message: the same again if it is repeated."""
-
-    reply: bytes
-    handle: int
-    handshake: Handshake | None
-    about: About
-    key: int
+ANOTHER = "another with our number"
 
 
 class Contact:
@@ -278,12 +269,17 @@ class Contact:
         handshake = ring.handshake(key, False)
         about = read_about(handshake.read(data[1:-MAC_BYTES]))
         why = self.sealer.objection(about, self.path)
-        if why or not self.is_for_us(about):
+        if (why and why != ANOTHER) or not self.is_for_us(about):
             return why
         index = self._draw_index()
         own = self._about(about.number, index, ring.certificate)
         message = bytes((seal.SECOND,)) + about.handle.to_bytes(4, "big")
         reply = ring.close(key, message + handshake.write(own.encode()))
+        if why:  # or a recording of a call of ours: only who can answer is another
+            self.send(reply)
+            if self.sealer.sender not in self.sealer.twins:
+                self.ask(self.sealer.sender)
+            return why
         if handshake.is_done:
             who = ring.prove(about, key, b"")
             self._by_index[index] = Session(
@@ -316,13 +312,15 @@ class Contact:
             return "wrong key or damaged"
         del self._asked[index]
         about = read_about(handshake.read(data[5:-MAC_BYTES]))
-        why = self.sealer.objection(about, self.path)
-        if why:
-            return why
         try:
             who = ring.prove(about, key, handshake.far_static)
         except ValueError as error:
             return str(error)
+        why = self.sealer.objection(about, self.path)
+        if why == ANOTHER:
+            self.sealer.note_twin(self.sealer.sender, f"it is on {self.path.name}")
+        if why:
+            return why
         proof = b""
         if not handshake.is_done:
             own = self._about(about.number, index, ring.certificate)

@@ -7,7 +7,7 @@ was declared, so that its status and what it delivers can be told without knowin
 from collections import Counter
 from collections.abc import AsyncGenerator, Callable, Iterator
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from msgspec import Meta
 
@@ -97,6 +97,16 @@ class DeclaredStack(CabledStack):
         after_us = getattr(fields, "silent_us", lambda params: getattr(params, "silent_us", NEVER))
         self.silent_us = after_us(self.params)
         self.item = frame()
+
+    @classmethod
+    def of(cls, loaded: Loaded, ports: list[int]) -> Self:
+        """That of a node file; a LiveError says which parameter cannot be as written."""
+        table = loaded.table
+        assert isinstance(table, DeclaredFile)
+        network = networks()[table.kind]
+        check_parameters(table.protocol, network.fields.PARAMS, f"{loaded.path}")
+        seed = machine().chance.getrandbits(60)
+        return cls(network, table.number, dict(table.protocol), seed, ports)
 
     def decode(self, data: bytes) -> int:
         """Read bytes into the inbox; 0, or why not."""
@@ -212,8 +222,7 @@ def build(loaded: Loaded) -> DeclaredNode:
     """The node of a file, not yet started; a LiveError says what cannot be as written."""
     table = loaded.table
     assert isinstance(table, DeclaredFile)
-    network, links, state = networks()[table.kind], links_of(loaded), state_of(loaded)
-    check_parameters(table.protocol, network.fields.PARAMS, f"{loaded.path}")
+    links, state = links_of(loaded), state_of(loaded)
     paths = sum(len(link.paths) for link in links)
     ports = table.ports or list(range(paths))
     if len(ports) != paths or len(set(ports)) != paths:
@@ -221,6 +230,5 @@ def build(loaded: Loaded) -> DeclaredNode:
             f"{loaded.path}: ports must name the node's port of each of its {paths} paths, "
             "each once"
         )
-    seed = machine().chance.getrandbits(60)
-    stack = DeclaredStack(network, table.number, dict(table.protocol), seed, ports)
+    stack = DeclaredStack.of(loaded, ports)
     return DeclaredNode(loaded.name, stack, links, sealer_of(loaded, state), state)

@@ -64,12 +64,7 @@ class Authority:
             )
 
     def _read(self) -> None:
-        try:
-            text = self._path.read_text(encoding="utf-8")
-        except OSError as error:
-            raise LiveError(f"{self._path}: cannot be read: {error.strerror}") from None
-        except ValueError:
-            raise LiveError(f"{self._path}: {NONE}") from None
+        text = plain.text(self._path, NONE)
         try:
             raw = plain.read(text)
             self._key, self._shared = (plain.octets(raw, name, 32) for name in ("key", "shared"))

@@ -143,12 +143,7 @@ def load(path: Path, number: int) -> Identity:
     Raises:
         LiveError: the file cannot be read, is none, or is another node's.
     """
-    try:
-        text = machine().read_text(path)
-    except OSError as error:
-        raise LiveError(f"{path}: the identity cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise LiveError(f"{path}: {NONE}") from None
+    text = plain.text(path, NONE, "the identity ")
     try:
         raw = plain.read(text)
         found, serial = (plain.whole(raw, name, most) for name, most in NUMBERS.items())

@@ -9,13 +9,10 @@ from typing import Any
 from innervate.dialect.access import ALL
 from innervate.dialect.outbox import URGENT
 from innervate.live.build import links_of, sealer_of, state_of
-from innervate.live.declared import DeclaredFile, DeclaredNode, DeclaredStack
+from innervate.live.declared import DeclaredNode, DeclaredStack
 from innervate.live.deployment import Deployment, Pairs, Table
 from innervate.live.errors import LiveError
-from innervate.live.machine import machine
 from innervate.live.nodefile import Loaded
-from innervate.live.parameters import check_parameters
-from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
 
 RSSI = -50  # of every frame that comes over UDP, dBm
@@ -103,10 +100,6 @@ class FieldDeployment(Deployment):
 
 def build(loaded: Loaded) -> FieldNode:
     """The node of a file, not yet started; a LiveError says what cannot be as written."""
-    table = loaded.table
-    assert isinstance(table, DeclaredFile)
-    network, links, state = networks()[table.kind], links_of(loaded), state_of(loaded)
-    check_parameters(table.protocol, network.fields.PARAMS, f"{loaded.path}")
-    seed = machine().chance.getrandbits(60)
-    stack = FieldStack(network, table.number, dict(table.protocol), seed, [])
+    links, state = links_of(loaded), state_of(loaded)
+    stack = FieldStack.of(loaded, [])
     return FieldNode(loaded.name, stack, links, sealer_of(loaded, state), state)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, NamedTuple
 
-from innervate.live.contact import REVOKED, TWIN, Contact
+from innervate.live.contact import ANOTHER, REVOKED, TWIN, Contact
 from innervate.live.engine import clock_us
 from innervate.live.group import GroupContact
 from innervate.live.identity import Identity, Revoked, read_revoked
@@ -180,10 +180,7 @@ class Sealer:
     def objection(self, about: About, path: Path) -> str:
         """Why somebody cannot be who he says in a handshake; "" if he can."""
         if about.number == self.sender:
-            if about.life == self.life:
-                return "our own"
-            self.note_twin(self.sender, f"it is on {path.name}")
-            return "another with our number"
+            return "our own" if about.life == self.life else ANOTHER
         if self.nodes is not None and about.number >= self.nodes:
             return "from no node of ours"
         own, far = path.bound_ends()

@@ -12,7 +12,6 @@ from msgspec import Meta, Struct, field
 
 from innervate.live import plain
 from innervate.live.errors import LiveError
-from innervate.live.machine import machine
 from innervate.network import find, networks
 
 PYTHON, C = "python", "c"  # what runs a node's protocol
@@ -147,12 +146,7 @@ def load(path: Path) -> Loaded:
     Raises:
         LiveError: it cannot be read or says something that cannot be; one line.
     """
-    try:
-        text = machine().read_text(path)
-    except OSError as error:
-        raise LiveError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError:
-        raise LiveError(f"{path}: is not UTF-8 text; name a node file") from None
+    text = plain.text(path, "is not UTF-8 text; name a node file")
     try:
         raw = plain.read(text)
     except ValueError as error:

@@ -2,15 +2,13 @@
 
 from typing import Any
 
-from innervate.live.declared import DeclaredFile, DeclaredNode, DeclaredStack
+from innervate.live.declared import DeclaredNode, DeclaredStack
 from innervate.live.engine import NEVER
 from innervate.live.errors import LiveError
 from innervate.live.machine import machine
 from innervate.live.node import LiveNode
 from innervate.live.nodefile import Loaded, MediumTable, address
-from innervate.live.parameters import check_parameters
 from innervate.live.radio import Aerial, Radio
-from innervate.network import networks
 
 
 class AirNode(LiveNode):
@@ -116,13 +114,7 @@ def build(loaded: Loaded) -> DeclaredAirNode:
     """The node of a file, not yet started; a LiveError says what cannot be as written."""
     from innervate.live.channel_radio import MediumRadio
 
-    table = loaded.table
-    assert isinstance(table, DeclaredFile)
     text, where = medium_of(loaded)
-    network = networks()[table.kind]
-    check_parameters(table.protocol, network.fields.PARAMS, f"{loaded.path}")
-    seed = machine().chance.getrandbits(60)
-    stack = DeclaredAirStack(network, table.number, dict(table.protocol), seed, [0])
-    node = DeclaredAirNode(loaded.name, stack, [])
-    node.take_radio(MediumRadio(table.number, where), f"medium {text}")
+    node = DeclaredAirNode(loaded.name, DeclaredAirStack.of(loaded, [0]), [])
+    node.take_radio(MediumRadio(loaded.table.number, where), f"medium {text}")
     return node

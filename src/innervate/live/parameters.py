@@ -6,6 +6,22 @@ from typing import Any
 from innervate.live.errors import LiveError
 
 
+def settings_of(words: Iterable[str], declared: Iterable[tuple[Any, ...]]) -> dict[str, int]:
+    """Parameters by name, of `name=value` on a command line; declared as for `check_parameters`.
+
+    Raises:
+        LiveError: one is not of this form.
+    """
+    found = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        if not value.lstrip("-").isdigit():
+            like = next((one[0] for one in declared if one[4] == "us"), "name")
+            raise LiveError(f"{word}: give a whole number, like {like}=20000")
+        found[name] = int(value)
+    return found
+
+
 def check_parameters(
     changes: Mapping[str, int], declared: Iterable[tuple[Any, ...]], where: str
 ) -> None:

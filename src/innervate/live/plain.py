@@ -4,7 +4,11 @@ import math
 import re
 import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
+
+from innervate.live.errors import LiveError
+from innervate.live.machine import machine
 
 TEXT_MAX = 1024  # characters
 WHOLE_MAX = 2**63 - 1
@@ -20,6 +24,20 @@ _KEY = re.compile(r"""([\w."'-]+)\s*=""")
 def fault(tables: Any) -> str:
     """The first field that holds what nothing can use, and why; "" if there is none."""
     return next(_faults(tables, ""), "")
+
+
+def text(path: Path, none: str, what: str = "") -> str:
+    """What stands in a file; `what` it should be, as "the identity ".
+
+    Raises:
+        LiveError: it cannot be read, or is no text: `none` says what to do.
+    """
+    try:
+        return machine().read_text(path)
+    except OSError as error:
+        raise LiveError(f"{path}: {what}cannot be read: {error.strerror}") from None
+    except ValueError:
+        raise LiveError(f"{path}: {none}") from None
 
 
 def read(text: str) -> dict[str, Any]:

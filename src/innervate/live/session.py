@@ -1,10 +1,12 @@
 """A session: what two neighbours seal for each other on one path, with keys of their own."""
 
+from typing import NamedTuple
+
 from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
-from innervate.live.keyring import Proven
-from innervate.live.noise import nonce
+from innervate.live.keyring import About, Proven
+from innervate.live.noise import Handshake, nonce
 from innervate.wire import seal
 
 COUNTERS = seal.COUNTER_MAX - 1000  # then nothing is sealed any more
@@ -61,3 +63,13 @@ class Session:
         """True if a new one should take its place; who began this one asks for it first."""
         late = REKEY_US if self.is_initiator else REKEY_US * 6 // 5
         return now - self.made_at > late or self.counter > COUNTERS // 2
+
+
+class Answer(NamedTuple):
+    """What was answered to a first message: the same again if it is repeated."""
+
+    reply: bytes
+    handle: int
+    handshake: Handshake | None
+    about: About
+    key: int

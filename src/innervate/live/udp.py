@@ -14,15 +14,7 @@ from innervate.live.engine import clock_us
 from innervate.live.errors import LiveError
 from innervate.live.links import FORGOTTEN_MAX, Link, Path, Receiver
 from innervate.live.machine import machine
-from innervate.live.only_from import (
-    Doors,
-    Ranges,
-    keep_apart,
-    of_peer,
-    only_from,
-    share,
-    unread,
-)
+from innervate.live.only_from import Doors, Ranges, keep_apart, of_peer, only_from, share, unread
 
 DATAGRAM_MAX = 2048
 BATCH = 64  # datagrams read at once, before timers and other neighbours have their turn

@@ -1,7 +1,8 @@
-"""Where the parts stand that skin, radio and mesh have at the same places in their folders."""
+"""Where the parts stand that several networks have at the same places in their folders."""
 
 from typing import Any
 
+# Of skin, radio and mesh.
 PLACES: dict[str, Any] = {
     "check": "scenario.rules:check",
     "describe": "scenario.words:describe",
@@ -25,4 +26,12 @@ PLACES: dict[str, Any] = {
     "prove": "prove.theories",
     "boards": "board:ROLES",
     "random": "verify.fuzz",
+}
+# Of those that are little more than a declared protocol.
+DECLARED: dict[str, Any] = {
+    "protocol": "protocol.node",
+    "fields": "protocol.fields",
+    "frames": "frames",
+    "invariants": "invariants",
+    "comparison": "comparison",
 }

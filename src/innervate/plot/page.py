@@ -1,5 +1,6 @@
 """The HTML of a report: skeleton, style sheet and small parts."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -12,6 +13,7 @@ from innervate.plot.svg import Drawing, clean
 from innervate.plot.words import count_words, figure_words
 
 ROWS_MAX = 200
+FIGURE = re.compile(r"[-\d.,]+ \S{1,5}")  # a number with its unit
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
 # Parts of a page, wherever they stand.
@@ -126,8 +128,15 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") ->
     assert all(head), head
     opening = f'<table class="{kind}">' if kind else "<table>"
     top = "".join(f"<th>{cell}</th>" for cell in head)
-    body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>\n" for row in rows)
+    body = "".join(
+        f"<tr>{''.join(f'<td>{_on_one_line(cell)}</td>' for cell in row)}</tr>\n" for row in rows
+    )
     return f'<div class="scroll" tabindex="0">{opening}<tr>{top}</tr>\n{body}</table></div>\n'
+
+
+def _on_one_line(cell: str) -> str:
+    """A number that stays with its unit, however narrow the screen; other cells as they are."""
+    return cell.replace(" ", "\N{NO-BREAK SPACE}") if FIGURE.fullmatch(cell) else cell
 
 
 def details(head: str, inside: str) -> str:

@@ -17,36 +17,23 @@ from innervate.sim.counts import Counts
 from innervate.sim.driver import Ended, InvariantBroken, Left, Simulation
 from innervate.sim.status import ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.tables import get
-from innervate.trace.tables import Column, Table, taken
+from innervate.trace.tables import TIME, Column, Table, taken
 
 __all__ = ["TABLES", "call_words", "columns", "simulate", "summarize", "tables_of", "trail",
            "written_of"]  # fmt: skip
 
-_TIME = Column("time_us", "Int64", "us", "when, true time", "time")
 _NODE = Column("node", "Int32", "node", "who")
-REPORTS = Table(
-    "reports",
-    "a node reported something",
-    (
-        _TIME,
-        _NODE,
-        Column("code", "Int32", "number", "what, as the protocol numbers it"),
-        Column("a", "Int64", "raw", "of the report"),
-        Column("b", "Int64", "raw", "of the report"),
-    ),
-    rows="rows",
-)
-DELIVERIES = Table(
-    "deliveries",
-    "a node's user was given a message",
-    (
-        _TIME,
-        _NODE,
-        Column("port", "Int32", "port", "it came in on"),
-        Column("latency_us", "Int64", "us", "since it was sent", "latency"),
-    ),
-    rows="deliveries",
-)
+REPORTS = Table("reports", "a node reported something", (
+    TIME, _NODE,
+    Column("code", "Int32", "number", "what, as the protocol numbers it"),
+    Column("a", "Int64", "raw", "of the report"),
+    Column("b", "Int64", "raw", "of the report"),
+), rows="rows")  # fmt: skip
+DELIVERIES = Table("deliveries", "a node's user was given a message", (
+    TIME, _NODE,
+    Column("port", "Int32", "port", "it came in on"),
+    Column("latency_us", "Int64", "us", "since it was sent", "latency"),
+), rows="deliveries")  # fmt: skip
 TABLES = (REPORTS, DELIVERIES)
 
 

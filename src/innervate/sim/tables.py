@@ -66,11 +66,7 @@ class Tables:
         return np.full(count, value, kind) if value else np.zeros(count, kind)
 
     def records(
-        self,
-        names: Names,
-        count: int,
-        fresh: bool = False,
-        wide: Collection[str] = WIDE,
+        self, names: Names, count: int, fresh: bool = False, wide: Collection[str] = WIDE
     ) -> Any:
         """`count` simulator records; with `fresh` their content is not initialised.
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from innervate import __version__
+from innervate.kernel.words import some
 from innervate.live import status
 from innervate.network import known
 from innervate.web import live_known
@@ -191,9 +192,10 @@ class Live(Source):
                 told[i] = before[i]
         self._told = told
         went = sorted(before.keys() - told.keys())
-        for i in went:
-            text = f"{self._names[i]} does not answer any more"
-            self._log.often("went", at_us, text, "bad", LOSS)
+        if went:
+            names = [self._names[i] for i in went]
+            do = "does" if len(went) == 1 else "do"
+            self._log.often("went", at_us, f"{some(names)} {do} not answer any more", "bad", LOSS)
         for i in sorted(told.keys() - before.keys()):
             if i in self._last:
                 again = "" if i in self._never else " again"
@@ -222,8 +224,11 @@ class Live(Source):
         for what in back:
             self._log.often("back", self._now_us(), self._words(what, True), mark=RETURN)
         if cut:
-            more = f", and {len(cut) - 1} more" if len(cut) > 1 else ""
-            self._lose(self._words(cut[0], False) + more)
+            self._lose(self._words(cut[0], False), len(cut) - 1)
+        if out := sorted(self._state.put_out - before.put_out):
+            words = f"{some([self._names[i] for i in out])} put out: revoked"
+            self._log.say(self._now_us(), words, mark=LOSS)
+            self._lose(words)
 
     def _words(self, what: Link | Place, up: bool) -> str:
         """What became of a link, or of a station on its channel."""
@@ -246,8 +251,9 @@ class Live(Source):
         point: dict[str, float | None] = {
             name: round(max(0, total[name] - self._counters[name]) / took_s, 1) for name in total
         }
-        if self._counted_us and self._told:
-            self.history.add(SERIES, at_us, {"unconnected": float(lost), **point})
+        if self._counted_us and (self._told or before.told):  # then a gap begins
+            point = {"unconnected": float(lost), **point}
+            self.history.add(SERIES, at_us, point if self._told else dict.fromkeys(point))
         self._counters, self._counted_us = total, at_us
 
     def _recover(self) -> None:
@@ -272,9 +278,9 @@ class Live(Source):
             who = every if not apart else f"{every} but {apart} that {are} cut off"
             self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
 
-    def _lose(self, cause: str) -> None:
-        """Something was taken away: a recovery begins."""
-        self._recovery = Recovery(cause, self._now_us())
+    def _lose(self, cause: str, more: int = 0) -> None:
+        """Something was taken away, and so many others with it: a recovery begins."""
+        self._recovery = Recovery(cause, self._now_us(), more=more)
 
     def _frames(self) -> Counter[str]:
         """Frames received and dropped, by everybody so far."""

@@ -93,14 +93,24 @@ class State:
         }
         return heard - inside
 
+    @cached_property
+    def put_out(self) -> set[int]:
+        """Nodes that answer and have an identity that is revoked."""
+        return {i for i, one in self.told.items() if is_put_out(one)}
+
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
-        """Links that were cut or put back since, while their ends went on answering."""
-        key = now.map.key
+        """Links that were cut or put back since, while their ends went on answering.
+
+        Those of who was put out since were not cut.
+        """
+        key, out = now.map.key, now.put_out - self.put_out
         were = dict(zip(map(key, self.map.links), self.link_up.tolist(), strict=True))
         return [
             (link, bool(up))
             for link, up in zip(now.map.links, now.link_up.tolist(), strict=True)
-            if were.get(key(link), up) != up and self.is_told(now, link.a, link.b)
+            if were.get(key(link), up) != up
+            and self.is_told(now, link.a, link.b)
+            and not out & {link.a.node, link.b.node}
         ]
 
     def changed_places(self, now: State) -> list[tuple[Place, bool]]:

@@ -8,7 +8,7 @@ from typing import Any
 class Recovery:
     """How the network gets over the newest fault, as in a run's summary."""
 
-    cause: str  # in words
+    cause: str  # in words, of the first thing of that moment
     at_us: int  # when
     detected_ms: float | None = None  # the first who noticed, from there
     # Everybody has a way again since then; None = not yet. Who is cut off, so that nothing leads to
@@ -20,6 +20,7 @@ class Recovery:
     nobody: bool = False
     # Something else was done since everybody had: this does not change any more.
     closed: bool = False
+    more: int = 0  # so many other things were taken away at the same moment
 
     def close(self) -> None:
         """Something that takes nothing away is done to the network."""
@@ -32,7 +33,7 @@ class Recovery:
     def shown(self) -> dict[str, Any]:
         """The recovery as pages get it, times in ms."""
         return {
-            "cause": self.cause,
+            "cause": f"{self.cause}, and {self.more} more" if self.more else self.cause,
             "at_s": self.at_us / 1e6,
             "detected_ms": self.detected_ms,
             "recovered_ms": self.recovered_ms,

@@ -143,9 +143,12 @@ class Simulated(Source):
 
     def run_to_end(self, progress: Progress = lambda now_us, end_us: None) -> None:
         """Go on to the end at once; `progress` is called now and then."""
+        self._target_us = self.plan.duration_us
+        self._plan_point()
         while not self.at_end:
             self._advance(self.plan.duration_us)
             progress(self.engine.now_us, self.plan.duration_us)
+        self._target_us = None
 
     def back_to(self, to_us: int) -> None:
         """Go back to the last moment kept that is not after `to_us`."""

@@ -158,12 +158,19 @@ class View(ABC):
             return False
         memory.event_us = fault.at_us
         if self.takes(fault):
-            memory.recovery, memory.fault = Recovery(cause, fault.at_us), fault
+            memory.recovery, memory.fault = self._lost(cause, fault.at_us), fault
         elif memory.recovery is not None:
             memory.recovery.close()
         self.log.calm()
         self.log.say(fault.at_us, cause, mark=LOSS if self.takes(fault) else RETURN)
         return True
+
+    def _lost(self, cause: str, at_us: int) -> Recovery:
+        """Something was taken away; what went at the same moment before it is named first."""
+        before = self.memory.recovery
+        if before is None or before.at_us != at_us:
+            return Recovery(cause, at_us)
+        return Recovery(before.cause, at_us, more=before.more + 1)
 
     def tell_faults(self) -> list[Any]:
         """Begin all faults that have happened and were not told yet; them, in order of time."""

@@ -5,13 +5,7 @@ import pytest
 import innervate
 from innervate.networks.babel.protocol.common import is_feasible
 from innervate.networks.babel.protocol.constants import INFINITY, LOOK, NONE
-from tests.networks.babel.bench import (
-    HELLO_US,
-    UPDATE_US,
-    Bench,
-    C,
-    routed,
-)
+from tests.networks.babel.bench import HELLO_US, UPDATE_US, Bench, C, routed
 
 # 2 and 3.5: why there are no loops.
 

@@ -18,8 +18,8 @@ ACK_US = 500
 
 DEFAULTS = dict(
     nodes=0, row=fields.row_bytes(WIDTH), places=32, width=WIDTH, mtu=127, mode=0, discovery=3,
-    failover=3, avoid_origin=0, retry=1, reliable=1, activation=0, told=0, transmissions=3,
-    ack_us=4000, hop_acks=1, ack_adapt=0, hop_frames=0, gather=0, queue=8, kept=8,
+    failover=3, recent=0, avoid_origin=0, on_demand=0, retry=1, reliable=1, activation=0, told=0,
+    transmissions=3, ack_us=4000, hop_acks=1, ack_adapt=0, hop_frames=0, gather=0, queue=8, kept=8,
     suspect_us=10_000_000, min_rssi=-93, faint=-92, poor=-94, jitter_us=100_000, copies=2,
     flood_us=12_500, listen_us=300_000, spread_us=400_000, collect_us=1_500_000,
     tick_us=1_000_000, period=10, period_max=60, dead=25, dead_step=5,

@@ -83,12 +83,10 @@ def on_frame(node, gate, params, now, port, frame, out):
         pass_on(node, frame, out)
     elif frame.kind == DATA and frame.link_dst == node.number:
         ack = out.frame[send(out, 0, 0, URGENT)]
+        copy(ack, frame)
         ack.kind = ACK
         ack.link_src = node.number
         ack.link_dst = frame.link_src
-        ack.origin = frame.origin
-        ack.seq = frame.seq
-        ack.rssi = frame.rssi
         ack.path_len = 0
         ack.length = 0
         if is_new(node, frame):

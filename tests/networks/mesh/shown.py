@@ -1,14 +1,7 @@
 """Frames and payloads as pairs of names and values in the order of the bytes, by the layouts."""
 
 from innervate.networks.mesh.frames import COMMON, HOP_ACK, VERSION, acked
-from innervate.networks.mesh.payloads import (
-    FIELDS,
-    PIECE,
-    begin_of,
-    end_of,
-    fits,
-    is_piece,
-)
+from innervate.networks.mesh.payloads import FIELDS, PIECE, begin_of, end_of, fits, is_piece
 from innervate.networks.mesh.protocol.constants import ACK, ALL, DATA, ORDERED, SOURCE_ROUTE
 from innervate.wire.layout import read
 

@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol.fields import FRAME
 from innervate.wire.bits import put
 from innervate.wire.layout import REST, read
 from tests.networks.mesh import shown
+from tests.wire.flips import flipped, flipped_thrice
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
@@ -297,18 +298,12 @@ def test_every_truncation_and_extension_is_refused(frame):
 def test_every_single_flip_is_refused(frame):
     sent = wire.encode(frame)
     for bit in range(8 * len(sent)):
-        hit = bytearray(sent)
-        hit[bit >> 3] ^= 0x80 >> (bit & 7)
-        assert wire.decode(hit, Frame()) == wire.BAD_CRC
+        assert wire.decode(flipped(sent, bit), Frame()) == wire.BAD_CRC
 
 
 @given(frames, st.data())
 def test_up_to_three_flips_are_refused(frame, data):
-    sent = wire.encode(frame)
-    flips = data.draw(st.sets(st.integers(0, 8 * len(sent) - 1), min_size=1, max_size=3))
-    hit = bytearray(sent)
-    for bit in flips:
-        hit[bit >> 3] ^= 0x80 >> (bit & 7)
+    hit = flipped_thrice(wire.encode(frame), data)
     assert wire.decode(hit, Frame()) == wire.BAD_CRC
 
 
@@ -338,14 +333,9 @@ def noise(seed, count):
         yield sealed(bytes(data)) if k % 4 else bytes(data)
 
 
-def test_noise_never_raises_nor_touches_the_frame():
-    assert {feed(data) for data in noise(1, 4000)} == set(range(len(wire.REASONS)))
-
-
-@pytest.mark.slow
-def test_a_hundred_thousand_inputs():
-    for data in noise(2, 100_000):
-        feed(data)
+@pytest.mark.parametrize("count", [4000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_noise_never_raises_nor_touches_the_frame(count):
+    assert {feed(data) for data in noise(count, count)} == set(range(len(wire.REASONS)))
 
 
 @given(st.binary(max_size=140))

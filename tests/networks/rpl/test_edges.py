@@ -5,16 +5,7 @@ import pytest
 from innervate.networks.rpl.protocol import kinds, sizes, timers
 from innervate.networks.rpl.protocol import packets as parts
 from innervate.networks.rpl.protocol.node import ALARM, MESSAGE
-from tests.networks.rpl.nodes import (
-    RPL,
-    attached,
-    dao,
-    dio,
-    node,
-    packets,
-    storing,
-    told_to_parent,
-)
+from tests.networks.rpl.nodes import RPL, attached, dao, dio, node, packets, storing, told_to_parent
 
 
 def test_node_0_is_a_target_like_others_where_it_is_not_the_root():

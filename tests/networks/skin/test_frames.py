@@ -9,6 +9,7 @@ from innervate.dialect import plain
 from innervate.networks.skin import frames as wire
 from innervate.networks.skin.protocol.constants import BEACON, COMMAND, DATA, RESTART
 from innervate.networks.skin.protocol.fields import FRAME
+from tests.wire.flips import flipped_thrice
 
 Frame = plain.make("Frame", FRAME)
 RANGES = {name: (length, low, high) for name, length, low, high, _unit, _meaning in FRAME}
@@ -115,11 +116,7 @@ def test_every_truncation_and_extension_is_refused(frame):
 
 @given(frames(), st.data())
 def test_up_to_three_flipped_bits_are_noticed(frame, data):
-    sent = wire.encode(frame)
-    flips = data.draw(st.sets(st.integers(0, 8 * len(sent) - 1), min_size=1, max_size=3))
-    hit = bytearray(sent)
-    for bit in flips:
-        hit[bit >> 3] ^= 0x80 >> (bit & 7)
+    hit = flipped_thrice(wire.encode(frame), data)
     assert wire.decode(hit, Frame()) == wire.BAD_CRC
 
 

@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import re
-import subprocess
 
 import pytest
 
@@ -16,6 +15,7 @@ from innervate.live.declared import DeclaredNode, DeclaredStack
 from innervate.live.serial import SerialLink
 from innervate.live.serial_cables import Cables
 from innervate.network import networks
+from tests.boards.test_boards_cell import board as started
 from tests.live.net import until
 
 LOADED = 'kind = "tokenring"\nloads = true\n' + "".join(
@@ -71,13 +71,8 @@ def board(folder, number, *devices):
     uarts = "UARTS = ((0, {}), (1, {}), None, None)\n"
     (folder / "main.py").write_text(re.sub(r"UARTS = \(\n.*?\n\)\n", uarts, main, flags=re.DOTALL))
     (folder / "machine.py").write_bytes((nodejs.HERE / "machine.py").read_bytes())
-    command = ["node", nodejs.HERE / "cell.mjs", nodejs.home(), folder, *devices]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    try:
+    with started(folder, *devices) as process:
         yield process
-    finally:
-        process.kill()
-        process.communicate()
 
 
 def test_a_board_and_a_live_node_pass_the_token_over_serial_cables(tmp_path):

@@ -141,17 +141,14 @@ def test_live_up_brings_it_up_from_a_file_and_its_nodes_are_found(tmp_path, monk
     assert status.sockets() == []
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "says"),
-    [
-        ("ports = [1]", "ports = [1, 0]", "ports must name the node's port of each of its 1 paths"),
-        ("hold_us = 5", "hold_us = 0", "protocol.hold_us = 0 must be 1 to 1000000 us"),
-        ("hold_us = 5", "wait_us = 5", "protocol.wait_us is unknown; it knows hold_us, lost_us"),
-        ("ports = [1]", "rank = 1", "rank is for nodes of a mesh; remove it"),
-        ("ports = [1]", "role = 'sink'", "role of a tokenring node can be node"),
-        ("'tokenring'", "'token'", "kind must be skin or radio or mesh or tokenring"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "says"), [
+    ("ports = [1]", "ports = [1, 0]", "ports must name the node's port of each of its 1 paths"),
+    ("hold_us = 5", "hold_us = 0", "protocol.hold_us = 0 must be 1 to 1000000 us"),
+    ("hold_us = 5", "wait_us = 5", "protocol.wait_us is unknown; it knows hold_us, lost_us"),
+    ("ports = [1]", "rank = 1", "rank is for nodes of a mesh; remove it"),
+    ("ports = [1]", "role = 'sink'", "role of a tokenring node can be node"),
+    ("'tokenring'", "'token'", "kind must be skin or radio or mesh or tokenring"),
+])  # fmt: skip
 def test_what_is_wrong_with_its_node_file_is_said_in_one_line(tmp_path, old, new, says):
     good = (
         "kind = 'tokenring'\nnumber = 1\nports = [1]\nprotocol = {hold_us = 5}\n"

@@ -11,10 +11,8 @@ LATE = [{"at_s": 0.3, "node": 0, "item": {"value": 7}}]
 
 
 @pytest.fixture
-def gossip(alone, plain, capsys):
-    network = made(alone / "gossip", "cables")
-    capsys.readouterr()
-    return network
+def gossip(alone, plain):
+    return made(alone / "gossip", "cables")
 
 
 def test_what_nobody_is_there_to_hear_counts_as_not_delivered(gossip):

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Any
 
-from innervate.live.board import Coded, Declaration, Form, Role, Watched, on_wire
+from innervate.live.board import Coded, Declaration, Form, Role, Watched, on_wire, only
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters
 from innervate.networks.mesh import frames, payloads
@@ -85,25 +85,17 @@ CSMA = Role(
 )  # fmt: skip
 
 
-def _only(declared: Declaration, numbers: dict[str, int]) -> Declaration:
-    """A declaration where some numbers are always the same: C has those in place of the fields."""
-    return tuple(
-        (name, length, numbers.get(name, low), numbers.get(name, high), unit, meaning)
-        for name, length, low, high, unit, meaning in declared
-    )
-
-
 def _state(size: int, queue: int, kept: int, mtu: int, most: int) -> Declaration:
     """What a node of this capacity class keeps, with room for so many frames and messages."""
     rooms = {"q_room": fields.room(mtu), "wait_room": fields.wait_room(mtu)}
     declared = fields.node(size, queue, kept, mtu, most)
-    return _only(declared, {"places": queue, "kept": kept, **rooms})
+    return only(declared, {"places": queue, "kept": kept, **rooms})
 
 
 def _params(size: int, queue: int, kept: int, most: int) -> Declaration:
     """What all nodes of this class have in common: how much each has room for."""
     sizes = {"width": size, "row": fields.row_bytes(size), "places": most or fields.places(size)}
-    return _only(fields.PARAMS, {**sizes, "queue": queue, "kept": kept})
+    return only(fields.PARAMS, {**sizes, "queue": queue, "kept": kept})
 
 
 def node(nodes: int) -> Role:
@@ -122,6 +114,7 @@ def node(nodes: int) -> Role:
         {const.ACK: on_wire(frames.HOP_ACK), **dict.fromkeys(payloads.FIELDS, PACKET)},
         room=32, counted=COUNTED, gate=fields.gate(size), action=fields.ACTION, timers=const.TIMERS,
         nodes=size, sized=f"{HERE}:node", parameters=f"{HERE}:{OF_CLASS[size]}_parameters",
+        made_in=("recent", "on_demand"),
         watched=RUN._replace(table="nodes"), coded=CODED, frame_bytes=FRAME_BYTES,
         hooks="innervate.networks.mesh:board_links", live=f"{HERE}:live_node", usual=USUAL,
     )  # fmt: skip

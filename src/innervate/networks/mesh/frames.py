@@ -25,23 +25,14 @@ VERSION = 1
 
 HEAD = (("version", 0, 2, 0), ("kind", 0, 6, 0))
 COMMON = (
-    ("flags", 0, 8, 0),
-    ("link_src", 0, 8, 0),
-    ("link_dst", 0, 8, 0),
-    ("origin", 0, 8, 0),
-    ("dest", 0, 8, 0),
-    ("seq", 0, 16, 0),
-    ("table_ver", 0, 8, 0),
-    ("ttl", 0, 8, 0),
+    ("flags", 0, 8, 0), ("link_src", 0, 8, 0), ("link_dst", 0, 8, 0), ("origin", 0, 8, 0),
+    ("dest", 0, 8, 0), ("seq", 0, 16, 0), ("table_ver", 0, 8, 0), ("ttl", 0, 8, 0),
     ("path_len", 0, 8, 0),
-)
+)  # fmt: skip
 HOP_ACK = (
-    ("link_src", 0, 8, 0),
-    ("link_dst", 0, 8, 0),
-    ("origin", 0, 8, 0),
-    ("seq", 0, 16, 0),
+    ("link_src", 0, 8, 0), ("link_dst", 0, 8, 0), ("origin", 0, 8, 0), ("seq", 0, 16, 0),
     ("rssi", 0, 8, 1),
-)
+)  # fmt: skip
 # Hops that acknowledge several packets at once name the others behind the first.
 MORE = (("more", REST, (("origin", 0, 8, 0), ("seq", 0, 16, 0)), 0),)
 CRC = (("crc", 0, 16, 0),)

@@ -4,12 +4,7 @@ from innervate.network import Network
 from innervate.networks.places import PLACES
 
 NETWORK = Network(
-    "mesh",
-    __package__,
-    **PLACES,
-    link_type=148,
-    key_kind=1,
-    rank=2,
+    "mesh", __package__, **PLACES, link_type=148, key_kind=1, rank=2,
     model="scenario.model:MeshScenario",
     plan="scenario.planning:plan",
     actions="innervate.scenario.actions.field:ACTIONS",
@@ -30,4 +25,4 @@ NETWORK = Network(
     live_view="view.live:MeshLiveView",
     comparison="papers.comparison",
     counterexample="plot.counterexample:save",
-)
+)  # fmt: skip

@@ -4,32 +4,20 @@ from innervate.networks.mesh.protocol import constants as const
 from innervate.wire.layout import PAIRS, REST, is_fixed, read, width
 
 NEIGHBOUR = (("id", 0, 8, 0), ("rssi", 0, 8, 1))
-GROUP = (
-    ("next", 0, 8, 0),
-    ("alt", 0, 8, 0),
-    ("count", 0, 8, 0),
-    ("dests", "count", 8, 0),
-)
+GROUP = (("next", 0, 8, 0), ("alt", 0, 8, 0), ("count", 0, 8, 0), ("dests", "count", 8, 0))
 MOVING = (("x", 0, 16, 1), ("y", 0, 16, 1), ("vx", 0, 8, 1), ("vy", 0, 8, 1))
 VERSION = (("epoch", 0, 8, 0), ("table_version", 0, 16, 0))
 PART = VERSION + (("fragment", 0, 4, 0), ("fragments", 0, 4, 0))
 ROUTE = (("route_len", 0, 8, 0), ("route", "route_len", 8, 0))
 
 ASKING = (
-    ("gateway", 0, 8, 0),
-    ("epoch", 0, 8, 0),
-    ("round", 0, 16, 0),
-    ("active", 0, 16, 0),
-    ("jitter", 0, 8, 0),
-    ("asked", REST, 8, 0),
-)
+    ("gateway", 0, 8, 0), ("epoch", 0, 8, 0), ("round", 0, 16, 0), ("active", 0, 16, 0),
+    ("jitter", 0, 8, 0), ("asked", REST, 8, 0),
+)  # fmt: skip
 ANSWERING = (
-    ("epoch", 0, 8, 0),
-    ("round", 0, 16, 0),
-    ("mode", 0, 4, 0),
-    ("listed", 0, 4, 0),
+    ("epoch", 0, 8, 0), ("round", 0, 16, 0), ("mode", 0, 4, 0), ("listed", 0, 4, 0),
     ("neighbours", REST, NEIGHBOUR, 0),
-)
+)  # fmt: skip
 RAISED = (("robot", 0, 8, 0), ("fence", 0, 8, 0), ("number", 0, 8, 0), ("alarm", 0, 8, 0))
 
 # A payload: value of the type, name, fields (see layout.py).
@@ -48,13 +36,9 @@ LAYOUTS = (
 # The payload of an ORDERED packet that is a piece of a message: no message is PIECE_AHEAD numbers
 # ahead of the one before it, which is what stands there else.
 PIECE = (
-    ("mark", 0, 16, 0),
-    ("message", 0, 16, 0),
-    ("in_order", 0, 8, 0),
-    ("at", 0, 16, 0),
-    ("size", 0, 16, 0),
-    ("data", REST, 8, 0),
-)
+    ("mark", 0, 16, 0), ("message", 0, 16, 0), ("in_order", 0, 8, 0), ("at", 0, 16, 0),
+    ("size", 0, 16, 0), ("data", REST, 8, 0),
+)  # fmt: skip
 PIECE_STRUCT = ">HHBHH"  # the same for struct, without its data
 PIECE_AHEAD = 16_384
 # What the parts of a graph are when put together: the links of every pair a < b, row by row.

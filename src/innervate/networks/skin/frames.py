@@ -13,31 +13,18 @@ CRC_BYTES = 2
 
 # Fields as layout.py has them.
 ROUTE = (
-    ("dist", 0, 8, 0),
-    ("sq", 0, 16, 0),
-    ("load", 0, 12, 0),
-    ("size", 0, 12, 0),
+    ("dist", 0, 8, 0), ("sq", 0, 16, 0), ("load", 0, 12, 0), ("size", 0, 12, 0),
     ("parent", 0, 1, 0),
-)
+)  # fmt: skip
 TOUCH = (
-    (SPARE, 0, 4, 0),
-    ("cell", 0, 16, 0),
-    ("seq", 0, 8, 0),
-    ("hops", 0, 8, 0),
-    ("proximity", 0, 16, 0),
-    ("force", 3, 16, 0),
-    ("temperature", 0, 8, 1),
-    ("accel", 3, 10, 1),
+    (SPARE, 0, 4, 0), ("cell", 0, 16, 0), ("seq", 0, 8, 0), ("hops", 0, 8, 0),
+    ("proximity", 0, 16, 0), ("force", 3, 16, 0), ("temperature", 0, 8, 1), ("accel", 3, 10, 1),
     (SPARE, 0, 2, 0),
-)
+)  # fmt: skip
 ORDER = (
-    (SPARE, 0, 4, 0),
-    ("cell", 0, 16, 0),
-    ("sq", 0, 16, 0),
-    ("hops", 0, 8, 0),
-    ("dist", 0, 8, 0),
+    (SPARE, 0, 4, 0), ("cell", 0, 16, 0), ("sq", 0, 16, 0), ("hops", 0, 8, 0), ("dist", 0, 8, 0),
     ("proximity", 0, 16, 0),
-)
+)  # fmt: skip
 # A frame: value of the type, name, fields after the type. A restart has the form of a beacon.
 LAYOUTS = (
     (BEACON, "beacon", ROUTE),

@@ -4,12 +4,7 @@ from innervate.network import Network
 from innervate.networks.places import PLACES
 
 NETWORK = Network(
-    "skin",
-    __package__,
-    **PLACES,
-    link_type=147,
-    key_kind=2,
-    rank=0,
+    "skin", __package__, **PLACES, link_type=147, key_kind=2, rank=0,
     model="scenario.model:SkinScenario",
     plan="scenario.plan:plan",
     anchor="scenario.graph:anchor",
@@ -31,4 +26,4 @@ NETWORK = Network(
     recovery="export.recovery",
     comparison="papers.compared",
     counterexample="plot.counterexample:save",
-)
+)  # fmt: skip

@@ -14,18 +14,7 @@ from innervate.sim.cables import world as w
 from innervate.sim.cables.loop import BATCH, PUSHED_PER_EVENT, ROWS_PER_EVENT
 from innervate.sim.cables.wires import COUNTERS, LOSSY
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import (
-    DELIVERY,
-    ROW,
-    TAP,
-    TRAIL,
-    Names,
-    Tables,
-    get,
-    longer,
-    put,
-    uniform,
-)
+from innervate.sim.tables import DELIVERY, ROW, TAP, TRAIL, Names, Tables, get, longer, put, uniform
 from innervate.sim.wheel import BUCKETS, FREE, FRESH, LAST, LEVELS, NIL, PENDING, WORDS
 
 CACHE_LINE = 64

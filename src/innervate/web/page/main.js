@@ -116,7 +116,8 @@ function showScene(scene) {
   log.clear();
   $("name").textContent = scene.name;
   document.title = `${scene.name} - innervate watch`;
-  $("what").textContent = `${scene.kind}, ${SOURCES[scene.source] ?? scene.source}`;
+  $("what").textContent = [scene.kind, SOURCES[scene.source] ?? scene.source, scene.part]
+    .filter(Boolean).join(", ");
   $("report").hidden = !scene.report;
   $("report").href = `report?token=${encodeURIComponent(TOKEN)}`;
   const choices = view.choices();

@@ -5,6 +5,8 @@ const OUT_OF_RANGE = 2; // in link_up
 const KEPT = 20000; // boxes of the timeline
 const POINTS = 3000; // of a plot
 const MARKS = 500;
+const SPAN_S = 10; // of the network's time in a plot; more where it goes so fast
+const SPAN_POINTS = 40; // that fewer points than these would be in it
 
 /** One network as it is looked at: a scene and what became of it. */
 export class Network {
@@ -34,6 +36,7 @@ export class Network {
     this.radio = { now: none(0), turn: none(-1) };
     this.timeline = [];
     this.series = new Map(scene.series.map((one) => [one.id, []]));
+    this.hasGaps = scene.source === "live"; // others that say nothing had nothing to measure
     this.marks = { loss: [], return: [] }; // when something was taken away, or given back, s
   }
 
@@ -73,10 +76,15 @@ export class Network {
     return role === "gateway" && leads.some(Boolean) ? "node" : role;
   }
 
-  /** Nodes that the headline is about, as indices; none where nothing is known of anybody. */
+  /** Whether nothing is known of anybody. */
+  isSilent() {
+    return this.now.headline?.level === NO_DATA;
+  }
+
+  /** Nodes that the headline is about, as indices. */
   affected() {
     const { headline } = this.now;
-    if (!headline || headline.level === NO_DATA) return [];
+    if (!headline || this.isSilent()) return [];
     return headline.nodes.map((id) => this.index.get(id)).filter((i) => i !== undefined);
   }
 
@@ -100,6 +108,25 @@ export class Network {
   linkName(link) {
     const [a, b] = this.ends[link];
     return `${this.nodes[a].label} - ${this.nodes[b].label}`;
+  }
+
+  /** How much of the network's time a plot shows, s. */
+  span(id) {
+    if (this.hasGaps) return SPAN_S;
+    const times = this.series.get(id).slice(-3).map(([t]) => t);
+    const apart = times.slice(1).map((t, i) => t - times[i]);
+    return Math.max(SPAN_S, SPAN_POINTS * Math.max(0, ...apart));
+  }
+
+  /** The points of a plot from a time on, in curves: one ends where nobody answered. */
+  curves(id, from) {
+    const points = this.series.get(id);
+    const curves = [[]];
+    points.forEach(([t, v], i) => {
+      if (v === null && this.hasGaps) curves.push([]);
+      else if (v !== null && (points[i + 1]?.[0] ?? t) >= from) curves.at(-1).push([t, v]);
+    });
+    return curves;
   }
 
   #addPoints(id, points) {

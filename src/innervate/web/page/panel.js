@@ -27,8 +27,11 @@ export function showState(network, connected) {
     : isSilent ? "page connected, nodes silent" : "connected";
   if ($("connection").textContent !== link) $("connection").textContent = link;
   $("connection").classList.toggle("lost", !connected || isSilent);
-  const word = `${LEVELS[level] ?? ""} ${level}`; // said anew only when it changes
-  if ($("level").textContent !== word) $("level").textContent = word;
+  const word = `${LEVELS[level] ?? ""} ${level}`;
+  if ($("level").textContent !== word) { // said when it changes: the sentence counts messages
+    $("level").textContent = word;
+    $("state-spoken").textContent = `${level}: ${text}`;
+  }
   if ($("headline").textContent !== text) $("headline").textContent = text;
 }
 

@@ -3,7 +3,6 @@ import { colours } from "./colours.js";
 import { prepared, stroke, word } from "./shapes.js";
 import { ticks, value } from "./words.js";
 
-const SPAN_S = 10; // of the network's time, at most
 const LEAST_S = 0.05;
 const FEW = 40; // points that are marked one by one
 const GUTTER = 46; // px on the left, for values
@@ -57,17 +56,21 @@ export class Plots {
     const context = prepared(canvas, width, height);
     const to = this.network.now.t_s;
     const first = points[0]?.[0] ?? 0;
-    const from = Math.max(first, to - SPAN_S);
+    const from = Math.max(first, to - this.network.span(series.id));
     const span = Math.max(LEAST_S, to - from);
-    const shown = points.filter(([t, v], i) => v !== null && (points[i + 1]?.[0] ?? t) >= from);
+    const curves = this.network.curves(series.id, from);
+    const shown = curves.flat();
     const most = nice(Math.max(0, ...shown.map(([, v]) => v)));
     const across = (t) => GUTTER + ((t - from) / span) * (width - GUTTER - SIDE);
     const up = (v) => height - FOOT - (v / most) * (height - FOOT - HEAD);
     this.#scales(context, { width, height, up, across, most, from, to: from + span, series });
     const curve = new Path2D();
-    const marks = shown.map(([t, v]) => [across(Math.max(t, from)), up(v)]);
-    marks.forEach((at, i) => curve[i ? "lineTo" : "moveTo"](...at));
-    for (const [x, y] of marks.length < FEW ? marks : []) {
+    for (const [i, [t, v]] of curves.flatMap((one) => [...one.entries()])) {
+      const at = [across(Math.max(t, from)), up(v)];
+      curve[i ? "lineTo" : "moveTo"](...at);
+    }
+    for (const [t, v] of shown.length < FEW ? shown : []) {
+      const [x, y] = [across(Math.max(t, from)), up(v)];
       curve.moveTo(x + 1.5, y);
       curve.arc(x, y, 1.5, 0, 7);
     }
@@ -75,7 +78,8 @@ export class Plots {
     stroke(context, colours.accent, 1.8, curve);
     if (!shown.length) {
       const isOver = points.some(([, v]) => v !== null);
-      const text = isOver ? "nothing in this time" : "nothing yet";
+      const text = !isOver ? "nothing yet"
+        : this.network.hasGaps ? "no data" : "nothing in this time";
       context.textAlign = "center";
       word(context, text, (GUTTER + width - SIDE) / 2, up(most / 2), colours.soft, colours.panel,
         FONT);

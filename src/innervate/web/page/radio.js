@@ -133,8 +133,9 @@ export class RadioView {
     if (stage.scale < WORDS_PX) return;
     const isHeard = radio.now.some((state, i) => (
       now.node_up[i] && (state === RECEIVES || state === SEVERAL))); // the end is still on its way
-    const text = [isHeard ? "nobody sends" : "channel free", "one sends", "several send"]
-      .at(Math.min(2, senders.length));
+    const text = this.network.isSilent() ? "nobody answers"
+      : [isHeard ? "nobody sends" : "channel free", "one sends", "several send"]
+        .at(Math.min(2, senders.length));
     context.font = "600 13px system-ui, sans-serif";
     const wide = context.measureText(text).width + 10;
     context.fillStyle = colours.ground; // lines to the middle end before the words

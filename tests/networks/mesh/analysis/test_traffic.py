@@ -6,15 +6,7 @@ from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm
 from innervate.networks.mesh.analysis.headline import Traffic, traffic
 from innervate.networks.mesh.analysis.messages import NEVER, messages
 from innervate.networks.mesh.protocol.constants import REPORT_ACCEPTED
-from innervate.scenario.actions.field import (
-    CUT,
-    JAM,
-    KILL,
-    QUIET,
-    RESTART,
-    RESTORE,
-    REVIVE,
-)
+from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from tests.networks.mesh.analysis.test_summary import S, fault, given, made, offer
 
 

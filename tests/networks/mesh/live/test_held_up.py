@@ -4,7 +4,7 @@ import asyncio
 import os
 import socket
 import tty
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 
 import pytest
 
@@ -131,28 +131,35 @@ def test_datagrams_that_wait_at_a_socket_are_thrown_away():
     assert asyncio.run(main()) == [b"new"]
 
 
+@contextmanager
+def serial_port():
+    """The other end of a serial port, and a link on it."""
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    link = SerialLink(os.ttyname(slave), 4_000_000)
+    yield master, link
+    link.close()
+    os.close(master)
+    os.close(slave)
+
+
 def test_what_was_read_from_a_serial_port_together_is_thrown_away_together():
     """The first of several old frames shows how late it is; those read with it are as old."""
 
     async def main():
-        master, slave = os.openpty()
-        tty.setraw(slave)
         taken = []
-        link = SerialLink(os.ttyname(slave), 4_000_000)
 
         def take(_, data):
             taken.append(data)
             if data == b"old":
                 link.forget()
 
-        await link.open(take)
-        os.write(master, b"\x04old\x00\x04old\x00")
-        await asyncio.sleep(0.05)
-        os.write(master, b"\x04new\x00")
-        await asyncio.sleep(0.05)
-        link.close()
-        os.close(master)
-        os.close(slave)
+        with serial_port() as (master, link):
+            await link.open(take)
+            os.write(master, b"\x04old\x00\x04old\x00")
+            await asyncio.sleep(0.05)
+            os.write(master, b"\x04new\x00")
+            await asyncio.sleep(0.05)
         return taken
 
     assert asyncio.run(main()) == [b"old", b"new"]
@@ -160,25 +167,20 @@ def test_what_was_read_from_a_serial_port_together_is_thrown_away_together():
 
 def test_bytes_that_wait_at_a_serial_port_are_thrown_away():
     async def main():
-        master, slave = os.openpty()
-        tty.setraw(slave)
         taken = []
-        link = SerialLink(os.ttyname(slave), 4_000_000)
-        link.forget()
-        await link.open(lambda _, data: taken.append(data))
-        os.write(master, b"\x04old\x00\x04ol")
-        await asyncio.sleep(0.05)
-        os.write(master, b"d\x00\x04old\x00")
-        link.forget()
-        os.write(master, b"\x04new\x00")
-        await asyncio.sleep(0.05)
-        link.write(b"x" * 1_000_000)
-        waiting = len(link._waiting)
-        link.forget()
-        left = bytes(link._waiting)
-        link.close()
-        os.close(master)
-        os.close(slave)
+        with serial_port() as (master, link):
+            link.forget()
+            await link.open(lambda _, data: taken.append(data))
+            os.write(master, b"\x04old\x00\x04ol")
+            await asyncio.sleep(0.05)
+            os.write(master, b"d\x00\x04old\x00")
+            link.forget()
+            os.write(master, b"\x04new\x00")
+            await asyncio.sleep(0.05)
+            link.write(b"x" * 1_000_000)
+            waiting = len(link._waiting)
+            link.forget()
+            left = bytes(link._waiting)
         return taken, waiting > 0, left
 
     assert asyncio.run(main()) == ([b"old", b"new"], True, END)

@@ -6,14 +6,7 @@ from innervate.networks.mesh.live import turns
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
 from innervate.networks.mesh.live.turns import FEW, FIRST, SILENT, SPARE, Places, Turns
-from innervate.networks.mesh.protocol.constants import (
-    ALL,
-    CONTROL,
-    DATA,
-    END_TO_END,
-    OWN,
-    PRIORITY,
-)
+from innervate.networks.mesh.protocol.constants import ALL, CONTROL, DATA, END_TO_END, OWN, PRIORITY
 from innervate.networks.mesh.protocol.duplicates import UNREACHABLE
 from innervate.networks.mesh.protocol.retransmission import AHEAD_MAX, SURE_AFTER
 

@@ -16,10 +16,7 @@ from innervate.networks.mesh.protocol.constants import ALL, END_TO_END, MONITOR,
 from tests.live import time_by_hand as live_time
 from tests.live.net import Mesh
 
-PROFILE = {
-    "ack_us": 5000,
-    "e2e_us": 30_000,
-}  # the profile of live nodes
+PROFILE = {"ack_us": 5000, "e2e_us": 30_000}  # the profile of live nodes
 SQUARE = [[(0, 0), (2000, 0), (2000, 1000), (0, 1000)]]
 HOP_S = 0.015  # three transmissions to a neighbour that does not answer
 SOON_S = HOP_S + 0.005

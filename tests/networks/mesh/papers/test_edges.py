@@ -184,9 +184,12 @@ EDGES = [
     ("failures", "rather than its origin",
      [came(failures.RANDOM, "first", 901), came(failures.ORIGIN, "first", 900)],
      [[came(rule, "first", 900) for rule in (failures.RANDOM, failures.ORIGIN)]]),
-    ("failures", "last heard time and RSSI",
-     [came(failures.RSSI, "first", 901), came(failures.RANDOM, "first", 900)],
-     [[came(rule, "first", 900) for rule in (failures.RANDOM, failures.RSSI)]]),
+    *[("failures", words, [came(better, "first", 901), came(worse, "first", 900)],
+       [[came(rule, "first", 900) for rule in (better, worse)]])
+      for words, better, worse in (
+          ("last heard time and RSSI", failures.HEARD, failures.RANDOM),
+          ("^... by both", failures.HEARD, failures.RSSI),
+          ("^... by RSSI alone", failures.RSSI, failures.RANDOM))],
     *[("failures", words, [came(rule, "later", 996, 4)],
        [[came(rule, which, 995, dead)] for which in ("first", "later") for dead in (0, 4, 8)])
       for rule, words in ((failures.SEARCH, "^alternates, then"),
@@ -197,7 +200,7 @@ EDGES = [
     ("failures", "^to replace a next hop",
      [(failures.point(rule, 8, QUICK), {"looped": [9]})
       for rule in (failures.SEARCH, failures.GRAPH)],
-     [[(failures.point(rule, 8, QUICK), {"looped": [1]})] for rule in failures.RULES[:4]]),
+     [[(failures.point(rule, 8, QUICK), {"looped": [1]})] for rule in failures.RULES[:5]]),
     *[("lossy", words, [soft(rule, wrong=[0.0499], came=[[9, 96]])],
        [[soft(rule, wrong=[0.05])], [soft(rule, came=[[100, 95]])]])
       for rule, words in ((lossy.DOCUMENT, "^to the letter, while nobody dies"),
@@ -254,7 +257,7 @@ EDGES = [
      [[barred(SEARCHED, first=[[9899, 10_000]])]]),
     ("bars", "unknown dead, graph", [barred(GRAPHED, first=[[10_000, 10_000]])],
      [[barred(GRAPHED, first=[[9999, 10_000]])]]),
-    ("bars", "^alarms with 8", [crossed(alarms.BOTH, 8)],
+    ("bars", "^alarms with 8 dead: delivered", [crossed(alarms.BOTH, 8)],
      [[crossed(alarms.BOTH, 8, arrived=False)]]),
     ("bars", "latency, 99 %", [crossed(alarms.BOTH, 8, 70.0)], [[crossed(alarms.BOTH, 8, 70.1)]]),
     ("bars", "overrun at 1 m/s", [crossed(alarms.BOTH, 8, over=0.15)],

@@ -1,19 +1,10 @@
 """The mesh's figures and claims, in quick mode; the bars with real sizes at the end."""
 
-import re
-
 import numpy as np
 import pytest
 
 from innervate.networks.mesh import papers as mesh
-from innervate.networks.mesh.papers import (
-    FIGURES,
-    alarms,
-    experiment,
-    gateway,
-    scale,
-    stretch,
-)
+from innervate.networks.mesh.papers import FIGURES, alarms, gateway, scale, stretch
 from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
@@ -21,18 +12,16 @@ from innervate.papers.experiment import FAILS, HOLDS, Measured
 from innervate.plot import style
 from tests.fixtures.papers import read
 from tests.networks.mesh.papers.test_edges import results
-from tests.plot.ink import measured
-from tests.plot.labels import covered, legends_over_panels, over_panels
+from tests.plot.labels import legends_over_panels, over_panels
 from tests.plot.self_contained import check_paper
 
-VERDICT = re.compile(r"holds|does not hold|holds with reading A\d+(, A\d+)*")
 # Figure and words of its claims: those that have to hold, and those that must not.
 MUST_HOLD = (
     ("bars", "discovery recall"),
     ("bars", "every node with tables"),
     ("bars", "tables complete"),
     ("bars", "unknown dead, search"),
-    ("bars", "alarms with 8 dead"),
+    ("bars", "alarms with 8 dead: delivered"),
     ("bars", "latency, 99 %"),
     ("bars", "overrun at 1 m/s"),
     ("bars", "state of a node"),
@@ -70,19 +59,6 @@ MUST_FAIL = (
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_a_figure_is_drawn(mesh_made, name):
-    (width, height), ink = measured(mesh_made.folder / f"{name}.png")
-    assert width >= 1000
-    assert 0.3 < height / width < 1.5
-    assert 0.01 < ink < 0.6
-
-
-@pytest.mark.parametrize("name", FIGURES)
-def test_no_labels_overlap(mesh_made, name):
-    assert covered(mesh_made.folder, name) == []
-
-
-@pytest.mark.parametrize("name", FIGURES)
 def test_no_legend_lies_over_a_panel(mesh_made, name):
     assert legends_over_panels(mesh_made.folder, name) == []
 
@@ -93,26 +69,6 @@ def test_a_legend_in_a_panel_is_noticed():
     ax.legend()
     figure.draw_without_rendering()
     assert over_panels(figure) == ["a line"]
-
-
-@pytest.mark.parametrize("name", FIGURES)
-def test_claims_say_what_was_measured(mesh_made, name):
-    for claim in mesh_made.claims[name]:
-        assert VERDICT.fullmatch(claim.verdict), claim.verdict
-        assert re.search(r"\d", claim.measurement), claim
-        assert not re.search(r"\b(nan|None|inf)\b", claim.measurement), claim
-        assert claim.verdict != FAILS or claim.reason, claim
-
-
-@pytest.mark.parametrize("name", FIGURES)
-def test_points_are_told_apart(name):
-    made = experiment(name)
-    assert made.name == name
-    for quick in (True, False):
-        points = made.points(quick)
-        keys = [point.key for point in points]
-        assert len(keys) == len(set(keys))
-        assert all(point.cost_s > 0 for point in points)
 
 
 @pytest.mark.parametrize(

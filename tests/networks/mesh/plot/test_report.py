@@ -10,9 +10,9 @@ from innervate.networks.mesh.plot import map as mesh_map
 from innervate.networks.mesh.plot import report as mesh_report
 from innervate.networks.mesh.plot.figures import FIGURES
 from innervate.networks.mesh.plot.sheet import Labels, Sheet
-from innervate.plot import figures, style
+from innervate.plot import figures
 from tests.networks.mesh.tables_runs import mesh_tables, without_fence
-from tests.plot.ink import measured
+from tests.plot.ink import ink_of
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +107,11 @@ def test_when_a_fence_was_crossed_is_on_one_line_on_a_phone_too(field):
     assert len(re.findall(r"<td>[\d.]+\u00a0m</td>", rows)) == 2
 
 
+def test_what_a_node_sent_is_on_one_line_on_a_phone_too(plain):
+    rows = plain.report().partition("<h2>Node by node</h2>")[2].partition("</table>")[0]
+    assert len(re.findall(r"<td>[\d.]+\u00a0%</td>", rows)) == plain.result.plan.nodes
+
+
 def test_a_mesh_without_a_fence_has_no_crossings(plain):
     page = plain.report()
     assert "A crossing, in slow motion" not in page
@@ -137,10 +142,7 @@ def test_labels_without_room_are_left_out():
 @pytest.mark.parametrize("which", ["field", "plain"])
 def test_each_figure_draws(which, figure, request, tmp_path):
     made = figures.draw(request.getfixturevalue(which), figure)
-    with style.house():
-        style.save(made, tmp_path, figure)
-    _, ink = measured(tmp_path / f"{figure}.png", 0.97)
-    assert 0.003 < ink < 0.97
+    assert 0.003 < ink_of(made, tmp_path) < 0.97
 
 
 def test_an_unknown_figure_is_refused(plain):

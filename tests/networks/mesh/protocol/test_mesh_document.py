@@ -7,6 +7,7 @@ from innervate.networks.mesh.protocol.constants import (
     DATA,
     EACH,
     LIST,
+    LOUDEST,
     RANDOM,
     REPORT_GRAPH,
     REPORT_TABLES,
@@ -15,6 +16,7 @@ from innervate.networks.mesh.protocol.constants import (
     SEARCH,
     TREE,
 )
+from innervate.networks.mesh.protocol.neighbours import place_of
 from tests.networks.mesh.net import Net, geometric, line, ring
 
 READY = 8_000_000
@@ -177,3 +179,24 @@ def test_the_choice_is_random_except_for_the_packet_source(avoid_origin):
         net.run(net.now + 300_000)
         picked.add(net.nodes[0].next[net.nodes[0].bank * 32 + 3])
     assert picked == ({2, 4} if avoid_origin else {2})
+
+
+@pytest.mark.parametrize(("recent", "ticks", "picked"), [
+    (0, (0, 9, 9), 2), (1, (0, 0, 0), 2), (1, (0, 1, 2), 5), (1, (0, 2, 2), 4), (1, (3, 2, 2), 2),
+])  # fmt: skip
+def test_the_choice_based_on_last_heard_time_and_rssi(recent, ticks, picked):
+    """ "in the future it could be based on last heard time and RSSI, both of which are tracked":
+    of those heard last, in ticks, the loudest; by RSSI alone the loudest of all [A6]. Of 2, 4 and
+    5, ever fainter, each was heard so many ticks later than the first of them."""
+    loud = {(2, 0): -60, (4, 0): -70, (5, 0): -80}
+    links = [(0, 1), (1, 3), *((0, i) for i in (2, 4, 5)), *((i, 3) for i in (2, 4, 5))]
+    net = Net(6, links, gateway=3, rssi=loud, failover=LOUDEST, recent=recent, retry=0)
+    net.run(READY)
+    net.kill(1)
+    node = net.nodes[0]
+    node.ticks = 5
+    for who, late in zip((2, 4, 5), ticks, strict=True):
+        node.heard[place_of(node, net.params, who)] = (65_530 + late) & 65_535
+    net.send(0, 3, flags=0)
+    net.run(net.now + 100_000)
+    assert node.next[node.bank * 32 + 3] == picked

@@ -41,13 +41,19 @@ def gateway_of(graph, mtu=127):
     return node, gate, params
 
 
-@settings(max_examples=25, deadline=None, phases=(Phase.generate,))
-@given(graphs())
-def test_distances_and_next_hops(graph):
+def tables_of(graph):
+    """Of every node: it, the gateway that has made its table, and how far all are apart."""
     _, gate, params = gateway_of(graph)
     far = dict(nx.all_pairs_shortest_path_length(graph))
     for s in graph:
         mesh_paths.make_table(gate, params, s)
+        yield s, gate, params, far
+
+
+@settings(max_examples=25, deadline=None, phases=(Phase.generate,))
+@given(graphs())
+def test_distances_and_next_hops(graph):
+    for s, gate, params, far in tables_of(graph):
         for d in graph:
             assert mesh_paths.hops(gate, params, s, d) == far[s].get(d, FAR)
             best = [u for u in graph[s] if d in far[u] and far[u][d] + 1 == far[s].get(d)]
@@ -58,10 +64,7 @@ def test_distances_and_next_hops(graph):
 @given(graphs())
 def test_alternates_are_loop_free_and_protect_the_node_where_one_can(graph):
     """RFC 5286 inequalities 1 and 3; else the first hop of a shortest path around the main one."""
-    _, gate, params = gateway_of(graph)
-    far = dict(nx.all_pairs_shortest_path_length(graph))
-    for s in graph:
-        mesh_paths.make_table(gate, params, s)
+    for s, gate, _, far in tables_of(graph):
         for d in set(far[s]) - {s}:
             main, alt = gate.next[d], gate.alt[d]
             others = [u for u in graph[s] if u != main]

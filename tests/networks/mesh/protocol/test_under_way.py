@@ -29,11 +29,17 @@ def frames(net, kind):
     return [frame for _, _, frame in net.sent if frame.kind == kind]
 
 
-def test_frames_to_one_neighbour_do_not_wait_for_each_other():
+def four_sent():
+    """Two nodes, of which one has just sent four messages to the other."""
     net = settled(2, line(2))
     net.sent.clear()
     for k in range(4):
         net.send(0, 1, b"%d" % k)
+    return net
+
+
+def test_frames_to_one_neighbour_do_not_wait_for_each_other():
+    net = four_sent()
     net.run(net.now + 100)
     assert len(frames(net, DATA)) == 4
 
@@ -50,10 +56,7 @@ def test_a_dead_neighbour_holds_up_nothing_to_another():
 
 
 def test_acks_of_what_came_together_go_together():
-    net = settled(2, line(2))
-    net.sent.clear()
-    for k in range(4):
-        net.send(0, 1, b"%d" % k)
+    net = four_sent()
     net.run(net.now + 20_000)
     acks = [frame for _, i, frame in net.sent if i == 1 and frame.kind == ACK]
     ends = [frame for _, i, frame in net.sent if i == 1 and frame.kind == E2E_ACK]

@@ -6,6 +6,8 @@ from innervate.networks.mesh import frames as wire
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.protocol.constants import (
     DATA,
+    E2E_ACK,
+    FLOOD,
     REPORT_SUSPECT,
     REQUEST,
     RESPONSE,
@@ -143,3 +145,18 @@ def test_a_neighbour_without_a_loop_free_alternate_has_none():
     bank = node.bank * bench.params.width
     table = [(node.next[bank + d], node.alt[bank + d]) for d in range(1, 6)]
     assert table == [(1, 255), (1, 5), (1, 5), (5, 1), (5, 255)]
+
+
+@pytest.mark.parametrize("on_demand", [1, 0])
+def test_data_to_one_node_that_goes_to_all_looks_for_its_recipient(on_demand):
+    bench = Bench(4, line(4), on_demand=1)
+    bench.lost = lambda frame, to: frame.kind == REQUEST
+    bench.params.on_demand = 1
+    bench.send(0, 3)
+    bench.params.on_demand = on_demand
+    bench.run(200_000)
+    found = [(i, f.link_dst, f.flags & FLOOD, f.path_len, f.ttl) for i, f in of_kind(bench, DATA)]
+    assert found == [(i, 255, 0, i + 1, 47 - i) for i in range(3 if on_demand else 1)]
+    assert len(bench.delivered) == on_demand
+    back = [(i, f.link_dst) for i, f in of_kind(bench, E2E_ACK)]
+    assert back == ([(3, 2), (2, 1), (1, 0)] if on_demand else [])

@@ -121,28 +121,16 @@ WRONG_LINKS = (
     ('b = "z"', 'b = "all"', '8: link.1.b must be a node by number or name, not "all"'),
     ("[0.9, 0.7]", "1.5", "5: link.0.quality must be 0 to 1, not 1.5"),
     ("[0.9, 0.7]", "[0, 1]", "no good links lead to x; add"),
-    (
-        'kind = "mesh"',
-        'kind = "mesh"\nnodes = 3',
-        '4: link.0.a: there is no node "x"; there are n0, n1, n2',
-    ),
-    (
-        'kind = "mesh"',
-        'kind = "mesh"\n[[node]]\nname = "x"',
-        '6: link.0.b: there is no node "y"; there are x',
-    ),
-    (
-        'kind = "mesh"',
-        'kind = "mesh"\n[[node]]\nname = "x"\n[[node]]\nname = "x"',
-        '4: there are two nodes "x"; rename one',
-    ),
+    ('kind = "mesh"', 'kind = "mesh"\nnodes = 3',
+     '4: link.0.a: there is no node "x"; there are n0, n1, n2'),
+    ('kind = "mesh"', 'kind = "mesh"\n[[node]]\nname = "x"',
+     '6: link.0.b: there is no node "y"; there are x'),
+    ('kind = "mesh"', 'kind = "mesh"\n[[node]]\nname = "x"\n[[node]]\nname = "x"',
+     '4: there are two nodes "x"; rename one'),
     ('kind = "mesh"', 'kind = "mesh"\nradio.tx_dbm = 3', "2: radio.tx_dbm has no effect on links"),
-    (
-        'kind = "mesh"',
-        'kind = "mesh"\n[[robot]]\nnode = "x"\nrandom = true',
-        "2: robot x has no position; give it waypoints, or random = true with an area",
-    ),
-)
+    ('kind = "mesh"', 'kind = "mesh"\n[[robot]]\nnode = "x"\nrandom = true',
+     "2: robot x has no position; give it waypoints, or random = true with an area"),
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(("old", "new", "message"), WRONG_LINKS)

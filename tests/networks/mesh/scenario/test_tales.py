@@ -190,8 +190,10 @@ def test_a_message_fits_into_a_frame(monkeypatch):
         offered(to="gateway", bytes=most + 1)
     monkeypatch.setattr(traffic, "OFFERS_MAX", 6)
     assert len(offered(to="gateway", every_s=0.25, pairs=[(1, 0), (2, 0)])) == 6
-    with pytest.raises(ScenarioError, match="more than 6 messages would be offered"):
+    with pytest.raises(ScenarioError, match=r"more than 6 messages.* or raise flow\.0\.every_s"):
         offered(to="gateway", every_s=0.24, pairs=[(1, 0), (2, 0)])
+    with pytest.raises(ScenarioError, match=r"more than 6 messages.* or lower flow\.0\.rate_hz"):
+        offered(to="gateway", rate_hz=50.0, pairs=[(1, 0), (2, 0)])
 
 
 def test_the_farthest_points_of_two_rectangles():

@@ -8,9 +8,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
+from innervate.networks.mesh.protocol.constants import ALL, DATA, PARITY
 from innervate.networks.mesh.scenario.plan import ONE, MeshFault, Offer, Walk
 from innervate.networks.mesh.sim.simulate import simulate
-from innervate.scenario import load
+from innervate.scenario import from_dict, load
 from innervate.scenario import plan as plan_of
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
 from innervate.sim.tables import uniform
@@ -122,6 +123,25 @@ def test_compiled_equals_plain_where_there_is_much_traffic():
     n = 12
     offers = [(1_000 + 3_000 * k, k % n, 255, k % 60) for k in range(90)]
     check(hurried(mesh_plan(n, offers=offers, duration_s=0.3)), simulate)
+
+
+@pytest.mark.parametrize("protocol", [
+    {"on_demand": True}, {"on_demand": True, "tables": False}, {"failover": "heard"},
+])  # fmt: skip
+def test_compiled_equals_plain_by_the_rules_that_are_chosen(protocol):
+    """All send from the first moment on; half of them die. Nobody floods one try twice."""
+    flow = {"from": "random", "to": "random", "pairs": 8, "every_s": 0.5, "start_s": 0.0}
+    deaths = [{"at_s": 3.0, "action": "kill", "node": node} for node in range(1, 7)]
+    plan = plan_of(from_dict({"kind": "mesh", "nodes": 14, "duration_s": 4.0, "seed": 5,
+                              "protocol": protocol, "flow": [flow], "event": deaths}))  # fmt: skip
+    check(plan, simulate)
+    sent = simulate(plan).sent
+    floods = sent[(sent["kind"] == DATA) & (sent["link_dst"] == ALL)]
+    tries = [
+        tuple(map(int, (f["node"], f["origin"], f["seq"], f["flags"] & PARITY))) for f in floods
+    ]
+    assert bool(tries) == ("on_demand" in protocol)
+    assert len(set(tries)) == len(tries)
 
 
 @pytest.mark.slow

@@ -17,11 +17,7 @@ from innervate.networks.mesh.protocol.constants import (
     TABLE,
 )
 from innervate.networks.mesh.protocol.route import NONE, planned
-from innervate.networks.mesh.protocol.standby import (
-    IN_VAIN,
-    SPARE_HOPS,
-    TOLERANCE_MAX,
-)
+from innervate.networks.mesh.protocol.standby import IN_VAIN, SPARE_HOPS, TOLERANCE_MAX
 from innervate.networks.mesh.sim.simulate import simulate
 from tests.networks.mesh.net import Net, geometric, line, ring
 from tests.networks.mesh.sim.test_standby import GUARD, SOON, SURE, guarded, kill, leaders

@@ -63,7 +63,7 @@ def test_the_least_mesh_that_may_be_drawn():
         "radio": {"profile": fuzz.PROFILES[0], "mean_degree": 2.0},
         "protocol": {
             "failover": fuzz.FAILOVERS[0], "discovery": "list", "retry": True, "reliable": True,
-            "tables": True, "activation": True, "mtu": 64, "transmissions": 1,
+            "on_demand": True, "tables": True, "activation": True, "mtu": 64, "transmissions": 1,
         },
         "flow": [{"from": 0, "to": 1, "every_s": 0.05, "count": 1, "bytes": 1, "start_s": 0.0,
                   "priority": True}],
@@ -84,7 +84,7 @@ def test_the_greatest_mesh_that_may_be_drawn():
     assert found["radio"] == {"profile": fuzz.PROFILES[-1], "mean_degree": 9.0}
     assert found["protocol"] == {
         "failover": fuzz.FAILOVERS[-1], "discovery": "each", "retry": False, "reliable": False,
-        "tables": False, "activation": False, "mtu": 127, "transmissions": 3,
+        "on_demand": False, "tables": False, "activation": False, "mtu": 127, "transmissions": 3,
     }  # fmt: skip
     flow = {"from": 23, "to": "all", "every_s": 2.0, "count": 60, "bytes": 27}
     assert found["flow"] == 4 * [flow | {"start_s": 0.8 * end_s, "priority": False}]

@@ -6,6 +6,7 @@ from innervate.networks.mesh.verify import model as mesh_model
 from innervate.networks.mesh.verify import search as mesh_search
 from innervate.networks.mesh.verify.command import DEATH_AND_ACK
 from innervate.networks.mesh.verify.model import ASKED, QUICK, SHORT, MeshBudget, MeshModel
+from innervate.networks.mesh.verify.mutants import WANTED
 
 TWICE = (("e2e_tries", 1), ("transmissions", 2))
 DEATH, CALM = MeshBudget(1, 0, 0, 0), MeshBudget(0, 0, 0, 0)
@@ -27,6 +28,13 @@ MESSAGES = [
     ("line", "search", {"offers": ((2, 0),), "settings": TWICE, "budget": MeshBudget()}, 36_269),
     ("line", "search", {"offers": ((2, 0),) * 2, "settings": TWICE, "budget": CALM}, 27_933),
     ("line", "search", {"robot": 2, "budget": CALM}, 16_658),
+    ("0-1 1-2 2-3", "search", {"offers": ((3, 1),), "settings": WANTED, "budget": LOSS}, 695),
+    (
+        "0-1 1-2 2-3",
+        "search",
+        {"offers": ((3, 1),), "settings": WANTED, "budget": DEATH_AND_ACK},
+        2_622,
+    ),
 ]
 GATEWAYS = [
     ("line", "search", {"standby": (2,), "beats": 7, "budget": RETURNS}, 75_908),

@@ -32,16 +32,8 @@ def model(links, failover="search", **keys):
 
 # The shortest stories: an ack is lost; or a node dies, and there is another way.
 LOOPS = [
-    (
-        model("line", "random", offers=((1, 0), (1, 0)), reliable=False, budget=LOST_ACK),
-        [1, 2],
-        7,
-    ),
-    (
-        model("spare", "random", offers=((3, 0), (3, 0)), reliable=False, budget=DEATH),
-        [3, 4],
-        8,
-    ),
+    (model("line", "random", offers=((1, 0), (1, 0)), reliable=False, budget=LOST_ACK), [1, 2], 7),
+    (model("spare", "random", offers=((3, 0), (3, 0)), reliable=False, budget=DEATH), [3, 4], 8),
 ]
 
 

@@ -191,7 +191,10 @@ def test_a_robot_is_shown_as_one_unless_it_is_more(said, shown):
 def test_an_alarm_of_another_witness_is_told_too():
     one = alarm("cross", 2, 1.0)
     told = {0: node(0, role="gateway", alarms=[one, one, one | {"reporter": 4}])}
-    assert len(MeshLiveView().news(told, lambda i: f"n{i}")) == 2
+    assert [text for text, _ in MeshLiveView().news(told, lambda i: f"n{i}")] == [
+        "alarm at n0: robot n1 has crossed the fence",
+        "alarm at n0: robot n1 has crossed the fence, says n4",
+    ]
 
 
 def test_nodes_are_drawn_where_their_scenario_has_them_and_bear_its_names():

@@ -34,3 +34,10 @@ def test_a_link_between_nodes_that_stay_is_up_however_weak():
     radios["state"] = ALIVE
     world = Of(radios=radios, cut=np.zeros(9), rssi=np.full(9, -20_000))
     assert Field(plan).link_up(world).tolist() == [UP, UP]
+
+
+def test_of_a_cluster_a_page_says_which_it_is():
+    made = {"kind": "mesh", "duration_s": 60.0, "nodes": 300, "placement": {"side_m": 300},
+            "clusters": {"gateways": 3, "run": 2}}  # fmt: skip
+    assert Field(plan_of(made)).scene()["part"] == "cluster 2 of 3, 300 nodes in all"
+    assert "part" not in Field(plan_of(LINKED)).scene()

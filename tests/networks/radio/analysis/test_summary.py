@@ -48,12 +48,7 @@ def made(packets=(), sent=(), rows=(), ended_us=100_000, **plan):
         sent=table(w.SENT, *sent),
         rows=table(ROW, *rows),
         counts=dict.fromkeys(COUNTS, 0)
-        | {
-            "handled": 7,
-            "decoded": 3,
-            "silent": 1,
-            "completed": len(packets),
-        },
+        | {"handled": 7, "decoded": 3, "silent": 1, "completed": len(packets)},
         ended_us=ended_us,
         wall_s=0.5,
         fingerprint="0" * 16,
@@ -120,8 +115,7 @@ def test_saturation_leaves_out_the_first_tenth():
 
 
 @pytest.mark.parametrize(
-    ("counts", "index"),
-    [([3, 3, 3], 1.0), ([1, 0, 0, 0], 0.25), ([2, 1], 0.9), ([0, 0], None)],
+    ("counts", "index"), [([3, 3, 3], 1.0), ([1, 0, 0, 0], 0.25), ([2, 1], 0.9), ([0, 0], None)]
 )
 def test_jain(counts, index):
     assert radio.jain(counts) == (None if index is None else pytest.approx(index))

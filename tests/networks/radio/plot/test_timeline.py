@@ -22,11 +22,11 @@ from innervate.networks.radio.protocol.constants import (
     REPORT_TURN,
 )
 from innervate.networks.radio.scenario.plan import RadioFault
-from innervate.plot import figures, page, style
+from innervate.plot import figures, page
 from innervate.scenario.actions.channel import FADE, GARBLE, JOIN, KILL, LEAVE
 from tests.networks.radio.runs import START_US, run
 from tests.networks.skin.plot.test_report import read
-from tests.plot.ink import measured
+from tests.plot.ink import ink_of
 
 FAULTS = [
     RadioFault(50_000, KILL, 1, 0, 0), RadioFault(60_000, GARBLE, 2, 1, 1),
@@ -219,10 +219,7 @@ def test_the_legend_says_why_robots_are_off(runs, texts, from_us, to_us, said):
 @pytest.mark.few(6)
 def test_each_figure_draws(runs, name, figure, tmp_path):
     made = figures.draw(SimpleNamespace(result=runs[name]), figure)
-    with style.house():
-        style.save(made, tmp_path, figure)
-    _, ink = measured(tmp_path / f"{figure}.png", 0.97)
-    assert 0.003 < ink < 0.97
+    assert 0.003 < ink_of(made, tmp_path) < 0.97
 
 
 def test_an_unknown_figure_is_refused(runs):

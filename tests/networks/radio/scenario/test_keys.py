@@ -38,11 +38,7 @@ station = 2
 
 MISTAKES = (
     ("stations = 4", "stations = 0", "2: stations must be a whole number of stations, 1 to 1023"),
-    (
-        "stations = 4",
-        "staions = 4",
-        '2: a scenario has no key "staions"; did you mean "stations"?',
-    ),
+    ("stations = 4", "staions = 4", '2: a scenario has no key "staions"; did you mean "stations"?'),
     ("packet_slots = 5", "packet_slots = 2", "3: packet_slots must be 3 to 250 slots, not 2"),
     ("packet_slots = 5", "packet_slots = [9, 5]", "3: packet_slots must be [least, most]"),
     ("[52, 104]", "[104, 52]", "6: channel.tau_us must be [least, most], not [104, 52]"),

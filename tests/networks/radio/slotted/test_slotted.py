@@ -8,12 +8,7 @@ from innervate.networks.radio.slotted import chance
 from innervate.networks.radio.slotted import draws as draws
 from innervate.networks.radio.slotted.drive import MACS, dcf_here
 from innervate.networks.radio.slotted.model import jain, slotted
-from innervate.networks.radio.slotted.recorder import (
-    COLLISIONS,
-    DONE,
-    POISSON,
-    new_recorder,
-)
+from innervate.networks.radio.slotted.recorder import COLLISIONS, DONE, POISSON, new_recorder
 from tests.networks.radio import forms as infinite
 from tests.networks.radio.forms import BIANCHI_BASIC, BIANCHI_RTS
 

@@ -4,9 +4,7 @@ import pytest
 
 from innervate.networks.radio.verify import command
 from innervate.networks.radio.verify import grid as grid
-from innervate.networks.radio.verify import mutants as radio_mutants
 from innervate.networks.radio.verify import tree as tree
-from innervate.networks.skin.verify import mutants
 from innervate.running.errors import RunError
 
 
@@ -91,25 +89,6 @@ def test_ties_do_not_depend_on_what_is_drawn():
 def test_all_values_of_a_small_draw_and_the_ends_of_a_large_one():
     assert tree.values(3) == [0, 1, 2]
     assert tree.values(1000) == [0, 500, 999]
-
-
-@pytest.mark.parametrize("name", ["a collision's wait is not drawn", "nothing is ever proved"])
-def test_a_radio_mutant_is_caught(name):
-    found = radio_mutants.hunt(next(m for m in radio_mutants.MUTANTS if m.name == name))
-    assert found.by == "a packet is never delivered"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("mutant", radio_mutants.MUTANTS, ids=str)
-def test_every_radio_mutant_is_caught(mutant):
-    assert radio_mutants.hunt(mutant).by
-
-
-@pytest.mark.slow
-def test_the_practical_protocol_as_it_is_passes():
-    text = radio_mutants.MUTANTS[-1].old
-    same = mutants.Mutant("none", text, text)
-    assert radio_mutants.hunt(same).by == ""
 
 
 def test_what_was_found_is_told_to_programs():

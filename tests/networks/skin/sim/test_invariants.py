@@ -85,8 +85,7 @@ def restart_in_a_ring(seed, k, drift_ppm, rule):
 # enough (docs/decisions/0008).
 @pytest.mark.parametrize("rule", SAFE)
 @pytest.mark.parametrize(
-    ("k", "drift_ppm"),
-    [(1, 1000), (5, 1000), (3, 50_000), (7, 50_000), (15, 50_000), (94, 50_000)],
+    ("k", "drift_ppm"), [(1, 1000), (5, 1000), (3, 50_000), (7, 50_000), (15, 50_000), (94, 50_000)]
 )
 def test_a_restarted_cell_waits_long_enough(k, drift_ppm, rule):
     seeds = [17, 47, 159, 188, 196, *range(10)]

@@ -10,7 +10,8 @@ from innervate.networks.mesh.protocol.fields import PARAMS, POINTS, row_bytes
 from innervate.networks.mesh.rings import mistake, opened, table
 
 IP: dict[str, int] = {
-    "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "avoid_origin": 0,
+    "mtu": 127, "mode": TABLES, "discovery": LIST, "failover": SEARCH, "recent": 0,
+    "avoid_origin": 0, "on_demand": 0,
     "retry": 1, "reliable": 1, "activation": 0, "told": 0, "hop_acks": 1, "flood_us": 625,
     "transmissions": 3, "ack_us": 5000, "ack_adapt": 1,
     "hop_frames": 16, "gather": 1, "queue": 48, "kept": 32,

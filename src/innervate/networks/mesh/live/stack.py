@@ -17,12 +17,7 @@ from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.protocol.duplicates import ANEW
 from innervate.networks.mesh.protocol.frames import inner, is_sound
-from innervate.networks.mesh.protocol.neighbours import (
-    FREE,
-    is_strong,
-    is_suspect,
-    place_of,
-)
+from innervate.networks.mesh.protocol.neighbours import FREE, is_strong, is_suspect, place_of
 from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.timeout import TICK_MAX_US
 from innervate.networks.mesh.protocol.upward import is_better, is_uplink

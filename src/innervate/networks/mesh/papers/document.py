@@ -20,8 +20,7 @@ RESPONDS = Sentence(
     "responds to the request by sending a response packet to the node from which the request came",
 )
 LATENCY = Sentence(
-    "2.1",
-    "Our design is optimized for low latency thanks to the routing by next hop tables",
+    "2.1", "Our design is optimized for low latency thanks to the routing by next hop tables"
 )
 SHORTEST = Sentence(
     "2.1",

@@ -44,10 +44,11 @@ class Rule(NamedTuple):
 
 
 DOCUMENT = Rule("document", LITERAL)
-RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH = (
-    Rule(name, (("failover", name),)) for name in ("random", "rssi", "alternate", "search", "graph")
+RANDOM, RSSI, HEARD, ALTERNATE, SEARCH, GRAPH = (
+    Rule(name, (("failover", name),))
+    for name in ("random", "rssi", "heard", "alternate", "search", "graph")
 )
-RULES = (DOCUMENT, RANDOM, RSSI, ALTERNATE, SEARCH, GRAPH)
+RULES = (DOCUMENT, RANDOM, RSSI, HEARD, ALTERNATE, SEARCH, GRAPH)
 
 
 def point(
@@ -114,7 +115,7 @@ def draw(got: Measured) -> Figure:
         ax.set(xlabel="dead nodes that nobody knows of", title=title)
     axes[0].set_ylabel("lost of connected (%)")
     _reliable(axes[2], got)
-    drawing.legend(figure, axes[0], ncols=6, columnspacing=1.2)
+    drawing.legend(figure, axes[0], ncols=7, columnspacing=1.2)
     return figure
 
 
@@ -183,8 +184,8 @@ def _letter(got: Measured) -> Claims:
 
 
 def _random(got: Measured) -> Claims:
-    gone, other, random, loud = (
-        lost(got, rule, "first") for rule in (DOCUMENT, ORIGIN, RANDOM, RSSI)
+    gone, other, random, loud, heard = (
+        lost(got, rule, "first") for rule in (DOCUMENT, ORIGIN, RANDOM, RSSI, HEARD)
     )
     yield ours(
         "2.2",
@@ -204,8 +205,22 @@ def _random(got: Measured) -> Claims:
     )
     yield ours(
         "2.2",
-        '"in the future it could be based on last heard time and RSSI": by RSSI more first packets '
-        "come than by chance; by the last heard time nothing was run",
+        '"in the future it could be based on last heard time and RSSI": by both, whom it heard '
+        "last, of those the loudest, more first packets come than by chance",
+        f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (HEARD, RANDOM))}",
+        verdict(heard < random),
+        f"by both {_how(got, HEARD, 'first')}; by chance {_how(got, RANDOM, 'first')}",
+    )
+    yield ours(
+        "2.2",
+        "... by both more first packets come than by RSSI alone",
+        f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (HEARD, RSSI))}",
+        verdict(heard < loud),
+        f"by RSSI alone {_how(got, RSSI, 'first')}",
+    )
+    yield ours(
+        "2.2",
+        "... by RSSI alone more first packets come than by chance",
         f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (RSSI, RANDOM))}",
         verdict(loud < random),
         f"A6: by RSSI {_how(got, RSSI, 'first')}; by chance {_how(got, RANDOM, 'first')}",

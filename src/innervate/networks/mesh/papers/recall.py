@@ -28,11 +28,7 @@ SOME_MS = (1, 10, 100)
 jitters = sized(SOME_MS, (1, 2, 5, 10, 20, 50, 100, 200))
 sizes = sized((10, 20, 30), (10, 20, 30, 45, 60))
 # Readings of "responds to the request".
-READINGS = {
-    "tree": "once a round",
-    "each": "to every request",
-    "list": "once, with all it hears",
-}
+READINGS = {"tree": "once a round", "each": "to every request", "list": "once, with all it hears"}
 
 
 def point(quick: bool, reading: str, jitter_ms: int = USUAL_MS, nodes: int = 30) -> Point:

@@ -42,11 +42,7 @@ RADIOS = (
     Radio("38k4", 60, (10, 20, 30, 45, 70, 85, 120), 85, 8.0),
 )
 SOME = (10, 30, SMALL_MOST)
-SCHEMES: dict[str, Options] = {
-    "tables": (),
-    "graph": GRAPH,
-    "table-free": (("tables", False),),
-}
+SCHEMES: dict[str, Options] = {"tables": (), "graph": GRAPH, "table-free": (("tables", False),)}
 
 
 def point(radio: Radio, scheme: str, nodes: int, quick: bool) -> Point:

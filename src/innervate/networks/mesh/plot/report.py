@@ -172,23 +172,18 @@ def _crossings(result: Any, crossings: list[Crossing]) -> str:
         warned = crossing.warned_us != NEVER
         rows.append((
             str(i),
-            _on_one_line(f"{crossing.crossed_us / 1e6:.3f} s"),
+            f"{crossing.crossed_us / 1e6:.3f} s",
             names[crossing.robot],
             by,
             words.ms_words((crossing.accepted_us - crossing.raised_us) / 1e3) if came else
             "still open at the end" if crossing.open else "never",
             f"{crossing.hops}, {'flooded' if crossing.flooded else 'routed'}" if came else "",
-            _on_one_line(f"{words.figure_words(crossing.overrun_m, 2)} m"),
+            f"{words.figure_words(crossing.overrun_m, 2)} m",
             words.ms_words((crossing.crossed_us - crossing.warned_us) / 1e3) + " before"
             if warned else "no",
         ))  # fmt: skip
     head = ("number", "at", "robot", "raised by", "monitor knew after", "hops", "overrun", "warned")
     return section("Crossings", page.beginning(head, rows, ", in crossings.parquet"))
-
-
-def _on_one_line(figure: str) -> str:
-    """A number that stays with its unit, however narrow the screen."""
-    return figure.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def nodes_section(result: Any) -> str:

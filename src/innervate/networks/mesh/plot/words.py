@@ -54,12 +54,7 @@ REPORTS = {
     c.REPORT_UNKEYED: "message of an unknown type",
     c.REPORT_SILENCED: "alarm flooded again",
 }
-ALARMS = {
-    c.PREDICT: "about to cross",
-    c.CROSS: "crossed",
-    c.LOST: "lost",
-    c.CLEAR: "inside again",
-}
+ALARMS = {c.PREDICT: "about to cross", c.CROSS: "crossed", c.LOST: "lost", c.CLEAR: "inside again"}
 
 
 def fault_words(plan: Any, fault: Any) -> str:

@@ -28,6 +28,7 @@ uplink, any neighbour not on the packet's path; else back to its giver (A6, A7).
 drops what comes again (A12). To whom the table knows no way a packet goes up, where tables come
 first, and whoever brought a packet, or what climbs, is the way to its origin (decision 0044). Who
 gave one back comes last for that recipient, until it brings one from there, or some ticks are over.
+With `on_demand` who has no table and knows no way floods the message; its ack leaves the way.
 
 *End to end.* An origin keeps a message until its recipient acknowledges it; both keep to a window
 of sequence numbers, so that a retransmission is delivered once. Timeouts adapt to round trips.
@@ -109,7 +110,7 @@ lost may be made good by what is heard later: `drop_overheard`, which also ends 
 | `GRAPH`, to one                        | a hop            | `relay`; ours: `on_guard`: a standby |
 |                                        |                  | asks, or with `TABLES` takes a part: |
 |                                        |                  | `read_edges`                         |
-| `DATA`, flooded                        | all              | `flood_data`: deliver, pass on once  |
+| `DATA`, flooded                        | all              | `flood_data`; to one `flood_wanted`  |
 | `ALARM`, flooded                       | all              | `on_flood`: the monitor takes it,    |
 |                                        |                  | others pass it on once an instance,  |
 |                                        |                  | nearer ones first; `yield_routed`    |
@@ -305,15 +306,14 @@ Constants and settings
 | `END_ACKS_BYTES = 24`                          |                                                 |
 | `FORWARDED = 64`, `SKIPS = 16`                 | duplicate cache; failed and bad neighbours      |
 | `WINDOW_WORDS = 5`, `BITS = 15`, `BITS = 8`    | words of 15 bits: 75 numbers; nodes in a byte   |
-| `AHEAD_MAX = 64`                               | numbers: no packet goes out so far ahead of one |
-|                                                | still tried                                     |
-| `ANEW = 320`                                   | numbers behind the window: a FIRST there is a   |
-|                                                | new boot                                        |
+| `AHEAD_MAX = 64`                               | numbers: so far ahead of one still tried at most|
+| `ANEW = 320`                                   | numbers behind the window: FIRST is a new boot  |
 | `TABLES = 0`, `WHOLE_GRAPH = 1`,               | `mode`                                          |
 | `TABLE_FREE = 2`                               |                                                 |
 | `TREE = 1`, `EACH = 2`, `LIST = 3`             | `discovery`, A1                                 |
-| `RANDOM = 0`, `LOUDEST = 1`, `ALTERNATE = 2`,  | `failover`, A6; `avoid_origin` A7, `retry` A4   |
-| `SEARCH = 3`                                   |                                                 |
+| `RANDOM = 0`, `LOUDEST = 1`, `ALTERNATE = 2`,  | `failover`, A6; `avoid_origin` A7, `retry` A4;  |
+| `SEARCH = 3`, `recent`, `RSSI_SPAN = 1024`     | by last heard time, then RSSI (decision 0071)   |
+| `on_demand`, `CALLS = 2`, `AT_EASE = 6`        | decision 0071: floods; places free to take part |
 | `PARTS_MAX = 15`, `PART_HEAD = 4`,             | tables and graphs on the wire                   |
 | `GROUP_BYTES = 3`                              |                                                 |
 | `ROUNDS_VALID = 3`, `LOW_BITS = 85`            | rounds for which a report of a link counts, two |
@@ -352,7 +352,7 @@ Constants and settings
 | `SEARCH_BACKOFF_MAX = 3`,                      | who is unreachable is tried again after 4 to 32 |
 | `UNREACHABLE_TICKS = 4`                        | ticks                                           |
 | `RETRIES = 4`, `LOST_A_TICK = 4`               | in one call, for the outbox has to hold them    |
-| `FLOODED = 20`                                 | in the duplicate cache: a flooded alarm         |
+| `FLOODED = 20`, `WANTED = 21`                  | in the duplicate cache: flooded alarms, messages|
 | `CROWD = 32`                                   | nodes whose answers find their way in a         |
 |                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |

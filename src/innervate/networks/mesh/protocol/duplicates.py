@@ -5,6 +5,7 @@ from innervate.networks.mesh.protocol.constants import ALL, PARITY, TABLES
 from innervate.networks.mesh.protocol.fields import FORWARDED, SKIPS, WINDOW_WORDS
 
 FLOODED = 20  # in done_kind: a flooded alarm, whose instances count apart
+WANTED = 21  # ... a message that is flooded to find its recipient, by its parity
 BITS = 15
 ANEW = 320  # numbers behind the newest: more than a packet can be that is still on its way
 UNREACHABLE = 254  # in bad_neighbour: nobody leads there

@@ -395,4 +395,6 @@ PARAMS = (
     ("after", POINTS, 0, 47, "corner", "the corner that follows in its ring"),
     ("fence", 0, 0, 255, "number", "name of the fence in alarms"),
     ("guard_us", 0, 0, 2000000, "us", "standby: wait for a sign of the gateway; 0: for requests"),
+    ("recent", 0, 0, 1, "flag", "loudest: of those heard last, whoever is loudest"),
+    ("on_demand", 0, 0, 1, "flag", "who knows no way to a recipient floods the message"),
 )

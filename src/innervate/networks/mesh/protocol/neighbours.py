@@ -9,6 +9,7 @@ FREE = 255
 UNHEARD = 255
 LIVELY_TICKS = 2
 TICKS_MAX = 32_767
+RSSI_SPAN = 1024  # of quarters of a dBm: a tick counts for more than any of them
 HOP_FIRST = 4  # frames under way to a neighbour of which nothing is known
 
 # In `suspect`.
@@ -154,13 +155,20 @@ def count_neighbours(node, params, not_this, nor_this):
     return count
 
 
+def standing(node, params, k):
+    """By how much the neighbour in place k comes first: it is loud; `recent`: heard, then loud."""
+    if params.recent:
+        return node.rssi[k] - RSSI_SPAN * ((node.ticks - node.heard[k]) & MASK16)
+    return node.rssi[k]
+
+
 def loudest(node, params, not_this, nor_this):
-    """The loudest neighbour that is neither of two, or NOBODY."""
+    """The neighbour that comes first by `standing` and is neither of two, or NOBODY."""
     best = -1
     for k in range(params.places):
         who = node.neighbour[k]
         if who != FREE and who != not_this and who != nor_this:
-            if best < 0 or node.rssi[k] > node.rssi[best]:
+            if best < 0 or standing(node, params, k) > standing(node, params, best):
                 best = k
     if best < 0:
         return NOBODY

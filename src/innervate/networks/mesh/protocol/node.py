@@ -88,7 +88,7 @@ from innervate.networks.mesh.protocol.queue import (
     take_sent,
     tell_hop,
 )
-from innervate.networks.mesh.protocol.relay import flood_data, rank_of, relay
+from innervate.networks.mesh.protocol.relay import flood_data, flood_wanted, rank_of, relay
 from innervate.networks.mesh.protocol.retransmission import (
     arm_retry,
     due_retransmission,
@@ -243,7 +243,9 @@ def on_broadcast(node, params, now, frame, k, out):
         if frame.length >= 3:
             on_activate(node, params, now, frame, out)
     elif kind == DATA:
-        if frame.flags & FLOOD:
+        if params.on_demand and frame.dest != ALL:
+            flood_wanted(node, params, now, frame, k, out)
+        elif frame.flags & FLOOD:
             flood_data(node, params, now, frame, out)
     else:
         report(out, REPORT_UNKEYED, kind, 0)

@@ -10,9 +10,11 @@ from innervate.networks.mesh.protocol.constants import (
     DATA,
     GRAPH,
     MESSAGES,
+    PARITY,
     POSITION,
 )
 from innervate.networks.mesh.protocol.duplicates import (
+    WANTED,
     accept,
     mark_bad,
     record_flood,
@@ -20,10 +22,13 @@ from innervate.networks.mesh.protocol.duplicates import (
     record_return,
 )
 from innervate.networks.mesh.protocol.frames import in_path
-from innervate.networks.mesh.protocol.messages import hand_up
-from innervate.networks.mesh.protocol.queue import take_over
+from innervate.networks.mesh.protocol.messages import hand_up, take
+from innervate.networks.mesh.protocol.neighbours import is_strong
+from innervate.networks.mesh.protocol.queue import has_room, take_over
 from innervate.networks.mesh.protocol.route import learn_way
-from innervate.networks.mesh.protocol.send import send_on
+from innervate.networks.mesh.protocol.send import enter, send_on
+
+AT_EASE = 6  # places free: what is flooded leaves at once, before those who passed it on forget it
 
 
 def rank_of(frame):
@@ -50,6 +55,26 @@ def relay(node, params, now, frame, out):
     if i < 0:
         return
     send_on(node, params, now, i, out)
+
+
+def flood_wanted(node, params, now, frame, k, out):
+    """A message that looks for its recipient: ours is taken, another's passed on once a parity.
+
+    A copy from a neighbour that is heard too faintly teaches no way that an ack could go.
+    """
+    if not is_strong(node, params, k) or in_path(frame, node.number):
+        return
+    parity = (frame.flags & PARITY) >> 7
+    if record_flood(node, frame.origin, frame.seq, WANTED, parity):
+        return
+    if frame.dest == node.number:
+        take(node, params, now, frame, out)
+        return
+    learn_way(node, params, frame)
+    if has_room(node, AT_EASE):
+        i = take_over(node, now, CONTROL, frame, out)
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+        enter(node, params, i, out)
 
 
 def flood_data(node, params, now, frame, out):

@@ -4,10 +4,12 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALTERNATE,
     CRC_BYTES,
+    DATA,
     DETOURED,
     HEADER_BYTES,
     LOUDEST,
     NOBODY,
+    ORDERED,
     PARITY,
     PATH_MAX,
     RANDOM,
@@ -33,6 +35,7 @@ from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edg
 from innervate.networks.mesh.protocol.upward import uplink
 
 NONE = 255
+CALLS = 2  # a message is flooded in so many of its tries, the parities of which differ
 
 
 def planned(node, params, dest):
@@ -52,7 +55,7 @@ def learn_way(node, params, frame):
     If it gave packets for the origin back before, it leads there now.
     """
     forget_bad(node, frame.link_src, frame.origin)
-    if params.mode == TABLES and params.failover == SEARCH:
+    if params.on_demand or (params.mode == TABLES and params.failover == SEARCH):
         at = node.bank * params.width + frame.origin
         if node.version == 0 or node.next[at] == NONE:
             node.next[at] = frame.link_src
@@ -60,9 +63,7 @@ def learn_way(node, params, frame):
 
 def is_usable(node, params, i, who):
     """1 if the packet in place i may go to `who`."""
-    if who == NONE or was_at(node, i, who) or is_suspect(node, params, who):
-        return 0
-    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
+    return is_untried(node, i, who) and not is_suspect(node, params, who)
 
 
 def is_fit(node, params, i, who, bad):
@@ -221,6 +222,8 @@ def choose_by_route(node, params, i):
         if near and not is_suspect(node, params, dest):
             return dest
         if not node.leading:
+            if params.on_demand and is_usable(node, params, i, planned(node, params, dest)):
+                return planned(node, params, dest)
             return uplink(node, params, i)
         plan_route(node, params, i)
     if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * node.q_room] > 0:
@@ -259,6 +262,23 @@ def downhill(node, params, at):
         if node.far[c] + 1 == node.far[at] and is_edge(node, params, at, c):
             return c
     return at
+
+
+def is_wanted(node, params, i):
+    """1 if the way to the recipient of our message in place i is not known: all are asked.
+
+    The message itself is flooded, twice at most, and whoever passes it on knows a way to us then;
+    its end-to-end ack goes back so, and leaves a way to its recipient.
+    """
+    dest = node.q_dest[i]
+    owner = node.q_owner[i]
+    if not params.on_demand or node.version or node.q_kind[i] != DATA or owner < 0:
+        return 0
+    if node.q_flags[i] & ORDERED or node.wait_tries[owner] > CALLS:
+        return 0
+    if dest == node.gateway or planned(node, params, dest) != NONE:
+        return 0
+    return not is_strong(node, params, place_of(node, params, dest))
 
 
 def choose_hop(node, params, i):
@@ -312,6 +332,9 @@ def advance_route(node, i):
 
 def learn_failure(node, params, i, failed):
     """Neighbour `failed` failed for the packet in place i; lost tables rewrite none."""
+    if params.on_demand and node.version == 0:
+        if planned(node, params, node.q_dest[i]) == failed:
+            node.next[node.bank * params.width + node.q_dest[i]] = NONE
     if params.mode == TABLE_FREE:
         strip_route(node, i)
     if params.mode != 0:

@@ -34,6 +34,7 @@ from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
 from innervate.networks.mesh.protocol.route import (
     advance_route,
     choose_hop,
+    is_wanted,
     learn_failure,
     planned,
     room_of,
@@ -95,8 +96,11 @@ def resume_search(node, params, i):
 
 def send_on(node, params, now, i, out):
     """The packet in place i, ours or taken over, goes to its recipient; 0 if it cannot."""
-    if not resume_search(node, params, i) and not enter(node, params, i, out):
-        return 0
+    if not resume_search(node, params, i):
+        if not enter(node, params, i, out):
+            return 0
+        if is_wanted(node, params, i):
+            return 1
     if not aim(node, params, i, out):
         give_up(node, params, i, out)
         return 0

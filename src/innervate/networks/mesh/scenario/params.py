@@ -9,8 +9,8 @@ from innervate.networks.mesh.scenario.plan import CLASSES
 from innervate.networks.mesh.scenario.profiles import POOR_CDB, REPORT_CDB, Profile
 
 DISCOVERY = {"list": w.LIST, "tree": w.TREE, "each": w.EACH}
-FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "alternate": w.ALTERNATE, "search": w.SEARCH,
-            "graph": w.SEARCH, "auto": w.SEARCH}  # fmt: skip
+FAILOVER = {"random": w.RANDOM, "rssi": w.LOUDEST, "heard": w.LOUDEST, "alternate": w.ALTERNATE,
+            "search": w.SEARCH, "graph": w.SEARCH, "auto": w.SEARCH}  # fmt: skip
 FAINTEST_DBM, LOUDEST_DBM = -128, 127
 STANDBY_PERIODS = 2.5  # without a request, until the first standby takes over
 FORGET_S = 60.0
@@ -26,6 +26,7 @@ KEYS = {"faint": "min_rssi_dbm", "tick": "beacon_s", "jobs": "table_window", "jo
 # Parameters, keys of [protocol] and parts of a profile that are called the same.
 OF_PROFILE = ("mtu", "transmissions", "hop_acks", "ack_us", "ack_adapt", "e2e_adapt",
               "e2e_tries", "copies", "asks")  # fmt: skip
+SAID = ("retry", "reliable", "activation", "on_demand")  # keys and parameters alike
 IN_TICKS = ("period", "period_max", "dead", "dead_step", "forget")
 
 
@@ -128,8 +129,9 @@ def _routing(settings: Any, profile: Profile) -> dict[str, int]:
         **of_mode(mode, profile),
         "discovery": DISCOVERY[settings.discovery],
         "failover": FAILOVER[settings.failover],
+        "recent": int(settings.failover == "heard"),
         "avoid_origin": int(settings.avoid == "origin"),
-        **{name: int(getattr(settings, name)) for name in ("retry", "reliable", "activation")},
+        **{name: int(getattr(settings, name)) for name in SAID},
     }
 
 

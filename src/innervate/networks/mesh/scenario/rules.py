@@ -168,8 +168,14 @@ def _protocol(model: MeshScenario) -> Iterator[Finding]:
     if not protocol.tables and protocol.activation:
         message = "protocol.activation waits for tables, and there are none; leave one out"
         yield ("protocol", "activation"), message
-    if protocol.avoid == "origin" and protocol.failover not in ("random", "rssi"):
-        message = 'protocol.avoid = "origin" goes with failover = "random" or "rssi"'
+    if protocol.on_demand and not protocol.reliable:
+        message = (
+            "protocol.on_demand finds a way by the end-to-end ack that comes back on it, and with "
+            "reliable = false there are none; leave one out"
+        )
+        yield ("protocol", "on_demand"), message
+    if protocol.avoid == "origin" and protocol.failover not in ("random", "rssi", "heard"):
+        message = 'protocol.avoid = "origin" goes with failover = "random", "rssi" or "heard"'
         yield ("protocol", "avoid"), message
 
 

@@ -20,9 +20,10 @@ class MeshProtocolTable(keys.Table, frozen=True, kw_only=True):
 
     discovery: Literal["list", "tree", "each"] = "list"
     uplink: Literal["best", "first"] | None = None
-    failover: Literal["search", "alternate", "rssi", "random", "graph", "auto"] = "search"
+    failover: Literal["search", "alternate", "heard", "rssi", "random", "graph", "auto"] = "search"
     avoid: Literal["sender", "origin"] = "sender"
     tables: bool = True
+    on_demand: bool = False
     retry: bool = True
     reliable: bool = True
     activation: bool = False

@@ -121,10 +121,11 @@ def offers(
             flags = _flags(model, flow, dest)
             times = _times(flow, settled_s, duration_us, draw)
             if len(found) + len(times) > OFFERS_MAX:
+                fewer = "lower flow.{}.rate_hz" if flow.rate_hz else "raise flow.{}.every_s"
                 raise nodes.source.error(
                     ("flow", index),
                     f"more than {OFFERS_MAX:,} messages would be offered; shorten duration_s "
-                    f"or raise flow.{index}.every_s",
+                    f"or {fewer.format(index)}",
                 )
             found += [(at, index, place, Offer(at, node, dest, flags, flow.bytes, index))
                       for at in times]  # fmt: skip

@@ -9,6 +9,7 @@ from innervate.kernel.words import number_of
 from innervate.networks.mesh.verify import replay, search
 from innervate.networks.mesh.verify.model import (
     ASKED,
+    DOCUMENTS,
     FAILOVERS,
     QUICK,
     SHORT,
@@ -83,7 +84,7 @@ def models(wanted: MeshWanted) -> Iterator[tuple[str, MeshModel]]:
     """Everything that is asked for, in order."""
     line = wanted.links or parse("line")
     for failover in wanted.failovers:
-        if failover == "random":
+        if failover in DOCUMENTS:
             how: dict[str, Any] = {"settings": SHORT, "reliable": False}
             budget = common.budget_of(wanted.budget, LOST_ACK)
             yield "two messages", MeshModel(line, failover, ((1, 0),) * 2, budget=budget, **how)

@@ -9,7 +9,7 @@ SHARE = (0.75, 1.0)
 
 ACTIONS = ("kill", "kill", "revive", "revive", "cut", "restore", "jam", "quiet", "restart")
 PROFILES = ("250k", "250k", "250k", "ideal", "ip", "38k4")
-FAILOVERS = ("search", "search", "graph", "alternate", "rssi", "random")
+FAILOVERS = ("search", "search", "graph", "alternate", "rssi", "heard", "random")
 
 
 def drawn(draw: random.Random, seed: int) -> Tables:
@@ -40,11 +40,13 @@ def drawn(draw: random.Random, seed: int) -> Tables:
 def _protocol(draw: random.Random) -> Tables:
     failover = draw.choice(FAILOVERS)
     tables = failover == "graph" or draw.random() < 0.9
+    reliable = draw.random() < 0.9
     return {
         "failover": failover,
         "discovery": draw.choice(("list", "list", "tree", "each")),
         "retry": draw.random() < 0.8,
-        "reliable": draw.random() < 0.9,
+        "reliable": reliable,
+        "on_demand": reliable and draw.random() < 0.2,
         "tables": tables,
         "activation": tables and draw.random() < 0.2,
         "mtu": draw.choice((64, 127)),

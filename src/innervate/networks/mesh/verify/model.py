@@ -12,7 +12,8 @@ from innervate.topology.placement import distances, neighbours
 from innervate.verify.errors import VerifyError
 
 NODES_MAX = 6
-FAILOVERS = ("search", "graph", "alternate", "random")
+DOCUMENTS = ("random", "rssi", "heard")  # another neighbour takes the place of a next hop
+FAILOVERS = ("search", "graph", "alternate", *DOCUMENTS)
 NAMED = {
     "line": "0-1 1-2",
     "triangle": "0-1 0-2 1-2",
@@ -59,7 +60,7 @@ class MeshModel:
 
     # who hears whom, both ways; nodes are numbered from 0, the gateway
     links: tuple[tuple[int, int], ...]
-    # as in a scenario; "random" takes the document's other reading, too: no retry
+    # as in a scenario; those of DOCUMENTS take the document's other reading, too: no retry
     failover: str = "search"
     # messages (from, to), offered in this order, at any moment
     offers: tuple[tuple[int, int], ...] = ()
@@ -80,7 +81,7 @@ class MeshModel:
     @property
     def protocol(self) -> dict[str, Any]:
         """Keys of [protocol] by which a scenario is the same network."""
-        document = {"retry": False} if self.failover == "random" else {}
+        document = {"retry": False} if self.failover in DOCUMENTS else {}
         return {**BRISK, "failover": self.failover, **document, **dict(self.settings)}
 
 

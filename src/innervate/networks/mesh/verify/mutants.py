@@ -12,6 +12,7 @@ from innervate.prove.mutants import Mutant, planted
 from innervate.verify.cases import Catch
 
 STATES = 5_000
+WANTED = (*SHORT, ("tables", False), ("on_demand", True))  # ways are not known, but found
 
 MUTANTS = planted(
     ("nobody acknowledges a hop",
@@ -33,6 +34,8 @@ MUTANTS = planted(
     ("what is behind the newest is new", "    if node.window[word] & bit:\n        return 0\n", ""),
     ("a flood is passed on each time",
      "    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
+    ("who is looked for takes nothing",
+     "    if frame.dest == node.number:\n        take(node", "    if 0:\n        take(node"),
     ("a standby never takes over", "if node.quiet >= silence or node.gateway == node.number:",
      "if node.quiet >= 60_000:"),
     ("a gateway does not answer who asks it",
@@ -60,6 +63,7 @@ def models() -> Iterator[MeshModel]:
     yield MeshModel(line, offers=((2, 0), (2, 0)), budget=calm, settings=twice)
     yield MeshModel(line, standby=(2,), beats=4, budget=MeshBudget(1, 1, 0, 0), settings=QUICK)
     yield MeshModel(line, standby=(2,), beats=3, budget=calm, settings=ASKED)
+    yield MeshModel(mesh_model.parse("0-1 1-2 2-3"), offers=((3, 1),), budget=calm, settings=WANTED)
 
 
 def hunt(mutant: Mutant) -> Catch:

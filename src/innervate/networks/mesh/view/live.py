@@ -203,5 +203,8 @@ def _alarm_words(
     ago_s: float, monitor: str, alarm: Mapping[str, Any], names: Mapping[int, str]
 ) -> str:
     robot = names.get(alarm["robot"], f"n{alarm['robot']}")
+    said = SAID.get(alarm["kind"], "raised an alarm")
+    who = alarm["reporter"]
+    witness = "" if who == alarm["robot"] else f", says {names.get(who, f'n{who}')}"
     before = f", {ago_s:.0f} s ago" if ago_s > LATE_S else ""
-    return f"alarm at {monitor}: robot {robot} {SAID.get(alarm['kind'], 'raised an alarm')}{before}"
+    return f"alarm at {monitor}: robot {robot} {said}{witness}{before}"

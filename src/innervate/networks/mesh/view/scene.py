@@ -45,8 +45,18 @@ class Field:
             {"id": i, "a": a, "b": b, "quality": round(float(min(chance[a, b], chance[b, a])), 3)}
             for i, (a, b) in enumerate(self.pairs)
         ]
-        fence = self._fence()
-        return {"nodes": nodes, "links": links, "fence": fence, "metres": self._to_scale}
+        return {
+            "nodes": nodes, "links": links, "fence": self._fence(), "metres": self._to_scale,
+            **self._part(),
+        }  # fmt: skip
+
+    def _part(self) -> dict[str, str]:
+        """Which of several clusters this is; nothing of a whole network."""
+        of = self.plan.cluster
+        if of is None:
+            return {}
+        sizes = of.sizes
+        return {"part": f"cluster {of.number} of {len(sizes)}, {sum(sizes):,} nodes in all"}
 
     def _role(self, node: int) -> str:
         plan = self.plan

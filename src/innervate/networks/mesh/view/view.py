@@ -118,7 +118,7 @@ class MeshView(View):
         elif code == c.REPORT_ALARM:
             memory.alarms.setdefault((b, a), at)
             who = "" if node == b else f", says {name[node]}"
-            log.often("alarm", at, f"robot {name[b]} {ALARMS.get(a, 'raised an alarm')}{who}",
+            log.often(f"alarm {b}", at, f"robot {name[b]} {ALARMS.get(a, 'raised an alarm')}{who}",
                       "good" if a == c.CLEAR else "bad")  # fmt: skip
 
     def _suspect(self, at_us: int, node: int, near: int) -> None:
@@ -135,7 +135,8 @@ class MeshView(View):
         raised = self.memory.alarms.pop((robot, kind), None)
         if raised is not None and kind != c.CLEAR:
             text = f"alarm of robot {self.plan.names[robot]} at the monitor after"
-            self.log.say(at_us, f"{text} {(at_us - raised) / 1e3:.1f} ms", "good")
+            text += f" {(at_us - raised) / 1e3:.1f} ms"
+            self.log.often(f"came {robot}", at_us, text, "good")
 
     def check(self) -> None:
         """Look whether the network has got over the newest fault."""

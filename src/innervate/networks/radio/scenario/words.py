@@ -1,10 +1,11 @@
 """A radio scenario in a few lines, without running it."""
 
-from innervate.kernel.words import number_of
+from innervate.kernel.words import number_of, some
 from innervate.networks.radio.scenario import slotted as radio_slotted
 from innervate.networks.radio.scenario.model import RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan
 from innervate.networks.radio.scenario.rules import outside, pair
+from innervate.networks.radio.scenario.unused import unused
 from innervate.scenario.events import told
 
 PAIRS_SHOWN = 4
@@ -65,7 +66,7 @@ def warnings(made: RadioPlan) -> list[str]:
             f"{_range(*model.protocol.tau_bounds_us, 'us')} that stations believe; set "
             "protocol.tau_bounds_us to what is true."
         )
-    found += _too_much(made)
+    found += _too_much(made) + _for_nothing(made)
     hidden = [f"{i} and {j}" for i, j in made.pairs.hidden]
     if hidden:
         named = ", ".join(hidden[:PAIRS_SHOWN]) + (", ..." if len(hidden) > PAIRS_SHOWN else "")
@@ -74,6 +75,17 @@ def warnings(made: RadioPlan) -> list[str]:
             "stations may starve."
         )
     return found
+
+
+def _for_nothing(made: RadioPlan) -> list[str]:
+    """Settings that are given and not used; the slotted level refuses its own."""
+    model: RadioScenario = made.scenario.model
+    names = unused(model) if model.channel.level == "event" else []
+    if not names:
+        return []
+    are = "is" if len(names) == 1 else "are"
+    who = f"{made.protocol} with {model.traffic.kind} traffic"
+    return [f"{some(names)} {are} set and not used by {who}."]
 
 
 def _too_much(made: RadioPlan) -> list[str]:

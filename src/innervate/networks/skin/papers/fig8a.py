@@ -39,8 +39,7 @@ class Grid:
 
 
 grid = sized(
-    Grid((10, 250), BAR_K, 6),
-    Grid((10, 20, 50, 100, 150, 200, 250), tuple(range(2, 9)), 40),
+    Grid((10, 250), BAR_K, 6), Grid((10, 20, 50, 100, 150, 200, 250), tuple(range(2, 9)), 40)
 )
 
 

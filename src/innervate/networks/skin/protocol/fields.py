@@ -6,14 +6,7 @@ ports. Record types, plain classes, range checks, trace columns and the docs' ta
 
 FRAME = (
     ("kind", 0, 0, 15, "type", "1 beacon, 2 data, 3 restart (static rule only), 4 command"),
-    (
-        "dist",
-        0,
-        0,
-        255,
-        "hops",
-        "beacon: to the PC; 0 the PC, 255 no route; command: its code",
-    ),
+    ("dist", 0, 0, 255, "hops", "beacon: to the PC; 0 the PC, 255 no route; command: its code"),
     ("sq", 0, 0, 65535, "number", "beacon: of the sender's route; command: counts the PC's"),
     ("load", 0, 0, 4095, "cells", "beacon: cells whose data leave through it; 0 never had a route"),
     ("size", 0, 0, 4095, "cells", "beacon: load of the interface port that serves the sender"),
@@ -25,14 +18,7 @@ FRAME = (
     ("force", 3, 0, 65535, "mN", "data: three force sensors"),
     ("temperature", 0, -128, 127, "0.5 degC", "data: from 20 degC"),
     ("accel", 3, -512, 511, "raw", "data: acceleration along x, y, z"),
-    (
-        "made_at",
-        0,
-        0,
-        1073741823,
-        "us",
-        "when it was measured, or given: a run's own, not sent",
-    ),
+    ("made_at", 0, 0, 1073741823, "us", "when it was measured, or given: a run's own, not sent"),
 )
 
 # Fields of a frame that only a simulation fills in, for its tables: not sent, not on boards.

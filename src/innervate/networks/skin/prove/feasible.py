@@ -129,8 +129,7 @@ def _kept(cell: Cell, step: Step, may_forget: Term | None = None) -> list[Goal]:
     route = after.at("sq", after.parent), after.at("dist", after.parent)
     allowed = t.any(t.negated(had), forgot, before.nearer(route, before.fd()))
     usable = t.all(
-        after.is_(after.at("child", after.parent), 0),
-        t.less(route[1], after.param("max_depth")),
+        after.is_(after.at("child", after.parent), 0), t.less(route[1], after.param("max_depth"))
     )
     return [
         Goal("F fd only ever gets nearer, unless it is forgotten", t.implies(

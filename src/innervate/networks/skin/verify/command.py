@@ -226,12 +226,9 @@ def _settle_whole(
 
 def _settle(found: explore.Result, wanted: Wanted, name: str, tell: Told) -> fair.Fair:
     return fair.check(
-        found,
-        plain=wanted.plain,
-        starts=wanted.starts,
-        memory=wanted.memory,
+        found, plain=wanted.plain, starts=wanted.starts, memory=wanted.memory,
         progress=lambda _: tell(f"{name}: the fair schedule", found.tally),
-    )
+    )  # fmt: skip
 
 
 def _whole(found: explore.Result) -> system.SkinModel:
@@ -243,12 +240,9 @@ def _whole(found: explore.Result) -> system.SkinModel:
 
 def _explore(model: system.SkinModel, wanted: Wanted, name: str, tell: Told) -> explore.Result:
     return explore.explore(
-        model,
-        plain=wanted.plain,
-        memory=wanted.memory,
-        states=wanted.states,
+        model, plain=wanted.plain, memory=wanted.memory, states=wanted.states,
         progress=lambda tally: tell(name, tally),
-    )
+    )  # fmt: skip
 
 
 def _case(model: Any, wanted: Wanted, first: bool, tell: Tell) -> Case:
