@@ -139,11 +139,13 @@ def tell_clock(world, do, node, time):
 
 
 def tell_outcome(world, do, node, time):
-    """Tell a sender how many received its packet; no radio could know."""
-    radio, item = world.radios[node], world.item[0]
+    """Tell a sender how many received its packet, 0 if it needs all; no radio could know."""
+    run, radio, item = world.run[0], world.radios[node], world.item[0]
     if radio.told_at == time and radio.alive:
         item.slots, item.ago = 0, 0
         item.handle = world.got[node * RING + (radio.told & (RING - 1))]
+        if run.oracle == medium.OF_ALL and traffic.lacking(world, node, radio.told) > 0:
+            item.handle = 0
         now = time + radio.offset
         do.on_input(world, node, now & MASK30, access.RESULT)
         finish(world, do, node, time, status.ON_INPUT, access.RESULT)

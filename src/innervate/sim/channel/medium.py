@@ -5,7 +5,8 @@ station counts the signals that are present; it receives a frame that was the on
 start to its end, while its radio listened.
 
 Two devices for baselines, which radios do not have: with `full_duplex` a sender hears carriers and
-may break off; with `oracle` it learns, when all could know, how many received its packet.
+may break off; with `oracle` it learns, when all could know, how many received its packet, or that
+not all did.
 """
 
 from innervate.dialect.rng import LOW15, step
@@ -25,6 +26,7 @@ FADED = 2  # nobody hears anything of it
 UNSENT = 3  # its sender died, or stopped, in the turnaround: its edges pass, and nobody hears them
 
 CRR = 1
+OF_ALL = 2  # `oracle`: a packet is received when all have it
 
 # A radio's `deaf`.
 SENDING = 1

@@ -251,7 +251,7 @@ def quick_few(setting, size, theirs):
 def waiting(ours, n, load, rivals, turns, size=None):
     """Mean delays of the practical mode, its rivals at 10 slots."""
     made = []
-    rivals = (*rivals, delay.DCF_ANSWERS) if "dcf" in rivals else rivals
+    rivals = (*rivals, delay.DCF_ANSWERS, delay.DCF_HERE) if "dcf" in rivals else rivals
     for mac, per_turn in (("practical", turns), *((mac, turns if mac == "token-ring" else 1)
                                                   for mac in rivals)):  # fmt: skip
         for one in SIZES:

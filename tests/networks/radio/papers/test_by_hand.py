@@ -24,7 +24,7 @@ def test_all_protocols_are_offered_the_same_until_the_first_station_has_no_more(
     for mac in {mac for mac, _ in delay.LOOKS} - {delay.PRACTICAL}:
         other = offered(mac)
         assert (other.arrivals, other.wanted) == (ours.arrivals, ours.wanted)
-        assert other.protocol == (delay.DCF if mac == delay.DCF_ANSWERS else mac)
+        assert other.protocol == (delay.DCF if mac in delay.GRANTED else mac)
 
 
 def test_an_answer_comes_after_both_ways_and_a_slot():

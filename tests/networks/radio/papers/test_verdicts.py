@@ -2,7 +2,7 @@
 
 import pytest
 
-from innervate.networks.radio.papers import capture, fig12, members
+from innervate.networks.radio.papers import capture, delay, fig12, members
 from innervate.networks.radio.papers.common import RESERVED, SIZES
 from innervate.networks.radio.papers.members import ALLOWED, is_harmless
 from innervate.papers.experiment import FAILS, HOLDS, Measured
@@ -98,3 +98,30 @@ def test_numbers_are_no_part_of_the_protocols():
     for mode in members.MODES:
         found = members.renumbered(mode, True).work()
         assert found == [True] * 10
+
+
+@pytest.mark.parametrize(
+    ("load", "dcf", "here", "passed", "beside"),
+    [
+        (0.1, 100.0, 100.0, True, "1.30 times the 100 of a DCF that sends until all have it"),
+        (0.1, 99.9, 100.0, False, "(beside that one it holds)"),
+        (0.1, 100.0, 99.9, True, "(beside that one it does not hold)"),
+        (0.3, 130.1, 30_000.0, True, "30,000 of a DCF that sends until all have it"),
+        (0.3, 130.0, 130.1, False, "(beside that one it holds)"),
+        (0.3, 130.1, 130.0, True, "(beside that one it does not hold)"),
+    ],
+)
+def test_a_bar_is_judged_by_what_anybody_received_and_told_of_the_other(
+    load, dcf, here, passed, beside
+):
+    means = {("practical", 1): 130.0, (delay.DCF, 1): dcf, (delay.DCF_HERE, 1): here}
+    made = {}
+    for who in delay.LOOKS:
+        for one in SIZES:
+            left = {name: [1.0] for name in delay.PARTS}
+            point = delay.point(who, one, 5, load, True)
+            made[point.key] = {"mean": [means.get(who, 1000.0)] * 2, **left}
+    got = Measured(made, True)
+    claim = delay._light(got, 5) if load == 0.1 else delay._below(got, 5, load, ("dcf", "tdma"), 1)
+    assert (claim.verdict == HOLDS) is passed
+    assert claim.measurement.count(beside) == len(SIZES)

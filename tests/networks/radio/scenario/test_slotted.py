@@ -17,6 +17,7 @@ OTHER = {
     "protocol": {
         "mode": "paper", "tau_bounds_us": [60, 80], "turns": 7, "per_turn": 3, "wait_us": 900,
         "p": 0.37, "cw_min": 8, "cw_max": 512, "backoff_slots": 3, "reading": "B",
+        "received_by": "everybody", "answers": "turnaround",
     },
     "channel": {
         "tau_us": [60, 80], "turnaround_us": 2000, "loss": 0.2, "hidden": [[0, 1]],

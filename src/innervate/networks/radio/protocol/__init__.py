@@ -103,6 +103,10 @@ nobody left, by `finish` to `IDLE`.
 |               |                               | `enter_turn`                      |              |
 | any           | `OPEN`                        | `hear_open`: what was before is   | WINDOW       |
 |               |                               | over                              |              |
+| any           | `OPEN`, `began_together` with | as noise of that length           |              |
+|               | what was heard before         |                                   |              |
+| `WINDOW`      | a carrier before `apart`      | `lose_opening`: nobody is         | IDLE         |
+|               |                               | answered                          |              |
 | any           | `DATA`, opens a window        | `hear_data`: `settle`, proof or   | WINDOW       |
 |               |                               | not                               |              |
 | any           | `DATA`, names a place         | `hear_data`, `enter_turn`         | TURN         |
@@ -198,8 +202,10 @@ minislot, CR-R or delayed turn, void unless `act`. With ta = `ta_us`, delays fro
 | on switching on   | J: `join_us`                         | T and D                               |
 | minislot w        | `minislot_us`: a CR-R, twice the     | -                                     |
 |                   | spread of delays                     |                                       |
-| opening u         | `probe_us`: two overlap at every     | -                                     |
-|                   | station                              |                                       |
+| opening u         | `probe_us`: two that collide begin   | -                                     |
+|                   | within it at every station; slow     |                                       |
+|                   | radios are silent behind a packet    |                                       |
+|                   | (`silence_behind`), until `apart`    |                                       |
 
 Once delays outside the bounds were noticed (`bounds.py`) they follow from wider ones: `times.py`.
 
@@ -210,8 +216,8 @@ Frames
 | `CRR = 1`    | one slot                         | nothing: a CR-R, or a pulse that says "heard"  |
 | `DATA = 2`   | its packets, or `pass_slots`: 3, | `pos`, `next`, `more`, `ok`, and up to         |
 |              | 2 with slow radios               | `per_turn` packets                             |
-| `OPEN = 3`   | u or its packets                 | as data; how wide the bounds are. `pos`:       |
-|              |                                  | `UNKNOWN = 31`: all places are free again      |
+| `OPEN = 3`   | u or its packets; slow radios:   | as data; how wide the bounds are. `pos`:       |
+|              | its packets, u if it has none    | `UNKNOWN = 31`: all places are free again      |
 | `REPORT = 4` | `REPORT_SLOTS = 5` and more      | `good`, `bad` minislots, `kept` ones ahead,    |
 |              |                                  | `base`; `window`, `span`, `split`              |
 

@@ -92,6 +92,8 @@ PRACTICAL = (
     ("busy", 0, 0, 15, "windows", "somebody asked, twice, less those in which nobody did"),
     ("calm", 0, 0, 7, "windows", "since one that brought a newcomer"),
     ("wide", 0, 0, 3, "doublings", "of the greatest configured delay that we believe in"),
+    ("joint", 0, 0, 1, "flag", "what begins before `apart` began with what we heard last"),
+    ("apart", 0, 0, 1073741823, "us", "u behind the beginning of that"),
     ("used", 0, 0, 3, "doublings", "... that this sequence allows for"),
 )
 
@@ -154,7 +156,14 @@ PARAMS = (
     ("dilate", 0, 1, 8190, "factor", "paper: CR-Rs stretched over the window; 1 = not"),
     ("mac", 0, 0, 15, "protocol", "baselines: which one; 0 = CSMA/CD-R"),
     ("stations", 0, 1, 1023, "stations", "baselines: how many (TDMA)"),
-    ("oracle", 0, 0, 1, "flag", "baselines: a sender is told who received its packet"),
+    (
+        "oracle",
+        0,
+        0,
+        2,
+        "case",
+        "baselines: a sender is told once 1 anybody, 2 all have its packet",
+    ),
     ("full_duplex", 0, 0, 1, "flag", "baselines: a sender hears others and may break off"),
     ("period_us", 0, 0, 268435455, "us", "baselines: slots of a clock that all share; 0 = none"),
     ("gap_us", 0, 0, 2000000, "us", "baselines: idle before sending; DIFS"),

@@ -41,6 +41,7 @@ from innervate.networks.radio.protocol.times import (
     join_after,
     least_delay,
     most_delay,
+    silence_behind,
 )
 from innervate.networks.radio.protocol.turn import enter_turn
 from innervate.networks.radio.protocol.window import enter_first, enter_window
@@ -73,7 +74,11 @@ def hear_open(station, params, now, frame, out):
     size = 1
     if LONE_WINDOWS <= frame.next < NEXT_NONE:
         size = window_of(params, frame.next)
-    enter_first(station, params, now, size, 1, out)
+    silence = silence_behind(params, frame.wide, frame.slots)
+    station.apart = (now + silence) & MASK30
+    station.joint = 1 if silence else 0
+    station.fall = now
+    enter_first(station, params, station.apart, size, 1, out)
 
 
 def hear_data(station, params, now, frame, out):

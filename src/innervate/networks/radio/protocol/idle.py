@@ -37,8 +37,9 @@ from innervate.networks.radio.protocol.times import (
     least_delay,
     minislot,
     most_delay,
-    probe,
+    probe_slots,
     retry_within,
+    silence_behind,
 )
 
 LONELY_FREE = 3  # openings into silence before the wait grows
@@ -105,13 +106,16 @@ def open_now(station, params, now, out):
     if station.queued == 0 or station.cd:
         return
     frame = blank(out)
-    probe_slots = (probe(params, station.wide) + params.slot_us - 1) // params.slot_us
+    least = probe_slots(params, station.wide)
+    frame.slots = least
     count = 0
-    frame.slots = probe_slots
+    silence = 0
     most = loads(station, params)
     if most:
         count = load_packets(station, frame, most)
-        frame.slots = max(frame.slots, probe_slots)
+        silence = silence_behind(params, station.wide, frame.slots)
+        if silence == 0:
+            frame.slots = max(frame.slots, least)
     frame.kind = OPEN
     rest_round(station, params)
     frame.pos = take_place(station, params)
@@ -138,7 +142,7 @@ def open_now(station, params, now, out):
     if more:
         station.cur = station.pos
     station.last_ok = 0
-    station.end = (now + params.ta_us + frame.slots * params.slot_us) & MASK30
+    station.end = (now + params.ta_us + frame.slots * params.slot_us + silence) & MASK30
     station.mode = modes.SEND_OPEN
 
 
@@ -177,14 +181,14 @@ def retry(station, params, now, tail, out):
     station.tail = tail
     if not tail:
         station.lonely = min(station.lonely + 1, 31)
-        wait_again(station, params, now, out)
+        wait_again(station, params, now, 0, out)
 
 
-def wait_again(station, params, now, out):
+def wait_again(station, params, now, since, out):
     """Those who collided go first: their set shrinks with every try.
 
     Slow radios draw one of few moments, so far apart that the later one hears the earlier: those
-    who had begun together collide again half as often as if they drew any moment.
+    who had begun together collide again half as often as if they drew any moment. `since`: longer.
     """
     bound = retry_within(params, station.wide)
     step = 1
@@ -193,7 +197,7 @@ def wait_again(station, params, now, out):
         bound = bound + step
     for _ in range(min(max(station.lonely - LONELY_FREE, 0), LONELY_MOST)):
         bound = bound * 2
-    wait = params.ta_us + most_delay(params, station.wide)
+    wait = since + params.ta_us + most_delay(params, station.wide)
     wait = wait + step * draw(station, bound // step)
     station.at = (now + wait) & MASK30
     schedule(station, now, out)
@@ -209,11 +213,37 @@ def notice_late_answer(station, params, out):
         notice(station, params, most_delay(params, station.wide) + late // 2, BEHIND, out)
 
 
+def note_noise(station, params):
+    """Noise that could be a collision of openings: what began with it is lost with it."""
+    if is_slow(params) and not station.joint:
+        lasts = probe_slots(params, station.wide) * params.slot_us
+        station.apart = (station.rise + lasts) & MASK30
+        station.joint = 1
+
+
+def began_together(station, params, start):
+    """True if an opening that began then collided, though we heard it alone."""
+    if not is_slow(params):
+        return False
+    if after(start, (station.rise + params.slot_us) & MASK30):
+        return True  # right behind another's end
+    return station.joint and not after(start, station.apart)
+
+
+def lose_opening(station):
+    """Another had begun with the opening that we followed: both are lost."""
+    station.decoded = 0
+    station.mode = modes.IDLE
+    station.armed = 0
+    station.act = 0
+
+
 def heard_noise(station, params, now, length, out):
     """A burst has ended: the rest of our own collision, or others' trouble that we leave alone."""
     if station.tail:
         station.tail = 0
-        wait_again(station, params, now, out)
+        size = station.size[station.head]  # of their packet, too, for all we know
+        wait_again(station, params, now, silence_behind(params, station.wide, size), out)
         return
     if length >= 2 * params.slot_us:
         station.collided = 1

@@ -8,7 +8,7 @@ follow.py, openings in idle.py.
 """
 
 from innervate.dialect.access import LEAVE, PACKET
-from innervate.dialect.arith import MASK30
+from innervate.dialect.arith import MASK30, after
 from innervate.networks.radio.protocol import modes
 from innervate.networks.radio.protocol.constants import CRR, DATA, MAIN, OPEN, REPORT
 from innervate.networks.radio.protocol.follow import (
@@ -19,8 +19,11 @@ from innervate.networks.radio.protocol.follow import (
     silent_turn,
 )
 from innervate.networks.radio.protocol.idle import (
+    began_together,
     heard_noise,
     listen_first,
+    lose_opening,
+    note_noise,
     offered,
     open_now,
     retry,
@@ -68,7 +71,12 @@ def on_frame(station, params, now, port, frame, out):
     elif frame.kind == OPEN:
         if frame.count:
             hand_up(frame, out)
-        hear_open(station, params, now, frame, out)
+        if began_together(station, params, (now - frame.slots * params.slot_us) & MASK30):
+            station.decoded = 0
+            if station.mode == modes.WINDOW:
+                lose_opening(station)
+        else:
+            hear_open(station, params, now, frame, out)
     elif frame.kind == REPORT:
         hear_report(station, params, now, frame, out)
 
@@ -83,13 +91,18 @@ def on_carrier(station, params, now, cd, voc, out):
         if came:
             station.rise = now
             station.decoded = 0
-            carrier_came(station, now)
+            if after(now, station.apart):
+                station.joint = 0
+            carrier_came(station)
         elif went:
+            if station.joint and mode == modes.WINDOW and outlasts(station, params, now):
+                lose_opening(station)
             station.fall = now
             carrier_went(station, params, now, (now - station.rise) & MASK30, out)
         return
     station.cd = cd
     station.decoded = 0
+    station.joint = 0
     if cd:
         station.rise = now
     else:
@@ -107,12 +120,19 @@ def on_carrier(station, params, now, cd, voc, out):
         station.mode = modes.WINDOW
 
 
-def carrier_came(station, now):
+def outlasts(station, params, now):
+    """True if the carrier went on behind the opening's end: another began just then."""
+    return after(now, (station.fall + params.slot_us) & MASK30)
+
+
+def carrier_came(station):
     """Somebody sends: what silence would have meant does not hold."""
     mode = station.mode
     if mode == modes.IDLE:
         station.armed = 0
         station.tail = 0
+    elif mode == modes.WINDOW and station.joint:
+        lose_opening(station)
     elif mode == modes.WINDOW or mode == modes.LEAD:
         station.heard = max(station.heard, 1)
     else:
@@ -123,6 +143,8 @@ def carrier_went(station, params, now, length, out):
     """A burst is over; a frame in it was handled by on_frame."""
     mode = station.mode
     noise = not station.decoded
+    if noise and length >= 2 * params.slot_us:
+        note_noise(station, params)
     if mode == modes.IDLE:
         if noise:
             heard_noise(station, params, now, length, out)
@@ -152,6 +174,8 @@ def on_timer(station, params, now, timer, out):
         if not station.armed:
             return
         station.armed = 0
+        if after(now, station.apart):
+            station.joint = 0
         if mode == modes.IDLE:
             open_now(station, params, now, out)
         elif mode == modes.LEAD:

@@ -42,6 +42,21 @@ def probe(params, wide):
     return params.probe_us
 
 
+def probe_slots(params, wide):
+    """How many whole slots an opening lasts at least."""
+    return (probe(params, wide) + params.slot_us - 1) // params.slot_us
+
+
+def silence_behind(params, wide, slots):
+    """How long slow radios are silent behind an opening of so many slots, so that u has passed.
+
+    Whoever began before it could hear it is heard in that time, if not with it.
+    """
+    if wide or not is_slow(params):
+        return 0
+    return max(probe_slots(params, 0) - slots, 0) * params.slot_us
+
+
 def retry_within(params, wide):
     """Wr: colliders wait less than this."""
     if wide:

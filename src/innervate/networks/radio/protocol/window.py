@@ -78,6 +78,8 @@ def use_slot(station, params, now, out):
     if station.cd and after(station.rise, station.ref):
         if ((now - station.rise) & MASK30) >= frame_from(params, station.used):
             return
+    elif station.cd and station.joint:
+        return  # it began as the opening ended
     if station.slot != NONE and not asks(station):
         station.slot = NONE
         if station.ack:

@@ -1,6 +1,6 @@
 """Parameters of the baselines of a shared channel [radio 9], and the devices each is granted."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 # How stations know their protocol (params.mac); 0 is CSMA/CD-R.
 D1, D2, D2P, DCF, ALOHA, NONPERSISTENT, P_PERSISTENT, TDMA, TREE, TOKEN_RING, POLLING = range(1, 12)
@@ -24,6 +24,12 @@ NONE = {
 ONE_Q15 = 32_768
 TOKEN_SLOTS = 2  # token ring: the token; polling: a poll
 ANSWER_SLOTS = 2  # DCF: a one-byte answer and the idle slot before it
+TOLD_OF = {
+    "anybody": 1,
+    "everybody": 2,
+}  # params.oracle: who must have a packet; 0 = it is not told
+ReceivedBy = Literal["anybody", "everybody"]
+Answers = Literal["instant", "turnaround"]
 
 
 class Draws(NamedTuple):
@@ -38,23 +44,37 @@ class Draws(NamedTuple):
 DRAWS = Draws()
 
 
+class Granted(NamedTuple):
+    """What a sender is told of its packets, and how long the channel is kept for that."""
+
+    received_by: ReceivedBy = "anybody"  # it is told to send again until these have it
+    answers: Answers = "instant"  # DCF: radios switch in no time, or there and back
+
+
+GRANTED = Granted()
+
+
 def baseline(
     mac: str,
     stations: int,
     params: dict[str, int],
     draws: Draws = DRAWS,
+    granted: Granted = GRANTED,
 ) -> dict[str, int]:
     """The parameters of a run with what a baseline needs besides.
 
     A cable (D1) has no turnaround. All but D1 have an oracle: the sender learns who received its
     packet as soon as all who hear it have heard its end. Everybody hears every packet to its end:
     slots are long enough, and between two packets there is a slot where there is no common clock.
+    In IEEE 802.11 one receiver answers; a packet for all is neither answered nor sent again (9.2.7
+    of the 1999 edition). `received_by` is what a team needs whose packets are for all.
 
     `mac` is its name in a scenario, a key of NUMBERS; `params` are those of `plan.parameters`.
     """
     number = NUMBERS[mac]
     slot, turn = params["slot_us"], 0 if number == D1 else params["ta_us"]
     heard = turn + params["dmax_us"]  # from a decision until all hear a carrier
+    answer = ANSWER_SLOTS * slot if granted.answers == "instant" else 2 * heard + slot
     packet = params["packet_slots"] * slot
     period = {
         # The outcome is known to all, and the next sender hears all of the packet before.
@@ -68,11 +88,11 @@ def baseline(
         "ta_us": turn,
         "mac": number,
         "stations": stations,
-        "oracle": int(number != D1),
+        "oracle": TOLD_OF[granted.received_by] if number != D1 else 0,
         "full_duplex": int(number == D1),
         "period_us": period.get(number, 0),
         "gap_us": max(slot - params["dmax_us"], params["bit_us"]),
-        "answer_us": ANSWER_SLOTS * slot if number == DCF else 0,
+        "answer_us": answer if number == DCF else 0,
         "backoff_us": draws.backoff_slots * slot,
         "cw_min": draws.cw_min,
         "cw_max": draws.cw_max,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta
 
-from innervate.networks.radio.scenario.baselines import NUMBERS
+from innervate.networks.radio.scenario.baselines import NUMBERS, Answers, ReceivedBy
 from innervate.scenario import keys
 from innervate.scenario.actions.channel import WORDS
 
@@ -72,6 +72,8 @@ class MediumAccessTable(keys.Table, frozen=True, kw_only=True):
     cw_min: Annotated[int, keys.whole("slots", 1, 1024)] = 32
     cw_max: Annotated[int, keys.whole("slots", 1, 32_768)] = 1024
     backoff_slots: Annotated[int, keys.whole("slots", 1, 1000)] = 1
+    received_by: ReceivedBy = "anybody"
+    answers: Answers = "instant"
     reading: Literal["A", "B"] = "A"
 
 

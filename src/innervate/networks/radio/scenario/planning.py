@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from innervate.networks.radio.scenario.baselines import Draws, baseline
+from innervate.networks.radio.scenario.baselines import Draws, Granted, baseline
 from innervate.networks.radio.scenario.model import MACS, RadioScenario
 from innervate.networks.radio.scenario.plan import RadioFault, RadioPlan, parameters
 from innervate.networks.radio.scenario.rules import pair
@@ -74,6 +74,7 @@ def _parameters(model: RadioScenario, bit_us: int) -> dict[str, int]:
         model.stations,
         params,
         Draws(protocol.p, protocol.cw_min, protocol.cw_max, protocol.backoff_slots),
+        Granted(protocol.received_by, protocol.answers),
     )
 
 

@@ -101,6 +101,20 @@ def _protocol(model: RadioScenario) -> Iterator[Finding]:
             'protocol.per_turn goes with csma-cd-r in mode = "practical", token-ring and polling'
         )
         yield ("protocol", "per_turn"), message
+    yield from _told(model)
+
+
+def _told(model: RadioScenario) -> Iterator[Finding]:
+    """Only who is told for nothing what became of its packet can be told of everybody."""
+    protocol = model.protocol
+    if protocol.received_by != "anybody" and protocol.mac in ("csma-cd-r", "csma-cd-d1"):
+        message = (
+            f"protocol.received_by goes with baselines whose senders are told who received their "
+            f"packets, not {protocol.mac}"
+        )
+        yield ("protocol", "received_by"), message
+    if protocol.answers != "instant" and protocol.mac != "dcf":
+        yield ("protocol", "answers"), f"protocol.answers goes with dcf, not {protocol.mac}"
 
 
 def _traffic(model: RadioScenario) -> Iterator[Finding]:

@@ -27,7 +27,7 @@ EVENT_ONLY = ("token-ring", "polling")
 # What none uses.
 UNUSED = (
     *(("protocol", name) for name in ("mode", "tau_bounds_us", "turns", "per_turn", "wait_us",
-                                      "cw_min", "cw_max")),
+                                      "cw_min", "cw_max", "received_by", "answers")),
     *(("channel", name) for name in ("tau_us", "loss", "hidden")),
     *(("traffic", name) for name in ("spread_us", "start_s")),
 )  # fmt: skip

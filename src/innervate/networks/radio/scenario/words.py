@@ -39,7 +39,18 @@ def _used(made: RadioPlan) -> tuple[str, str]:
         f"delays of {_range(*pair(model.channel.tau_us), 'us')}, "
         f"turnaround {made.params['ta_us'] / 1000:g} ms"
     )
-    return channel, made.protocol
+    return channel, ", ".join([made.protocol, *told_words(model)])
+
+
+def told_words(model: RadioScenario) -> list[str]:
+    """What a DCF, or whoever is set to it, takes for received; other baselines are told alike."""
+    protocol, found = model.protocol, []
+    if protocol.mac == "dcf" or protocol.received_by != "anybody":
+        found.append(f"a packet counts as received once {protocol.received_by} has it")
+    if protocol.mac == "dcf":
+        how = {"instant": "without a turnaround", "turnaround": "a turnaround there and back"}
+        found.append(f"time for its answers: {how[protocol.answers]}")
+    return found
 
 
 def warnings(made: RadioPlan) -> list[str]:
