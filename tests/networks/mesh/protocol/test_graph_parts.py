@@ -57,3 +57,12 @@ def test_who_has_the_graph_says_so_once_for_each_flood():
     assert floods > 1, "node 2 is not heard: all once more"
     assert answers_of(bench, 1) == floods
     assert parts_by(bench, 0) == floods * list(range(12))
+
+
+def test_the_gateway_sends_each_part_as_often_as_all_others_do():
+    """One that finds the channel full of the part before would be missed by all (decision 0073)."""
+    bench = bench_of(30)
+    bench.run(SETTLED)
+    sent = [f.seq for _, i, f in bench.sent if i == 0 and f.kind == GRAPH]
+    assert sent
+    assert {sent.count(seq) for seq in sent} == {bench.params.copies}

@@ -89,6 +89,17 @@ def test_a_retry_of_the_other_parity_replaces_the_entry():
     assert sum(origin == 3 for origin in node.done_origin) == 1
 
 
+def test_a_retry_finds_no_neighbour_skipped_where_its_packet_was_forgotten():
+    """A bridge passes on 64 packets in less than an end-to-end timeout (decision 0073)."""
+    node, _ = node_with()
+    duplicates.record_packet(node, frame_of(1))
+    duplicates.skip(node, 3, 1, 5)
+    for seq in range(2, 2 + FORWARDED):
+        duplicates.record_packet(node, frame_of(seq))
+    assert not duplicates.record_packet(node, frame_of(1, parity=1))
+    assert not duplicates.is_skipped(node, 3, 1, 5)
+
+
 def test_a_packet_comes_back_once_by_the_same_way():
     node, _ = node_with()
     assert not duplicates.record_packet(node, frame_of(1, path=(3,)))

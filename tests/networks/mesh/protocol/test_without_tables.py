@@ -3,6 +3,8 @@
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
+    ACK,
+    ACK_WANTED,
     ALARM,
     ALTERNATE,
     DATA,
@@ -11,13 +13,18 @@ from innervate.networks.mesh.protocol.constants import (
     END_TO_END,
     MESSAGES,
     RANDOM,
+    REQUEST,
     SEARCH,
+    SOURCE_ROUTE,
     TABLE,
+    TABLE_FREE,
+    TABLES,
     TO_SEND,
     UNDER_WAY,
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.jobs import pump
+from innervate.networks.mesh.protocol.node import FOR_WHAT_COMES_DOWN
 from innervate.networks.mesh.protocol.queue import enqueue
 from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
 from innervate.networks.mesh.protocol.timeout import timeout
@@ -113,3 +120,47 @@ def test_what_a_table_says_stands():
     assert brought(bench, 1, 3, 7) == 2
     bench.nodes[1].next[bench.nodes[1].bank * bench.params.width + 3] = NONE
     assert [brought(bench, 1, 3, sender) for sender in (7, 2)] == [7, 7], "whom it leaves out"
+
+
+@pytest.mark.parametrize(("mode", "depths"), [(TABLE_FREE, [3, 4]), (TABLES, [5, 6])])
+def test_without_tables_a_shorter_way_counts_that_comes_later(mode, depths):
+    """0 - 1 - 5 - 6, and 0 - 2 - 3 - 4 - 5, whose request comes first.
+
+    Who is behind hears of it, too, and goes up by it for the whole period (decision 0073).
+    """
+    links = [(0, 1), (1, 5), (0, 2), (2, 3), (3, 4), (4, 5), (5, 6)]
+    bench = Bench(7, links, mode=mode, copies=15)
+    told = set()
+
+    def lost(frame, to):
+        if frame.kind == REQUEST:
+            told.add(frame.link_src)
+        return frame.kind == REQUEST and {frame.link_src, to} == {1, 5} and 6 not in told
+
+    bench.lost = lost
+    bench.run(SETTLED)
+    assert [bench.nodes[i].depth for i in (5, 6)] == depths
+
+
+@pytest.mark.parametrize(("mode", "kind", "flags", "taken"), [
+    (TABLE_FREE, DATA, END_TO_END, False), (TABLE_FREE, DATA, END_TO_END | SOURCE_ROUTE, True),
+    (TABLE_FREE, ALARM, END_TO_END, True), (TABLES, DATA, END_TO_END, True),
+])  # fmt: skip
+def test_what_climbs_leaves_room_for_what_comes_down(mode, kind, flags, taken):
+    """Two whose queues are full of what is for the other one would never move on (0073)."""
+    bench = Bench(3, [(0, 1), (1, 2)], mode=mode)
+    bench.run(SETTLED)
+    node = bench.nodes[1]
+    for _ in range(node.places - 1 - FOR_WHAT_COMES_DOWN - MESSAGES):
+        i = enqueue(node, bench.now, MESSAGES, 2, bench.out)
+        node.q_due[i] = bench.now + 60_000_000
+    for seq in (7, 8):  # there is room for one more, and some for better ones
+        frame = Frame()
+        frame.kind, frame.flags, frame.link_src, frame.link_dst = kind, flags | ACK_WANTED, 2, 1
+        frame.origin, frame.dest, frame.seq, frame.ttl = 2, 0, seq, 9
+        frame.path_len, frame.path[0], frame.rssi = 1, 2, -60
+        frame.length, frame.body[0] = 2, 1  # a source route to 0, or a payload
+        bench.push(bench.now + seq, ("frame", 1, frame))
+    bench.run(SETTLED + 100)
+    acked = [f.seq for at, i, f in bench.sent if at >= SETTLED and (i, f.kind) == (1, ACK)]
+    assert acked == ([7, 8] if taken else [7])

@@ -51,8 +51,7 @@ it. Each answer brings a part of the graph, until it has all. Questions in vain,
 used to be late: it leads. Its first request makes all tables its own: nobody responds but who has
 none, and is sent one of the graph that came with the answers; all have new ones after the next
 round (decision 0053). Nobody looks for the gateway that is `gone`, or goes by it, until it is
-heard, or a table leads to it, or the round after the next begins. Questions and answers go before
-all else.
+heard, or a table leads to it, or the round after the next begins. Questions, answers go first.
 
 *Fence.* Robots judge their position at every sample; alarms are sent, flooded, retransmitted and
 raised again until the monitor acknowledged them. Who hears a robot outside is its witness (A13).
@@ -148,6 +147,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            |                                 | `repeat_alarm`                   |                |
 | new round  | `REQUEST`, strong               | `queue_request`, `join`          | RESPOND        |
 | new round  | `REQUEST`, weak                 | `await_better`                   | LOOK_AGAIN     |
+| follows    | `REQUEST` that `is_shorter`     | `queue_request`: we are nearer   |                |
 | LOOK_AGAIN | `ROUND`                         | `step`, `look_again`, `join`     | RESPOND        |
 | RESPOND    | `ROUND`                         | `step`, `respond`                | NOTHING        |
 | new round  | `REQUEST`, `PRIORITY`           | `keep_table`: it is the new      | NOTHING        |
@@ -357,8 +357,8 @@ Constants and settings
 |                                                | `spread_us`                                     |
 | `JITTER_UNIT_US = 10000`                       | of a request's jitter                           |
 | `COPIES_MORE = 4`                              | decision 0049: of the request of who takes over |
-| `FAINT_DB = 2`                                 | decision 0052: so much below `min_rssi` a link  |
-|                                                | is faint                                        |
+| `FAINT_DB = 2`                                 | 0052: a link so much below `min_rssi` is faint  |
+| `FOR_WHAT_COMES_DOWN = 3`                      | decision 0073: places, kept where all climbs    |
 | `POINTS = 48`, `FAR = 16384`, `REACH = 23170`, | the fence in whole numbers below 2^30           |
 | `FULL = 268435456`, `ROOT_BITS = 15`           |                                                 |
 | `TIME = 1073741823`, `TICKS_MAX = 32767`       | clocks wrap at 2^30; longest suspicion          |

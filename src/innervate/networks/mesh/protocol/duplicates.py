@@ -100,10 +100,14 @@ def forwarded_at(node, origin, seq, kind):
     return -1
 
 
-def note_forwarded(node, origin, seq, kind, giver, hops):
-    """Remember a packet; kind has its type, and 64 x retry parity; hops = how long its path is."""
-    k = node.done_at
-    node.done_at = (k + 1) % FORWARDED
+def note_forwarded(node, k, origin, seq, kind, giver, hops):
+    """Remember a packet in place k, -1 = a new one.
+
+    kind has its type, and 64 x retry parity; hops = how long its path is.
+    """
+    if k < 0:
+        k = node.done_at
+        node.done_at = (k + 1) % FORWARDED
     node.done_origin[k] = origin
     node.done_seq[k] = seq
     node.done_kind[k] = kind
@@ -118,15 +122,10 @@ def record_packet(node, frame):
     """
     kind = frame.kind | ((frame.flags & PARITY) >> 1)
     k = forwarded_at(node, frame.origin, frame.seq, kind)
-    if k >= 0:
-        if node.done_kind[k] == kind:
-            return 1
-        node.done_kind[k] = kind
-        node.done_from[k] = frame.link_src
-        node.done_hops[k] = frame.path_len
-        clear_skipped(node, frame.origin, frame.seq)
-        return 0
-    note_forwarded(node, frame.origin, frame.seq, kind, frame.link_src, frame.path_len)
+    if k >= 0 and node.done_kind[k] == kind:
+        return 1
+    clear_skipped(node, frame.origin, frame.seq)
+    note_forwarded(node, k, frame.origin, frame.seq, kind, frame.link_src, frame.path_len)
     return 0
 
 
@@ -138,7 +137,7 @@ def record_return(node, frame):
     kind = frame.kind | ((frame.flags & PARITY) >> 1)
     k = forwarded_at(node, frame.origin, frame.seq, kind)
     if k < 0:
-        note_forwarded(node, frame.origin, frame.seq, kind, ALL, frame.path_len)
+        note_forwarded(node, k, frame.origin, frame.seq, kind, ALL, frame.path_len)
         return 0
     if node.done_kind[k] == kind and frame.path_len <= node.done_hops[k]:
         return 1
@@ -153,7 +152,7 @@ def record_flood(node, origin, seq, kind, instance):
         if node.done_origin[k] == origin and node.done_seq[k] == seq:
             if node.done_kind[k] == (kind | (instance << 6)):
                 return 1
-    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)
+    note_forwarded(node, -1, origin, seq, kind | (instance << 6), ALL, 0)
     return 0
 
 

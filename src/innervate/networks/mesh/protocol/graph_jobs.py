@@ -26,22 +26,17 @@ from innervate.networks.mesh.protocol.table import (
 def pump_graph(node, gate, params, now, out):
     """Flood the parts of the graph, and once more those that some node misses."""
     count = part_count(params)
-    fresh = 0
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
             gate.job[s] = UNDER_WAY if count <= PARTS_MAX else GIVEN_UP
             gate.job_count[s] = min(count, PARTS_MAX)
             gate.job_next[s] = 0
             gate.job_due[s] = graph_due(params, now, count, 0)
-            fresh = 1
-    if fresh:
-        gate.part = 0
-    again = 0
+            gate.part = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
-            again = 1
-    if again:
-        flood_graph(node, gate, params, now, count, out)
+            flood_graph(node, gate, params, now, count, out)
+            return
 
 
 def is_unasked(gate, s):
@@ -70,7 +65,7 @@ def flood_graph(node, gate, params, now, count, out):
     Where the queue has no room for all, it goes on with the others when these have left.
     """
     due = now
-    for index in range(gate.part, min(count, PARTS_MAX)):
+    for index in range(gate.part, count):
         if is_missed(gate, params, index):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
@@ -79,6 +74,7 @@ def flood_graph(node, gate, params, now, count, out):
                 return
             add_hop(node, i)
             fill_graph(node, gate, params, i, index, count)
+            node.q_copies[i] = params.copies  # one may find the channel full of the part before
             node.q_due[i] = due & MASK30
             due = due + (params.jitter_us >> 1)
     gate.part = 0

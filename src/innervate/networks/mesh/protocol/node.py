@@ -45,7 +45,9 @@ from innervate.networks.mesh.protocol.constants import (
     ROUND,
     SAMPLE,
     SENT,
+    SOURCE_ROUTE,
     TABLE,
+    TABLE_FREE,
     TICK,
     TX,
     WEAK,
@@ -109,6 +111,7 @@ from innervate.networks.mesh.protocol.watch import NEVER, beacon, on_position, w
 
 NONE = 255
 UNREACHABLE_TICKS = 4  # whoever could not be reached is tried again after at most so long
+FOR_WHAT_COMES_DOWN = 3  # places, without tables: queues full of what climbs would block each other
 RETRIES = 4  # of kept messages in one go: the outbox has to hold them
 
 
@@ -256,6 +259,13 @@ def on_unicast(node, gate, params, now, frame, out):
     """A frame for us: acknowledge it if we can take it over, then handle it."""
     here = frame.dest == node.number
     rank = rank_of(frame)
+    if (
+        rank
+        and params.mode == TABLE_FREE
+        and is_routed(frame.kind)
+        and not frame.flags & SOURCE_ROUTE
+    ):
+        rank = rank + FOR_WHAT_COMES_DOWN
     if not here and not has_room(node, rank):
         if frame.flags & DETOURED or not make_room(node, rank, out):
             return

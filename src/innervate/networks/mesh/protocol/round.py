@@ -121,16 +121,27 @@ def on_request(node, params, now, frame, k, out):
     note_request(node, frame, k)
     if node.leading:
         return
-    if node.depth == UNHEARD:
-        if frame.rssi < params.faint:
-            await_better(node, params, now, frame, out)
-        else:
-            node.parent = frame.link_src
-            queue_request(node, params, now, frame, 0, out)
-            kept = is_spared(node, frame)
-            join(node, params, now, frame.path_len + 1, kept, out)
+    anew = node.depth == UNHEARD
+    if anew and frame.rssi < params.faint:
+        await_better(node, params, now, frame, out)
+    elif anew or is_shorter(node, params, frame):
+        node.parent = frame.link_src
+        queue_request(node, params, now, frame, 0, out)
+        node.depth = frame.path_len + 1
+        if anew:
+            join(node, params, now, node.depth, is_spared(node, frame), out)
     if params.discovery == EACH and fresh:  # not to every copy
         respond_to(node, params, now, frame.link_src, out)
+
+
+def is_shorter(node, params, frame):
+    """1 if this request makes us nearer to the gateway: without tables all goes up there.
+
+    Where one that had a longer way overtook it, all behind us would go that way for a period.
+    """
+    if params.mode != TABLE_FREE or frame.rssi < params.faint:
+        return 0
+    return frame.path_len + 1 < node.depth
 
 
 def ask_round(node, params, now, out):

@@ -33,7 +33,7 @@ MUTANTS = planted(
      "    if node.idle[origin] == 0:\n", "    if node.idle[origin] >= 0:\n"),
     ("what is behind the newest is new", "    if node.window[word] & bit:\n        return 0\n", ""),
     ("a flood is passed on each time",
-     "    note_forwarded(node, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
+     "    note_forwarded(node, -1, origin, seq, kind | (instance << 6), ALL, 0)\n", ""),
     ("who is looked for takes nothing",
      "    if frame.dest == node.number:\n        take(node", "    if 0:\n        take(node"),
     ("a standby never takes over", "if node.quiet >= silence or node.gateway == node.number:",
