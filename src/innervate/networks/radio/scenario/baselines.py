@@ -45,7 +45,11 @@ DRAWS = Draws()
 
 
 class Granted(NamedTuple):
-    """What a sender is told of its packets, and how long the channel is kept for that."""
+    """What a sender is told of its packets, and how long the channel is kept for that.
+
+    In IEEE 802.11 one receiver answers; a packet for all is neither answered nor sent again (9.2.7
+    of the 1999 edition). Packets of a team are for all.
+    """
 
     received_by: ReceivedBy = "anybody"  # it is told to send again until these have it
     answers: Answers = "instant"  # DCF: radios switch in no time, or there and back
@@ -66,8 +70,6 @@ def baseline(
     A cable (D1) has no turnaround. All but D1 have an oracle: the sender learns who received its
     packet as soon as all who hear it have heard its end. Everybody hears every packet to its end:
     slots are long enough, and between two packets there is a slot where there is no common clock.
-    In IEEE 802.11 one receiver answers; a packet for all is neither answered nor sent again (9.2.7
-    of the 1999 edition). `received_by` is what a team needs whose packets are for all.
 
     `mac` is its name in a scenario, a key of NUMBERS; `params` are those of `plan.parameters`.
     """
