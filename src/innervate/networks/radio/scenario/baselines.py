@@ -45,13 +45,22 @@ DRAWS = Draws()
 
 
 class Granted(NamedTuple):
-    """What a sender is told of its packets, and how long the channel is kept for that."""
+    """What a sender is told of its packets, and how long the channel is kept for that.
+
+    In IEEE 802.11 one receiver answers; a packet for all is neither answered nor sent again (9.2.7
+    of the 1999 edition). Packets of a team are for all.
+    """
 
     received_by: ReceivedBy = "anybody"  # it is told to send again until these have it
     answers: Answers = "instant"  # DCF: radios switch in no time, or there and back
 
 
 GRANTED = Granted()
+
+
+def answering(granted: Granted, slot_us: int, heard_us: int) -> int:
+    """How long the channel is kept for an answer, us; a carrier is heard after `heard_us`."""
+    return ANSWER_SLOTS * slot_us if granted.answers == "instant" else 2 * heard_us + slot_us
 
 
 def baseline(
@@ -66,15 +75,11 @@ def baseline(
     A cable (D1) has no turnaround. All but D1 have an oracle: the sender learns who received its
     packet as soon as all who hear it have heard its end. Everybody hears every packet to its end:
     slots are long enough, and between two packets there is a slot where there is no common clock.
-    In IEEE 802.11 one receiver answers; a packet for all is neither answered nor sent again (9.2.7
-    of the 1999 edition). `received_by` is what a team needs whose packets are for all.
-
     `mac` is its name in a scenario, a key of NUMBERS; `params` are those of `plan.parameters`.
     """
     number = NUMBERS[mac]
     slot, turn = params["slot_us"], 0 if number == D1 else params["ta_us"]
     heard = turn + params["dmax_us"]  # from a decision until all hear a carrier
-    answer = ANSWER_SLOTS * slot if granted.answers == "instant" else 2 * heard + slot
     packet = params["packet_slots"] * slot
     period = {
         # The outcome is known to all, and the next sender hears all of the packet before.
@@ -92,7 +97,7 @@ def baseline(
         "full_duplex": int(number == D1),
         "period_us": period.get(number, 0),
         "gap_us": max(slot - params["dmax_us"], params["bit_us"]),
-        "answer_us": answer if number == DCF else 0,
+        "answer_us": answering(granted, slot, heard) if number == DCF else 0,
         "backoff_us": draws.backoff_slots * slot,
         "cw_min": draws.cw_min,
         "cw_max": draws.cw_max,
