@@ -103,7 +103,7 @@ def main():
 def sessions():
     """Both ends of a session."""
     keys, who = (bytes(32), bytes([1]) * 32), Proven(1, bytes(8), 1)
-    return Session(1, 2, keys, who, 0, True), Session(2, 1, keys[::-1], who, 0, False)
+    return Session(1, 2, keys, who, True), Session(2, 1, keys[::-1], who, False)
 
 
 def opened(session, data):

@@ -21,7 +21,7 @@ def pair(native, is_aes=False):
     crypto = in_c.crypto_of(native, in_c.drawn(1), is_aes)
     key = ctypes.c_uint8 * 32
     ours = in_c.Session(ctypes.pointer(crypto), key(*OUT), key(*IN), 77, 0x89ABCDEF)
-    return ours, sessions.Session(0x89ABCDEF, 77, (IN, OUT), None, 0, False)
+    return ours, sessions.Session(0x89ABCDEF, 77, (IN, OUT), None, False)
 
 
 @pytest.fixture

@@ -28,7 +28,8 @@ def member(number=1):
 
 def session(number, age_us=0, life=1):
     keys = (key(number), key(number))
-    one = Session(number, number, keys, who(number, life), clock_us() - age_us, True)
+    one = Session(number, number, keys, who(number, life), True)
+    one.made_at -= age_us
     one.heard_at = 1
     return one
 

@@ -167,7 +167,7 @@ def _sealed() -> Any:
     """A frame as it is sealed in a session, of each kind."""
     made, who = {}, Proven(0x1234, bytes(8), 5)
     for kind in (seal.FRAME, seal.CONTROL):
-        one = Session(1, 0x01020304, (KEY, KEY), who, 0, True)
+        one = Session(1, 0x01020304, (KEY, KEY), who, True)
         for counter in COUNTERS[:-1]:
             one.counter = counter
             made[f"kind {kind:x}, counter {counter}"] = one.close(b"a frame", kind).hex()

@@ -282,9 +282,7 @@ class Contact:
             return why
         if handshake.is_done:
             who = ring.prove(about, key, b"")
-            self._by_index[index] = Session(
-                index, about.handle, handshake.split(), who, clock_us(), False
-            )
+            self._by_index[index] = Session(index, about.handle, handshake.split(), who, False)
         waiting = None if handshake.is_done else handshake
         self._remember(data[1 : 1 + KEY_BYTES], Answer(reply, index, waiting, about, key))
         self.listen()
@@ -326,7 +324,7 @@ class Contact:
             own = self._about(about.number, index, ring.certificate)
             message = bytes((seal.THIRD,)) + about.handle.to_bytes(4, "big")
             proof = ring.close(key, message + handshake.write(own.encode()))
-        session = Session(index, about.handle, handshake.split(), who, clock_us(), True)
+        session = Session(index, about.handle, handshake.split(), who, True)
         session.proof = proof or b"\0"
         self._by_index[index] = session
         self._prove(session)
@@ -360,7 +358,7 @@ class Contact:
             who = ring.prove(about, answer.key, handshake.far_static)
         except ValueError as error:
             return str(error)
-        session = Session(index, about.handle, handshake.split(), who, clock_us(), False)
+        session = Session(index, about.handle, handshake.split(), who, False)
         self._by_index[index] = session
         self.heard(session)
         return ""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 
+from innervate.live.engine import clock_us
 from innervate.live.keyring import About, Proven
 from innervate.live.noise import Handshake, nonce
 from innervate.wire import seal
@@ -21,10 +22,10 @@ class Session:
         far: the one under which it wants ours.
         keys: of what we send, and of what we receive.
         who: who it is.
-        made_at: now, us.
         is_initiator: the handshake began here.
 
     Attributes:
+        made_at: when it was, us.
         heard_at: when something in it came in last, us; 0 = nothing yet.
         proof: the message that ends the handshake; sent again until something is heard.
         counter: of the next frame.
@@ -32,11 +33,10 @@ class Session:
     """
 
     def __init__(
-        self, own: int, far: int, keys: tuple[bytes, bytes], who: Proven, made_at: int,
-        is_initiator: bool,
-    ) -> None:  # fmt: skip
+        self, own: int, far: int, keys: tuple[bytes, bytes], who: Proven, is_initiator: bool
+    ) -> None:
         self.own, self.far, self.who = own, far, who
-        self.made_at, self.is_initiator = made_at, is_initiator
+        self.made_at, self.is_initiator = clock_us(), is_initiator
         self.heard_at = 0
         self.proof = b""
         self.counter = 0
