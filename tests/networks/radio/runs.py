@@ -27,7 +27,7 @@ def radio_plan(
     **more,
 ):
     """A plan; `spread` us between the starts of a disaster, `packets` per station in saturation."""
-    names = ("delay_us", *Rules._fields)
+    names = ("delay_us", "bit_us", *Rules._fields)
     params = parameters(packet_slots, ta, **{k: more.pop(k) for k in names if k in more})
     starts = (START_US + uniform(seed, "spread", n, spread + 1)).tolist()
     plan = RadioPlan(

@@ -6,6 +6,8 @@ import pytest
 
 from innervate.networks.radio.protocol.constants import OPEN
 from innervate.networks.radio.sim.simulate import simulate
+from innervate.scenario.actions.channel import JOIN
+from innervate.scenario.declared.channel import Fault
 from tests.networks.radio.baseline_runs import SLOT_US
 from tests.networks.radio.runs import START_US, radio_plan
 
@@ -66,6 +68,28 @@ def test_who_begins_once_it_can_be_heard_waits():
     result = run(0, DEAF_US + 1)
     check(result, 1)
     assert result.packets["tries"].tolist() == [1, 1]
+
+
+@pytest.mark.parametrize("bit_us, delay_us", [(1, 300), (4, 100), (13, 200), (26, 500), (26, 1000)])
+def test_an_opener_proves_nothing_of_who_began_with_it(bit_us, delay_us):
+    """Of far stations its radio listens again before their openings come, and reads them whole."""
+    away = [[0 if i == j else delay_us for j in range(4)] for i in range(4)]
+    for second, third in product(range(1000, TURN_US + delay_us, 97), repeat=2):
+        at = [[START_US], [START_US + second], [START_US + third], []]
+        plan = radio_plan(4, 3, TURN_US, bit_us=bit_us, delay_us=(delay_us, delay_us),
+                          delays_us=away, arrivals=at, wanted=3)  # fmt: skip
+        counts = simulate(plan).counts
+        assert counts["silent"] == counts["partial"] == 0, at
+        assert counts["completed"] == 3
+
+
+def test_who_switches_on_between_two_that_collide_proves_neither():
+    """It may have missed the first, which the second has missed."""
+    for later, joins in product(range(1100, 2050, 50), range(0, 7000, 100)):
+        on = [Fault(START_US + joins, JOIN, 3)]
+        at = [[START_US], [START_US + later], [], []]
+        plan = radio_plan(4, 5, TURN_US, arrivals=at, wanted=2, absent=[0, 0, 0, 1], faults=on)
+        assert simulate(plan).packets["tries"].tolist() == [2, 2], (later, joins)
 
 
 def test_a_collision_is_forgotten_however_long_nobody_sends():

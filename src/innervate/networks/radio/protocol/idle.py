@@ -215,9 +215,19 @@ def notice_late_answer(station, params, out):
 
 def note_noise(station, params):
     """Noise that could be a collision of openings: what began with it is lost with it."""
-    if is_slow(params) and not station.joint:
+    if is_slow(params):
         lasts = probe_slots(params, station.wide) * params.slot_us
         station.apart = (station.rise + lasts) & MASK30
+        station.joint = 1
+
+
+def await_answers(station, params):
+    """Our opening is out: who is heard before anybody can have switched to answer began with it.
+
+    Where delays are long and packets short our radio listens again before that has come.
+    """
+    if is_slow(params):
+        station.apart = (station.end + max(params.ta_us, params.dmin_us)) & MASK30
         station.joint = 1
 
 

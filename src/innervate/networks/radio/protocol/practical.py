@@ -19,6 +19,7 @@ from innervate.networks.radio.protocol.follow import (
     silent_turn,
 )
 from innervate.networks.radio.protocol.idle import (
+    await_answers,
     began_together,
     heard_noise,
     listen_first,
@@ -47,6 +48,9 @@ def on_start(station, params, now, cause, out):
     """Switch on and listen first: a sequence may be under way."""
     reset(station)
     station.wide = 0
+    station.rise = now
+    station.joint = 0
+    note_noise(station, params)
     listen_first(station, params, now, cause, out)
 
 
@@ -93,7 +97,7 @@ def on_carrier(station, params, now, cd, voc, out):
             station.decoded = 0
             if after(now, station.apart):
                 station.joint = 0
-            carrier_came(station)
+            carrier_came(station, params, now, out)
         elif went:
             if station.joint and mode == modes.WINDOW and outlasts(station, params, now):
                 lose_opening(station)
@@ -108,6 +112,7 @@ def on_carrier(station, params, now, cd, voc, out):
     else:
         station.fall = now
     if mode == modes.SEND_OPEN:
+        await_answers(station, params)
         if cd:
             retry(station, params, now, 1, out)
         else:
@@ -125,7 +130,7 @@ def outlasts(station, params, now):
     return after(now, (station.fall + params.slot_us) & MASK30)
 
 
-def carrier_came(station):
+def carrier_came(station, params, now, out):
     """Somebody sends: what silence would have meant does not hold."""
     mode = station.mode
     if mode == modes.IDLE:
@@ -133,6 +138,8 @@ def carrier_came(station):
         station.tail = 0
     elif mode == modes.WINDOW and station.joint:
         lose_opening(station)
+    elif mode == modes.LEAD and station.joint:
+        retry(station, params, now, 1, out)
     elif mode == modes.WINDOW or mode == modes.LEAD:
         station.heard = max(station.heard, 1)
     else:
