@@ -135,6 +135,54 @@ def test_a_recording_of_its_own_calls_is_no_twin(make, is_group):
     time_by_hand.run(main())
 
 
+@pytest.mark.parametrize("is_group", [False, True])
+def test_two_with_one_number_whose_answers_are_lost_do_not_ask_each_other_for_ever(is_group):
+    async def main():
+        wires = [Wire(name, is_group=is_group) for name in "ab"]
+        join(*wires)
+        for wire in wires:
+            wire.change = lambda data: [] if data[0] == seal.SECOND else [data]
+            begin(network_sealer(1), wire)
+        await settle(10.0)
+        for wire in wires:
+            assert sum(data[0] >= seal.FIRST for data in wire.said) < 40
+            assert wire.sealer.twins == {}
+
+    time_by_hand.run(main())
+
+
+@pytest.mark.parametrize("is_group", [False, True])
+def test_its_own_calls_played_back_do_not_put_out_a_question_under_way(is_group):
+    async def main():
+        before, now = Wire(is_group=is_group), Wire(is_group=is_group)
+        begin(network_sealer(1), before)
+        await settle(5.0)
+        before.sealer.stop()
+        calls = [data for data in before.said if data[0] >= seal.FIRST]
+        begin(network_sealer(1), now)
+        await settle(0.01)
+        contact_of(now).stop()
+        asked = list(contact_of(now)._asked)
+        for data in (2 * calls)[: contact.ASKED + 1]:
+            now.hear(data)
+        assert set(asked) <= set(contact_of(now)._asked)
+        assert len(contact_of(now)._asked) == len(asked) + 1
+
+    time_by_hand.run(main())
+
+
+@timed
+async def test_a_twin_that_goes_on_calling_is_told_of_as_long_as_it_does():
+    a, twin = Wire("a"), Wire("twin")
+    join(a, twin)
+    begin(network_sealer(1), a)
+    begin(network_sealer(1), twin)
+    await settle(1.0)
+    contact_of(a).stop()  # it has another neighbour on this path, and asks nobody
+    await settle(keys.TWINS_US / 1e6 + 10)
+    assert a.sealer.status()["twins"] == {"1": "it is on a"}
+
+
 @pytest.mark.parametrize(("number", "why"), [
     (3, ""), (4, "from no node of ours"), (1, "another with our number"),
 ])  # fmt: skip

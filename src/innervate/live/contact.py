@@ -277,7 +277,7 @@ class Contact:
         reply = ring.close(key, message + handshake.write(own.encode()))
         if why:  # or a recording of a call of ours: only who can answer is another
             self.send(reply)
-            if self.sealer.sender not in self.sealer.twins:
+            if self.knocks.may_ask():
                 self.ask(self.sealer.sender)
             return why
         if handshake.is_done:

@@ -146,7 +146,8 @@ class GroupContact(Contact):
         """A call to all is answered with a question of ours, if it is of somebody new."""
         if about.to == ANYBODY:
             known = self.sessions.get(about.number)
-            if not known or known[0].who.life != about.life:
+            is_new = not known or known[0].who.life != about.life
+            if is_new and (about.number != self.sealer.sender or self.knocks.may_ask()):
                 self.ask(about.number)
         return about.to == self.sealer.sender
 

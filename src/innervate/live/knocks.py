@@ -6,6 +6,7 @@ from collections.abc import Callable
 from innervate.live.engine import clock_us
 
 SHUT_S = 0.05
+ASK_US = 1_000_000
 ANSWERED = 8  # a message with proof of the key costs as much as so many without, or more
 
 
@@ -28,6 +29,7 @@ class Knocks:
         self._left = float(most)
         self._at = 0
         self._timer: asyncio.TimerHandle | None = None
+        self._asked_at = -ASK_US
 
     def note(self, weight: int = 1) -> None:
         """Somebody knocked: shut the door if that was too much."""
@@ -39,6 +41,17 @@ class Knocks:
             self.is_open = False
             self._timer = asyncio.get_running_loop().call_later(SHUT_S, self._open)
             self._turned()
+
+    def may_ask(self) -> bool:
+        """True once a second: a question of ours for each of theirs would put out those under way.
+
+        Two who never take an answer of each other would ask for ever, besides.
+        """
+        now = clock_us()
+        if now - self._asked_at < ASK_US:
+            return False
+        self._asked_at = now
+        return True
 
     def _open(self) -> None:
         self.is_open, self._left, self._timer = True, float(self._most), None

@@ -70,7 +70,10 @@ def test_who_begins_once_it_can_be_heard_waits():
     assert result.packets["tries"].tolist() == [1, 1]
 
 
-@pytest.mark.parametrize("bit_us, delay_us", [(1, 300), (4, 100), (13, 200), (26, 500), (26, 1000)])
+FAR = [(1, 300), (4, 100), (13, 200), (26, 500), (26, 1000)]
+
+
+@pytest.mark.parametrize(("bit_us", "delay_us"), FAR)
 def test_an_opener_proves_nothing_of_who_began_with_it(bit_us, delay_us):
     """Of far stations its radio listens again before their openings come, and reads them whole."""
     away = [[0 if i == j else delay_us for j in range(4)] for i in range(4)]

@@ -87,7 +87,8 @@ nobody left, by `finish` to `IDLE`.
 | `IDLE`        | a burst ends: a frame         | `schedule`                        |              |
 | `SEND_OPEN`   | radio listens: carrier        | `retry`: others collided with us; | IDLE         |
 |               |                               | quick radios: probes from now on  |              |
-| `SEND_OPEN`   | radio listens: silence        | `opened`                          | LEAD         |
+| `SEND_OPEN`   | radio listens: silence        | `await_answers`, `opened`         | LEAD         |
+| `LEAD`        | a carrier before `apart`      | `retry`: others collided with us  | IDLE         |
 | `LEAD`        | `CRR`                         | `hear_slot`: proof; a good        |              |
 |               |                               | minislot, if bounds hold          |              |
 | `LEAD`        | a burst ends: noise           | `end_burst`: a bad minislot; too  | LEAD or TURN |
