@@ -239,6 +239,7 @@ def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
     shown = nodes.look(1.0)
     assert shown["link_up"].tolist() == [1, 0, 0]
     assert shown["recovery"]["cause"] == "c put out: revoked"
+    assert shown["headline"]["text"] == "1 of 3 nodes was put out: its identity is revoked."
     texts = nodes.texts()
     assert texts == [
         "c put out: revoked", "every node but 1 that is cut off kept its way, as they say",
@@ -246,6 +247,22 @@ def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
     assert nodes.marks() == ["loss"]
     nodes.look(1.0)
     assert nodes.texts() == texts
+
+
+def test_who_was_cut_off_before_is_not_counted_with_the_next_loss(nodes):
+    lone = {"n2": {"up": (False, False), "onward": ()}}
+    nodes.told = all_of_them(**lone)
+    assert nodes.look(1.0)["recovery"]["apart"] == 1
+    for _ in range(live.SLOW + 1):
+        nodes.told = {i: one for i, one in all_of_them(**lone).items() if i != 1}
+        shown = nodes.look(1.0)
+    assert shown["recovery"]["cause"] == "b does not answer any more"
+    assert shown["recovery"]["apart"] == 0
+    for change in ({}, lone):
+        nodes.told = {i: one for i, one in all_of_them(**change).items() if i != 1}
+        shown = nodes.look(1.0)
+    assert shown["recovery"]["cause"] == "link a - c cut"
+    assert shown["recovery"]["apart"] == 1, "it had been joined again"
 
 
 def test_several_that_go_are_one_cause(nodes):

@@ -206,7 +206,8 @@ class Live(Source):
         if went:
             silent = len(self._last) - len(told)
             alone = f"{self._names[went[0]]} does not answer any more"
-            self._lose(alone if silent == 1 else f"{silent} nodes do not answer any more")
+            cause = alone if silent == 1 else f"{silent} nodes do not answer any more"
+            self._lose(self._state, cause)
 
     def _compare(self, before: State) -> None:
         """What was cut or put back since `before`, and not from here, is said."""
@@ -224,11 +225,11 @@ class Live(Source):
         for what in back:
             self._log.often("back", self._now_us(), self._words(what, True), mark=RETURN)
         if cut:
-            self._lose(self._words(cut[0], False), len(cut) - 1)
+            self._lose(before, self._words(cut[0], False), len(cut) - 1)
         if out := sorted(self._state.put_out - before.put_out):
             words = f"{some([self._names[i] for i in out])} put out: revoked"
             self._log.say(self._now_us(), words, mark=LOSS)
-            self._lose(words)
+            self._lose(before, words)
 
     def _words(self, what: Link | Place, up: bool) -> str:
         """What became of a link, or of a station on its channel."""
@@ -262,8 +263,7 @@ class Live(Source):
         if recovery is None or not self._view.has_ways or not self._told:
             return
         at_us = self._now_us()
-        others = state.unconnected - sum(state.cut_off)  # who was cut off whole is the cause
-        recovery.cut_off(max(0, others - state.lacking))
+        recovery.cut_off(state.apart)
         were_none, recovery.nobody = recovery.nobody, not state.left
         after_ms = round((at_us - recovery.at_us) / 1e3, 1)
         if recovery.detected_ms is None and state.lacking:
@@ -278,9 +278,9 @@ class Live(Source):
             who = every if not apart else f"{every} but {apart} that {are} cut off"
             self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
 
-    def _lose(self, cause: str, more: int = 0) -> None:
+    def _lose(self, before: State, cause: str, more: int = 0) -> None:
         """Something was taken away, and so many others with it: a recovery begins."""
-        self._recovery = Recovery(cause, self._now_us(), more=more)
+        self._recovery = Recovery(cause, self._now_us(), more=more, before=before.apart)
 
     def _frames(self) -> Counter[str]:
         """Frames received and dropped, by everybody so far."""
@@ -363,7 +363,7 @@ class Live(Source):
 
     def _note(self, cause: str, heals: bool) -> None:
         if not heals:
-            self._lose(cause)
+            self._lose(self._state, cause)
         self._log.say(self._now_us(), cause, mark=RETURN if heals else LOSS)
 
     def _cable(self, command: Cut | Heal) -> None:

@@ -98,6 +98,11 @@ class State:
         """Nodes that answer and have an identity that is revoked."""
         return {i for i, one in self.told.items() if is_put_out(one)}
 
+    @property
+    def apart(self) -> int:
+        """How many no links join with the others, without those who were cut off whole."""
+        return max(0, self.unconnected - sum(self.cut_off) - self.lacking)
+
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
         """Links that were cut or put back since, while their ends went on answering.
 

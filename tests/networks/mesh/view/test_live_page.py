@@ -81,7 +81,7 @@ def test_who_was_put_out_has_no_way_though_nobody_has_noticed_yet():
     keys["identity"]["revoked"] = [2]
     found = MeshState(MeshMap(told), told).headline()
     assert (found.level, found.nodes) == ("down", (1,))
-    assert found.text.startswith("1 of 2 nodes is cut off from the gateway")
+    assert found.text == "1 of 2 nodes was put out: its identity is revoked."
 
 
 def test_every_alarm_is_told_once_and_old_ones_with_their_age():

@@ -18,7 +18,7 @@ from innervate.analysis.headline import (
 from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
-from innervate.networks.mesh.analysis.reach import Ways
+from innervate.networks.mesh.analysis.reach import Flags, Ways
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 
@@ -61,10 +61,12 @@ def headline(
     traffic: Traffic = NOTHING_KNOWN,
     absent: str = "off",
     elsewhere: Elsewhere = ALL_HERE,
+    revoked: Flags | None = None,
 ) -> Headline:
     """The state of a mesh; of nodes that are missing it says `absent`: "off", "silent".
 
-    `elsewhere` are nodes of which only others' words are known, which are believed.
+    `elsewhere` are nodes of which only others' words are known, which are believed. Of those whose
+    identity is `revoked` nobody takes anything, whatever links there are.
 
     degraded: a message or an alarm was lost or came twice, an alarm was false, a broadcast missed
     somebody, a packet met a node twice, a node is off, cut off or without a way, the network is in
@@ -76,8 +78,8 @@ def headline(
         return Headline(NO_DATA, "No node leads as gateway yet.")
     if len(ways.on) == 1 and ways.leads.all() and not elsewhere.heard:
         return Headline(DOWN, "The only node leads, and hears nobody.", (0,))
-    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere), *_twice(traffic),
-            *_false(traffic)]  # fmt: skip
+    said = [*_undelivered(traffic), *_apart(ways, absent, elsewhere, revoked),
+            *_twice(traffic), *_false(traffic)]  # fmt: skip
     came, afar = _came(traffic, len(ways.on)), _afar(elsewhere)
     if not said:
         return Headline(OK, sentence([*came, _reached(ways, elsewhere.leads), *afar]))
@@ -121,9 +123,12 @@ def _undelivered(traffic: Traffic) -> list[str]:
     return found
 
 
-def _apart(ways: Ways, absent: str, elsewhere: Elsewhere) -> list[str]:
-    """Who has no way, is cut off, or off."""
+def _apart(
+    ways: Ways, absent: str, elsewhere: Elsewhere, revoked: Flags | None = None
+) -> list[str]:
+    """Who has no way, is cut off, put out, or off."""
     count, found = len(ways.on), []
+    out = np.zeros(count, np.bool_) if revoked is None else revoked & ways.on
     leading = int(ways.leads.sum()) + elsewhere.leads
     if not leading:
         none = "nothing comes from" if elsewhere.silent else "no node leads as"
@@ -134,7 +139,7 @@ def _apart(ways: Ways, absent: str, elsewhere: Elsewhere) -> list[str]:
             found.append(
                 f"{leading} nodes lead as gateways, each followed by a part of the network"
             )
-        cut, astray = int(ways.cut_off.sum()), int(ways.astray.sum())
+        cut, astray = int((ways.cut_off & ~out).sum()), int((ways.astray & ~out).sum())
         if cut:
             who = f"{part_of(cut, count, 'node')} {verb(cut, 'is')}"
             found.append(f"{who} cut off from the gateway: "
@@ -143,6 +148,9 @@ def _apart(ways: Ways, absent: str, elsewhere: Elsewhere) -> list[str]:
             found.append(
                 f"{part_of(astray, count, 'node')} {verb(astray, 'has')} no way to the gateway"
             )
+    if gone := int(out.sum()):
+        whose = "its identity is" if gone == 1 else "their identities are"
+        found.append(f"{part_of(gone, count, 'node')} {verb(gone, 'was')} put out: {whose} revoked")
     off = int(ways.off.sum())
     if off:
         found.append(f"{part_of(off, count, 'node')} {verb(off, 'is')} {absent}")

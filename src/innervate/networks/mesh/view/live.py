@@ -57,7 +57,8 @@ class MeshState(State):
 
     def judge(self) -> Headline:
         """The headline by the ways that `look` found; who is off is called silent."""
-        return headline(self.ways, absent="silent", elsewhere=self.elsewhere)
+        out = np.array([place.node in self.put_out for place in self.map.places], np.bool_)
+        return headline(self.ways, absent="silent", elsewhere=self.elsewhere, revoked=out)
 
     def _find_ways(self) -> Ways:
         """Who reaches its gateway, by what the nodes say of each other."""
