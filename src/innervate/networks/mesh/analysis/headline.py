@@ -15,10 +15,11 @@ from innervate.analysis.headline import (
     sentence,
     verb,
 )
+from innervate.analysis.ways import Flags
 from innervate.kernel.words import number_of
 from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm
 from innervate.networks.mesh.analysis.messages import DELIVERED, NEVER, UNASKED, Messages, counted
-from innervate.networks.mesh.analysis.reach import Flags, Ways
+from innervate.networks.mesh.analysis.reach import Ways
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.scenario.actions.field import CUT, JAM, KILL, RESTART
 
