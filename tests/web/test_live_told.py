@@ -249,6 +249,17 @@ def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
     assert nodes.texts() == texts
 
 
+def test_a_cut_beside_somebody_who_is_put_out_is_told_with_it(nodes):
+    nodes.told[2]["keys"] = {"identity": {"serial": 2, "list": 1, "revoked": []}}
+    nodes.look(1.0)
+    nodes.told = all_of_them(n1={"up": (False, True)})
+    nodes.told[2]["keys"] = {"identity": {"serial": 2, "list": 1, "revoked": [2]}}
+    assert nodes.look(1.0)["recovery"]["cause"] == "link a - b cut, and 1 more"
+    assert [text for text in nodes.texts() if "every" not in text] == [
+        "link a - b cut", "c put out: revoked",
+    ]  # fmt: skip
+
+
 def test_who_was_cut_off_before_is_not_counted_with_the_next_loss(nodes):
     lone = {"n2": {"up": (False, False), "onward": ()}}
     nodes.told = all_of_them(**lone)

@@ -224,12 +224,12 @@ class Live(Source):
             self._log.often("cut", self._now_us(), self._words(what, False), mark=LOSS)
         for what in back:
             self._log.often("back", self._now_us(), self._words(what, True), mark=RETURN)
-        if cut:
-            self._lose(before, self._words(cut[0], False), len(cut) - 1)
+        causes = [self._words(what, False) for what in cut]
         if out := sorted(self._state.put_out - before.put_out):
-            words = f"{some([self._names[i] for i in out])} put out: revoked"
-            self._log.say(self._now_us(), words, mark=LOSS)
-            self._lose(before, words)
+            causes.append(f"{some([self._names[i] for i in out])} put out: revoked")
+            self._log.say(self._now_us(), causes[-1], mark=LOSS)
+        if causes:
+            self._lose(before, causes[0], len(causes) - 1)
 
     def _words(self, what: Link | Place, up: bool) -> str:
         """What became of a link, or of a station on its channel."""
