@@ -128,7 +128,7 @@ def _reliable(ax: Axes, got: Measured) -> None:
                edgecolor="white", lw=0, label=which)  # fmt: skip
         for at, share in zip(x, shares, strict=True):
             ax.text(at, share + 0.6, f"{share:.1f}", ha="center", size=5.5)
-    ax.set_xticks(range(len(rules)), [rule.name for rule in rules], rotation=25)
+    ax.set_xticks(range(len(rules)), [rule.name for rule in rules], rotation=90)
     ax.set_title(f"c  end-to-end acks, {WORST} dead")
     ax.set_xlabel("left: first packet, hatched: later ones")
 
@@ -213,14 +213,14 @@ def _random(got: Measured) -> Claims:
     )
     yield ours(
         "2.2",
-        "... by both more first packets come than by RSSI alone",
+        "by both words more first packets come than by RSSI alone",
         f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (HEARD, RSSI))}",
         verdict(heard < loud),
         f"by RSSI alone {_how(got, RSSI, 'first')}",
     )
     yield ours(
         "2.2",
-        "... by RSSI alone more first packets come than by chance",
+        "by RSSI alone more first packets come than by chance",
         f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (RSSI, RANDOM))}",
         verdict(loud < random),
         f"A6: by RSSI {_how(got, RSSI, 'first')}; by chance {_how(got, RANDOM, 'first')}",
