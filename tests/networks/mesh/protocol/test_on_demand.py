@@ -9,6 +9,7 @@ from innervate.networks.mesh.protocol.constants import (
     E2E_ACK,
     END_TO_END,
     FLOOD,
+    LOUDEST,
     ORDERED,
     PARITY,
     RANDOM,
@@ -166,6 +167,40 @@ def test_a_way_that_fails_is_forgotten(on_demand, left):
     bench.send(0, 3)
     bench.run(2 * SPAN_US)
     assert planned(bench.nodes[0], bench.params, 3) == left
+
+
+@pytest.mark.parametrize("failover", [RANDOM, LOUDEST])
+@pytest.mark.parametrize("retry", [0, 1])
+def test_nobody_else_takes_the_place_of_a_way_that_was_found(failover, retry):
+    """The document's rules rewrite tables: who is taken at random knows no way either."""
+    bench = silent(ring(8), failover=failover, retry=retry)
+    bench.send(0, 3)
+    bench.run(SPAN_US)
+    bench.kill(1)
+    bench.send(0, 3)
+    bench.run(1_000_000)
+    assert [i for _, i, _ in bench.delivered] == [3, 3]
+    assert planned(bench.nodes[0], bench.params, 3) == 7
+
+
+@pytest.mark.parametrize("failover", [RANDOM, LOUDEST])
+def test_by_the_documents_rules_a_neighbour_is_looked_for_too(failover):
+    """They ask tables alone, and there is none that says that it is near."""
+    bench = Net(9, COMB, on_demand=1, failover=failover)
+    bench.lost = lambda frame, to: frame.kind == TABLE
+    bench.run(3_000_000)
+    assert planned(bench.nodes[3], bench.params, 2) == NONE
+    bench.send(3, 2)
+    bench.run(bench.now + SPAN_US)
+    assert [i for _, i, _ in bench.delivered] == [2]
+
+
+def test_nobody_looks_for_a_gateway_that_is_gone():
+    bench = silent(ring(8))
+    bench.nodes[0].gone = 4
+    bench.send(0, 4)
+    bench.run(10_000_000)
+    assert sent(bench, DATA) == []
 
 
 def test_who_has_a_table_that_leaves_the_recipient_out_does_not_flood():
