@@ -111,7 +111,8 @@ CASES = [
             (101, ("", ""), "[protocol]\ntables = false"),
             (101, ("", ""), "[protocol]\nreliable = false"),
             (101, ("'all'", "'n3'"), ""), (101, ("start", "reliable = false\nstart"), ""),
-            (101, ("", ""), "[radio]\nprofile = '38k4'"), (101, ("", ""), "[radio]\nprofile = 'ip'"),
+            (101, ("", ""), "[radio]\nprofile = '38k4'"),
+            (101, ("", ""), "[radio]\nprofile = 'ip'"),
         )
     ),
     ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),

@@ -24,8 +24,10 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.jobs import pump
+from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.node import FOR_WHAT_COMES_DOWN
 from innervate.networks.mesh.protocol.queue import enqueue
+from innervate.networks.mesh.protocol.round import on_request, queued_request
 from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
 from innervate.networks.mesh.protocol.timeout import timeout
 from tests.networks.mesh.bench import Bench, Frame
@@ -140,6 +142,21 @@ def test_without_tables_a_shorter_way_counts_that_comes_later(mode, depths):
     bench.lost = lost
     bench.run(SETTLED)
     assert [bench.nodes[i].depth for i in (5, 6)] == depths
+
+
+@pytest.mark.parametrize(("rssi", "hops", "depth"), [(-92, 1, 2), (-93, 1, 5), (-60, 4, 5)])
+def test_a_way_as_long_or_too_faint_is_no_shorter_one(rssi, hops, depth):
+    bench = Bench(3, [(0, 1), (1, 2)], mode=TABLE_FREE)
+    bench.run(SETTLED)
+    node = bench.nodes[2]
+    (request,) = [f for _, i, f in bench.sent if f.kind == REQUEST and i == 1][:1]
+    node.depth, node.due = 5, 0
+    request.rssi, request.path_len = rssi, hops
+    bench.sent.clear()
+    on_request(node, bench.params, bench.now, request, place_of(node, bench.params, 1), bench.out)
+    assert node.depth == depth
+    assert (queued_request(node) >= 0) == (depth < 5)
+    assert node.due == 0, "who has responded in this round does not again"
 
 
 @pytest.mark.parametrize(("mode", "kind", "flags", "taken"), [
