@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import (
     MESSAGES,
     RANDOM,
     REQUEST,
+    RESPONSE,
     SEARCH,
     SOURCE_ROUTE,
     TABLE,
@@ -162,13 +163,15 @@ def test_a_way_as_long_or_too_faint_is_no_shorter_one(rssi, hops, depth):
 @pytest.mark.parametrize(("mode", "kind", "flags", "taken"), [
     (TABLE_FREE, DATA, END_TO_END, False), (TABLE_FREE, DATA, END_TO_END | SOURCE_ROUTE, True),
     (TABLE_FREE, ALARM, END_TO_END, True), (TABLES, DATA, END_TO_END, True),
+    (TABLE_FREE, RESPONSE, 0, True),
 ])  # fmt: skip
 def test_what_climbs_leaves_room_for_what_comes_down(mode, kind, flags, taken):
     """Two whose queues are full of what is for the other one would never move on (0073)."""
     bench = Bench(3, [(0, 1), (1, 2)], mode=mode)
     bench.run(SETTLED)
     node = bench.nodes[1]
-    for _ in range(node.places - 1 - FOR_WHAT_COMES_DOWN - MESSAGES):
+    free = 2 + MESSAGES if taken else 1 + FOR_WHAT_COMES_DOWN + MESSAGES
+    for _ in range(node.places - free):
         i = enqueue(node, bench.now, MESSAGES, 2, bench.out)
         node.q_due[i] = bench.now + 60_000_000
     for seq in (7, 8):  # there is room for one more, and some for better ones
