@@ -188,8 +188,8 @@ EDGES = [
        [[came(rule, "first", 900) for rule in (better, worse)]])
       for words, better, worse in (
           ("last heard time and RSSI", failures.HEARD, failures.RANDOM),
-          ("^... by both", failures.HEARD, failures.RSSI),
-          ("^... by RSSI alone", failures.RSSI, failures.RANDOM))],
+          ("^by both words", failures.HEARD, failures.RSSI),
+          ("^by RSSI alone", failures.RSSI, failures.RANDOM))],
     *[("failures", words, [came(rule, "later", 996, 4)],
        [[came(rule, which, 995, dead)] for which in ("first", "later") for dead in (0, 4, 8)])
       for rule, words in ((failures.SEARCH, "^alternates, then"),

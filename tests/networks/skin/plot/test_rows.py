@@ -9,7 +9,8 @@ from innervate.networks.skin.plot import report
 from innervate.networks.skin.plot import words as skin_words
 
 TIMES = {"p50": 1.0, "p95": 2.0, "p99": 3.0, "max": 4.5}
-SAID = ["1 ms", "2 ms", "3 ms", "4.5 ms"]
+GAP = "\N{NO-BREAK SPACE}"  # a number and its unit stay on one line
+SAID = [f"{took}{GAP}ms" for took in ("1", "2", "3", "4.5")]
 
 
 def cells(html):
@@ -42,7 +43,7 @@ def test_samples_took_so_long_to_each_port_that_had_some():
     data = {"latency_by_port": ports, "delivered": 2_001, "latency_ms": TIMES}
     assert cells(report._latencies(data)) == [
         ["all ports", "2,001", *SAID],
-        ["port 1", "2,000", "1 s", "2 s", "3 s", "4.5 s"],
+        ["port 1", "2,000", *[f"{took}{GAP}s" for took in ("1", "2", "3", "4.5")]],
     ]
     assert report._latencies(data | {"latency_by_port": ports[:1]}) == ""
 
@@ -54,8 +55,16 @@ def test_an_event_is_a_row(monkeypatch):
     second = first | {"others_ms": 20.0, "converged_ms": 2_000.0, "detected_ms": None}
     incidents = [Of(recovery=first, fault="cut <a>"), Of(recovery=second, fault="b")]
     assert cells(report._events(Of(graph=None, incidents=incidents))) == [
-        ["1.000 s", "cut &lt;a&gt;", "1,000", "3", "12.5 ms", "had one all the time", "-"],
-        ["1.000 s", "b", "1,000", "3", "-", "20.0 ms", "2 s"],
+        [
+            f"1.000{GAP}s",
+            "cut &lt;a&gt;",
+            "1,000",
+            "3",
+            f"12.5{GAP}ms",
+            "had one all the time",
+            "-",
+        ],
+        [f"1.000{GAP}s", "b", "1,000", "3", "-", f"20.0{GAP}ms", f"2{GAP}s"],
     ]
     assert report._events(Of(incidents=[])) == ""
 

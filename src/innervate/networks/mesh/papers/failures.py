@@ -105,7 +105,7 @@ def lost(got: Measured, rule: Rule, which: str, dead: int = WORST, end: bool = F
 
 def draw(got: Measured) -> Figure:
     """First packets, later ones, and both with end-to-end acks."""
-    figure, axes = style.panels(style.WIDE_IN, 2.9, 1, 3, width_ratios=(1, 1, 0.9), sharey=True)
+    figure, axes = style.panels(style.WIDE_IN, 2.9, 1, 3, width_ratios=(1, 1, 1.05), sharey=True)
     dead = dead_of(got.quick)
     titles = ("a  first packet", "b  three later ones")
     for which, ax, title in zip(("first", "later"), axes[:2], titles, strict=True):
@@ -127,8 +127,8 @@ def _reliable(ax: Axes, got: Measured) -> None:
         ax.bar(x, shares, 0.36, color=style.SERIES[1 : len(rules) + 1], hatch=hatch,
                edgecolor="white", lw=0, label=which)  # fmt: skip
         for at, share in zip(x, shares, strict=True):
-            ax.text(at, share + 0.6, f"{share:.1f}", ha="center", size=5.5)
-    ax.set_xticks(range(len(rules)), [rule.name for rule in rules], rotation=25)
+            ax.text(at, share + 0.6, f"{share:.1f}".removesuffix(".0"), ha="center", size=5)
+    ax.set_xticks(range(len(rules)), [rule.name for rule in rules], rotation=90)
     ax.set_title(f"c  end-to-end acks, {WORST} dead")
     ax.set_xlabel("left: first packet, hatched: later ones")
 
@@ -213,14 +213,14 @@ def _random(got: Measured) -> Claims:
     )
     yield ours(
         "2.2",
-        "... by both more first packets come than by RSSI alone",
+        "by both words more first packets come than by RSSI alone",
         f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (HEARD, RSSI))}",
         verdict(heard < loud),
         f"by RSSI alone {_how(got, RSSI, 'first')}",
     )
     yield ours(
         "2.2",
-        "... by RSSI alone more first packets come than by chance",
+        "by RSSI alone more first packets come than by chance",
         f"{WORST} dead: {joined(f'{rule.name}: {_both(got, rule)}' for rule in (RSSI, RANDOM))}",
         verdict(loud < random),
         f"A6: by RSSI {_how(got, RSSI, 'first')}; by chance {_how(got, RANDOM, 'first')}",

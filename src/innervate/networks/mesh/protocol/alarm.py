@@ -21,7 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
 from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
-from innervate.networks.mesh.protocol.messages import first_flag, resolve, take
+from innervate.networks.mesh.protocol.messages import first_flag, head_own, resolve, take
 from innervate.networks.mesh.protocol.queue import FREE, WAITS, compose, kick, take_over
 from innervate.networks.mesh.protocol.retransmission import arm_retry, buffer_sent, free_buffer
 from innervate.networks.mesh.protocol.send import send_on
@@ -230,18 +230,7 @@ def tell_monitor(node, params, now, kind, robot, x, y, vx, vy, gap, out):
     if robot == node.number and kind == CROSS:
         node.heard_out = 1
     frame = out.frame[deliver(out, ALARM)]
-    frame.kind = ALARM
-    frame.flags = 0
-    frame.link_src = node.number
-    frame.link_dst = node.number
-    frame.origin = node.number
-    frame.dest = node.number
-    frame.seq = node.alarm
-    frame.table_ver = 0
-    frame.ttl = 0
-    frame.path_len = 0
-    frame.rssi = 0
-    frame.length = ALARM_BYTES
+    head_own(node, frame, ALARM, node.alarm, ALARM_BYTES)
     write_alarm(frame.body, 0, node, params, now, kind, robot, x, y, vx, vy, gap)
 
 

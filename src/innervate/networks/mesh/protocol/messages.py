@@ -117,20 +117,25 @@ def on_message(node, params, now, item, out):
 def hand_up_own(node, item, out):
     """Deliver a message to ourselves at once; its number is its handle."""
     frame = out.frame[deliver(out, DATA)]
-    frame.kind = DATA
+    head_own(node, frame, DATA, item.handle, item.length)
+    for k in range(item.length):
+        frame.body[k] = item.body[k]
+
+
+def head_own(node, frame, kind, seq, length):
+    """The header of a packet of ours for ourselves, which has no way to go."""
+    frame.kind = kind
     frame.flags = 0
     frame.link_src = node.number
     frame.link_dst = node.number
     frame.origin = node.number
     frame.dest = node.number
-    frame.seq = item.handle
+    frame.seq = seq
     frame.table_ver = 0
     frame.ttl = 0
     frame.path_len = 0
-    frame.length = item.length
+    frame.length = length
     frame.rssi = 0
-    for k in range(item.length):
-        frame.body[k] = item.body[k]
 
 
 def flood_own(node, params, now, i, out):
