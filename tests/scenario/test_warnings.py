@@ -47,6 +47,7 @@ TIGHT = "".join(f"[[link]]\na = '{a}'\nb = '{b}'\n" for a, b in (
 FENCE = "nodes = 10\n[radio]\nmean_degree = 8\n[fence]\npolygon = [[0, 0], [9, 0], [9, 9]]\n"
 ROBOT = "[[robot]]\nnode = 9\nrandom = true\nspeed_mps = 1\n"
 FLOW = "nodes = 10\n[radio]\nmean_degree = 8\n[[flow]]\nfrom = 1\nto = 2\n"
+EARLY = "[[flow]]\nfrom = 'all'\nto = 'random'\nstart_s = 7.9\n"
 ACKS = "nodes = 10\n[radio]\nmean_degree = 8\nturnaround_us = 192\n[protocol]\n"
 
 # Kind, words, a scenario of which they are said, one of which they are not.
@@ -100,6 +101,20 @@ CASES = [
         for what, rule in (("tables", "search"), ("graph", "graph"))
         for rounds in (f"{grid(20)}[protocol]\nfailover = '{rule}'\ncollect_s = 2.0\n",)
     ),
+    *(
+        ("mesh", "nodes send to others in the first 8 s, when there are no tables yet",
+         grid(101) + EARLY, grid(nodes) + EARLY.replace(*other) + rest)
+        for nodes, other, rest in (
+            (100, ("", ""), ""), (101, ("7.9", "8.0"), ""), (101, ("random", "gateway"), ""),
+            (101, ("random", "monitor"), ""), (101, ("random", "all"), ""),
+            (101, ("", ""), "[protocol]\non_demand = true"),
+            (101, ("", ""), "[protocol]\ntables = false"),
+            (101, ("", ""), "[protocol]\nreliable = false"),
+            (101, ("'all'", "'n3'"), ""), (101, ("start", "reliable = false\nstart"), ""),
+            (101, ("", ""), "[radio]\nprofile = '38k4'"),
+            (101, ("", ""), "[radio]\nprofile = 'ip'"),
+        )
+    ),
     ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),
     ("mesh", "outside the fence from the beginning: n1",
      *(f"{FENCE}[[robot]]\nnode = 1\nwaypoints = [[{at}]]" for at in ("1, 8", "4, 4"))),
@@ -135,7 +150,7 @@ def texts_of(*functions):
 def test_every_warning_has_a_case():
     left = texts_of(
         skin._touch, skin._start_up, skin._load, radio.warnings, mesh.warnings, mesh._thin,
-        mesh._distribution, mesh._outside,
+        mesh._distribution, mesh._early, mesh._outside,
     )  # fmt: skip
     for kind, words, weak, _ in CASES:
         (found,) = (text for text in said(kind, weak) if words in text)

@@ -32,9 +32,9 @@ AT, BY = "15.000\N{NO-BREAK SPACE}s", "0.13\N{NO-BREAK SPACE}m"  # each on one l
 
 
 @pytest.mark.parametrize(("changes", "row"), [
-    ({}, [AT, "c&amp;d", "b", "12.5 ms", "3, routed", BY, "no"]),
+    ({}, [AT, "c&amp;d", "b", "12.5\N{NO-BREAK SPACE}ms", "3, routed", BY, "no"]),
     ({"flooded": True, "warned_us": 13_000_000},
-     [AT, "c&amp;d", "b", "12.5 ms", "3, flooded", BY, "2 s before"]),
+     [AT, "c&amp;d", "b", "12.5\N{NO-BREAK SPACE}ms", "3, flooded", BY, "2 s before"]),
     ({"accepted_us": NEVER}, [AT, "c&amp;d", "b", "never", "", BY, "no"]),
     ({"accepted_us": NEVER, "open": True, "raised_by": NEVER, "robot": 0},
      [AT, "a", "nobody noticed", "still open at the end", "", BY, "no"]),
@@ -53,7 +53,13 @@ def test_a_flow_is_a_row_where_there_are_several():
     asked = [Of(from_="a", to="gateway"), Of(from_="each", to="b")]
     result = Of(plan=Of(scenario=Of(model=Of(flow=asked))))
     assert cells(report._flows(result, {"flows": flows})) == [
-        ["each to b", "1,200", report.words.share_words(0.5), "5 ms", "17.0 ms"],
+        [
+            "each to b",
+            "1,200",
+            "50\N{NO-BREAK SPACE}%",
+            "5\N{NO-BREAK SPACE}ms",
+            "17.0\N{NO-BREAK SPACE}ms",
+        ],
         ["a to gateway", "3", "", "", ""],
     ]
     assert report._flows(result, {"flows": flows[:1]}) == ""
@@ -64,7 +70,7 @@ def test_events_and_reports_are_rows():
         return page.events(result, lambda fault: fault.words)
 
     plan = Of(faults=[Of(at_us=1_234_567, words="kill <a>"), Of(at_us=2_000_000, words="b")])
-    both = [["1.235 s", "kill &lt;a&gt;"], ["2.000 s", "b"]]
+    both = [["1.235\N{NO-BREAK SPACE}s", "kill &lt;a&gt;"], ["2.000\N{NO-BREAK SPACE}s", "b"]]
     assert cells(events(Of(plan=plan, ended_us=2_000_000))) == both
     assert cells(events(Of(plan=plan, ended_us=1_999_999))) == both[:1]  # interrupted
     assert events(Of(plan=Of(faults=[]), ended_us=9)) == ""

@@ -9,9 +9,11 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_TABLE,
     REPORT_TABLES,
     TABLE_ACK,
+    TO_SEND,
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.fields import QUEUE
+from innervate.networks.mesh.protocol.graph_jobs import pump_graph
 from innervate.networks.mesh.protocol.table import PART_HEAD, graph_bytes, part_bytes
 from tests.networks.mesh.bench import Bench
 
@@ -66,3 +68,17 @@ def test_the_gateway_sends_each_part_as_often_as_all_others_do():
     sent = [f.seq for _, i, f in bench.sent if i == 0 and f.kind == GRAPH]
     assert sent
     assert {sent.count(seq) for seq in sent} == {bench.params.copies}
+
+
+def test_what_is_new_begins_with_its_first_part():
+    """While parts of the graph before wait for places in the queue."""
+    bench = bench_of(8, period=60)
+    bench.run(SETTLED)
+    bench.sent.clear()
+    gate = bench.gates[0]
+    gate.part = 5
+    gate.job[1], gate.job_parts[1] = TO_SEND, 0
+    pump_graph(bench.nodes[0], gate, bench.params, bench.now, bench.out)
+    bench.drain(0)
+    bench.run(bench.now + 2_000_000)
+    assert parts_by(bench, 0) == list(range(QUEUE))

@@ -183,6 +183,7 @@ def test_the_choice_is_random_except_for_the_packet_source(avoid_origin):
 
 @pytest.mark.parametrize(("recent", "ticks", "picked"), [
     (0, (0, 9, 9), 2), (1, (0, 0, 0), 2), (1, (0, 1, 2), 5), (1, (0, 2, 2), 4), (1, (3, 2, 2), 2),
+    (1, (0, 7, 7), 4),
 ])  # fmt: skip
 def test_the_choice_based_on_last_heard_time_and_rssi(recent, ticks, picked):
     """ "in the future it could be based on last heard time and RSSI, both of which are tracked":

@@ -5,10 +5,12 @@ import pytest
 from innervate.networks.mesh.protocol.constants import (
     ALL,
     ALTERNATE,
+    CONTROL,
     DATA,
     E2E_ACK,
     END_TO_END,
     FLOOD,
+    LOUDEST,
     ORDERED,
     PARITY,
     RANDOM,
@@ -18,6 +20,7 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.fields import FORWARDED
+from innervate.networks.mesh.protocol.neighbours import SUSPECT, place_of
 from innervate.networks.mesh.protocol.queue import enqueue
 from innervate.networks.mesh.protocol.route import NONE, planned
 from tests.networks.mesh.net import Net, line, ring
@@ -144,14 +147,27 @@ def test_a_link_that_is_heard_too_faintly_teaches_no_way():
     assert planned(bench.nodes[2], bench.params, 0) == 1
 
 
-def test_who_has_others_frames_to_send_does_not_pass_a_flood_on():
+@pytest.mark.parametrize(("others", "passed_on"), [(1, 1), (2, 0)])
+def test_who_has_others_frames_to_send_does_not_pass_a_flood_on(others, passed_on):
     """It would be late, and those who passed it on may have forgotten it and do so again."""
-    bench = silent(line(3))
-    for _ in range(3):
-        enqueue(bench.nodes[1], 1_000_000, 2, 0, bench.out)
-    bench.send(0, 2)
-    bench.run(SPAN_US)
-    assert sent(bench, DATA) == [(0, ALL)]
+    bench = silent(line(4))
+    node = bench.nodes[2]
+    for _ in range(others):
+        enqueue(node, 1_000_000, 2, 0, bench.out)
+    bench.send(1, 3)
+    bench.run(1_001)
+    assert sum(bool(state) for state in node.q_state) == others + passed_on
+
+
+def test_a_flood_goes_on_at_any_moment_and_before_messages():
+    bench = silent([(0, k) for k in range(1, 8)] + [(k, 8) for k in range(1, 8)])
+    bench.send(0, 8)
+    bench.run(1_001)
+    first = [node.q_order.index(max(node.q_order)) for node in bench.nodes[1:8]]
+    due = [node.q_due[i] - 1_000 for node, i in zip(bench.nodes[1:8], first, strict=True)]
+    assert len(set(due)) == 7
+    assert 0 <= min(due) < max(due) <= bench.params.flood_us
+    assert {node.q_rank[i] for node, i in zip(bench.nodes[1:8], first, strict=True)} == {CONTROL}
 
 
 @pytest.mark.parametrize(("on_demand", "left"), [(1, NONE), (0, 1)])
@@ -166,6 +182,40 @@ def test_a_way_that_fails_is_forgotten(on_demand, left):
     bench.send(0, 3)
     bench.run(2 * SPAN_US)
     assert planned(bench.nodes[0], bench.params, 3) == left
+
+
+@pytest.mark.parametrize("failover", [RANDOM, LOUDEST])
+@pytest.mark.parametrize("retry", [0, 1])
+def test_nobody_else_takes_the_place_of_a_way_that_was_found(failover, retry):
+    """The document's rules rewrite tables: who is taken at random knows no way either."""
+    bench = silent(ring(8), failover=failover, retry=retry)
+    bench.send(0, 3)
+    bench.run(SPAN_US)
+    bench.kill(1)
+    bench.send(0, 3)
+    bench.run(1_000_000)
+    assert [i for _, i, _ in bench.delivered] == [3, 3]
+    assert planned(bench.nodes[0], bench.params, 3) == 7
+
+
+@pytest.mark.parametrize("failover", [RANDOM, LOUDEST])
+def test_by_the_documents_rules_a_neighbour_is_looked_for_too(failover):
+    """They ask tables alone, and there is none that says that it is near."""
+    bench = Net(9, COMB, on_demand=1, failover=failover)
+    bench.lost = lambda frame, to: frame.kind == TABLE
+    bench.run(3_000_000)
+    assert planned(bench.nodes[3], bench.params, 2) == NONE
+    bench.send(3, 2)
+    bench.run(bench.now + SPAN_US)
+    assert [i for _, i, _ in bench.delivered] == [2]
+
+
+def test_nobody_looks_for_a_gateway_that_is_gone():
+    bench = silent(ring(8))
+    bench.nodes[0].gone = 4
+    bench.send(0, 4)
+    bench.run(10_000_000)
+    assert sent(bench, DATA) == []
 
 
 def test_who_has_a_table_that_leaves_the_recipient_out_does_not_flood():
@@ -216,6 +266,18 @@ def test_without_tables_the_way_that_was_found_is_taken_and_then_the_one_up():
     ways = [(i, f.link_dst) for _, i, f in bench.sent if f.kind == DATA]
     assert ways[0] == (6, ALL)
     assert ways[-3:] == [(6, 2), (2, 3), (3, 4)], "and not by the gateway"
+
+
+def test_without_tables_a_way_that_is_suspect_is_not_taken():
+    bench = Net(9, COMB, mode=TABLE_FREE, on_demand=1)
+    bench.run(5_000_000)
+    node = bench.nodes[1]
+    node.next[4] = 7
+    node.suspect[place_of(node, bench.params, 7)] = SUSPECT
+    bench.sent.clear()
+    bench.send(1, 4)
+    bench.run(bench.now + SPAN_US)
+    assert sent(bench, DATA)[0] == (1, 0), "up, to the gateway"
 
 
 def test_the_gateway_writes_ways_and_does_not_look_for_them():

@@ -14,6 +14,7 @@ from innervate.networks.mesh.protocol.constants import (
     MESSAGES,
     RANDOM,
     REQUEST,
+    RESPONSE,
     SEARCH,
     SOURCE_ROUTE,
     TABLE,
@@ -24,8 +25,10 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.jobs import pump
+from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.node import FOR_WHAT_COMES_DOWN
 from innervate.networks.mesh.protocol.queue import enqueue
+from innervate.networks.mesh.protocol.round import on_request, queued_request
 from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
 from innervate.networks.mesh.protocol.timeout import timeout
 from tests.networks.mesh.bench import Bench, Frame
@@ -142,16 +145,33 @@ def test_without_tables_a_shorter_way_counts_that_comes_later(mode, depths):
     assert [bench.nodes[i].depth for i in (5, 6)] == depths
 
 
+@pytest.mark.parametrize(("rssi", "hops", "depth"), [(-92, 1, 2), (-93, 1, 5), (-60, 4, 5)])
+def test_a_way_as_long_or_too_faint_is_no_shorter_one(rssi, hops, depth):
+    bench = Bench(3, [(0, 1), (1, 2)], mode=TABLE_FREE)
+    bench.run(SETTLED)
+    node = bench.nodes[2]
+    (request,) = [f for _, i, f in bench.sent if f.kind == REQUEST and i == 1][:1]
+    node.depth, node.due = 5, 0
+    request.rssi, request.path_len = rssi, hops
+    bench.sent.clear()
+    on_request(node, bench.params, bench.now, request, place_of(node, bench.params, 1), bench.out)
+    assert node.depth == depth
+    assert (queued_request(node) >= 0) == (depth < 5)
+    assert node.due == 0, "who has responded in this round does not again"
+
+
 @pytest.mark.parametrize(("mode", "kind", "flags", "taken"), [
     (TABLE_FREE, DATA, END_TO_END, False), (TABLE_FREE, DATA, END_TO_END | SOURCE_ROUTE, True),
     (TABLE_FREE, ALARM, END_TO_END, True), (TABLES, DATA, END_TO_END, True),
+    (TABLE_FREE, RESPONSE, 0, True),
 ])  # fmt: skip
 def test_what_climbs_leaves_room_for_what_comes_down(mode, kind, flags, taken):
     """Two whose queues are full of what is for the other one would never move on (0073)."""
     bench = Bench(3, [(0, 1), (1, 2)], mode=mode)
     bench.run(SETTLED)
     node = bench.nodes[1]
-    for _ in range(node.places - 1 - FOR_WHAT_COMES_DOWN - MESSAGES):
+    free = 2 + MESSAGES if taken else 1 + FOR_WHAT_COMES_DOWN + MESSAGES
+    for _ in range(node.places - free):
         i = enqueue(node, bench.now, MESSAGES, 2, bench.out)
         node.q_due[i] = bench.now + 60_000_000
     for seq in (7, 8):  # there is room for one more, and some for better ones

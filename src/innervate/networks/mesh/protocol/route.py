@@ -276,8 +276,10 @@ def is_wanted(node, params, i):
         return 0
     if node.q_flags[i] & ORDERED or node.wait_tries[owner] > CALLS:
         return 0
-    if dest == node.gateway or planned(node, params, dest) != NONE:
+    if dest == node.gateway or dest == node.gone or planned(node, params, dest) != NONE:
         return 0
+    if params.mode == TABLES and params.failover < ALTERNATE:
+        return 1  # these rules know nothing but tables
     return not is_strong(node, params, place_of(node, params, dest))
 
 
@@ -332,12 +334,12 @@ def advance_route(node, i):
 
 def learn_failure(node, params, i, failed):
     """Neighbour `failed` failed for the packet in place i; lost tables rewrite none."""
-    if params.on_demand and node.version == 0:
-        if planned(node, params, node.q_dest[i]) == failed:
-            node.next[node.bank * params.width + node.q_dest[i]] = NONE
+    found = params.on_demand and node.version == 0
+    if found and planned(node, params, node.q_dest[i]) == failed:
+        node.next[node.bank * params.width + node.q_dest[i]] = NONE
     if params.mode == TABLE_FREE:
         strip_route(node, i)
     if params.mode != 0:
         add_failed(node, i, failed, room_of(node, params, i))
-    elif params.failover < ALTERNATE and node.q_kind[i] != TABLE:
+    elif params.failover < ALTERNATE and node.q_kind[i] != TABLE and not found:
         rewrite(node, params, i, failed)
