@@ -35,7 +35,7 @@ def test_what_is_proved_is_told_lemma_by_lemma(sh):
         assert one["unreached"] == []
         assert {lemma["answer"] for step in one["steps"] for lemma in step["lemmas"]} == {"unsat"}
         assert sum(len(step["lemmas"]) for step in one["steps"]) == one["lemmas"]
-    assert [one["lemmas"] for one in found] == [7, 8 + 2 * (WIDE_MOST + 1), 2]
+    assert [one["lemmas"] for one in found] == [9, 8 + 2 * (WIDE_MOST + 1), 2]
     assert found[1]["assumed"] == list(turns.ASSUMED)
 
 
@@ -44,8 +44,8 @@ def test_people_are_told_in_lines(sh, monkeypatch):
     monkeypatch.setattr(networks()["radio"].prove, "theories", lambda _: [queue])
     assert sh("prove", "radio") == 0
     *_, holds, _, last = sh.out.splitlines()
-    assert holds == "  Holds: 7 lemmas; 26 ways of branches reached, 2 cannot be, as said."
-    assert last.startswith("All as it should be: 7 lemmas in ")
+    assert holds == "  Holds: 9 lemmas; 29 ways of branches reached, 3 cannot be, as said."
+    assert last.startswith("All as it should be: 9 lemmas in ")
 
 
 def test_what_the_solver_cannot_say_is_not_said_to_hold(sh, monkeypatch):
