@@ -116,7 +116,7 @@ def run(tmp_path_factory):
 
 def test_each_runs_once_and_is_counted(run):
     folder, said, status = run
-    assert "2 failed, 15 passed, 1 skipped, 1 warning, 1 rerun" in said.splitlines()[-1]
+    assert "2 failed, 15 passed, 1 skipped, 1 warning, 1 rerun" in said.splitlines()[-1], said
     assert status == 1
     cases = [case.get("name") for case in Tree.parse(folder / "out.xml").iter("testcase")]
     assert len(set(cases)) == 18
