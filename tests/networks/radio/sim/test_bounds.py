@@ -33,6 +33,7 @@ def test_a_disaster_completes_whatever_the_delays(real, ta):
     (10, 5, 0, (52, 208), 2),  # CR-Rs behind a reporter that had gone on to its turn
     (20, 5, 300, (40, 48), 5006),
     (50, 5, 2000, (52, 130), 109),  # CR-Rs over the opening of one who follows another window
+    (50, 5, 2000, (52, 208), 2),  # CR-Rs that ran together, taken for openings begun with ours
     (20, 5, 0, (1, 52), 5598),  # CR-Rs behind a turn of another round, in the window of an opening
     (20, 5, 300, (40, 48), 5593),  # windows of bounds that were believed to be wider than needed
 ])  # fmt: skip

@@ -227,8 +227,18 @@ def await_answers(station, params):
     Where delays are long and packets short our radio listens again before that has come.
     """
     if is_slow(params):
-        station.apart = (station.end + max(params.ta_us, params.dmin_us)) & MASK30
+        station.apart = first_answer(station, params)
         station.joint = 1
+
+
+def first_answer(station, params):
+    """Before this moment nobody whom our opening reached can be heard to answer it."""
+    return (station.end + max(params.ta_us, params.dmin_us)) & MASK30
+
+
+def began_with_ours(station, params, now):
+    """True if what is heard from now on in our window can be no answer to our opening."""
+    return station.opener and not after(now, first_answer(station, params))
 
 
 def began_together(station, params, start):

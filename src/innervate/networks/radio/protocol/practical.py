@@ -21,6 +21,7 @@ from innervate.networks.radio.protocol.follow import (
 from innervate.networks.radio.protocol.idle import (
     await_answers,
     began_together,
+    began_with_ours,
     heard_noise,
     listen_first,
     lose_opening,
@@ -99,7 +100,7 @@ def on_carrier(station, params, now, cd, voc, out):
                 station.joint = 0
             carrier_came(station, params, now, out)
         elif went:
-            if station.joint and mode == modes.WINDOW and outlasts(station, params, now):
+            if mode == modes.WINDOW and outlasts(station, params, now):
                 lose_opening(station)
             station.fall = now
             carrier_went(station, params, now, (now - station.rise) & MASK30, out)
@@ -127,6 +128,8 @@ def on_carrier(station, params, now, cd, voc, out):
 
 def outlasts(station, params, now):
     """True if the carrier went on behind the opening's end: another began just then."""
+    if not station.joint or after(station.rise, station.ref):
+        return False
     return after(now, (station.fall + params.slot_us) & MASK30)
 
 
@@ -136,9 +139,9 @@ def carrier_came(station, params, now, out):
     if mode == modes.IDLE:
         station.armed = 0
         station.tail = 0
-    elif mode == modes.WINDOW and station.joint:
+    elif mode == modes.WINDOW and station.joint and not after(now, station.ref):
         lose_opening(station)
-    elif mode == modes.LEAD and station.joint:
+    elif mode == modes.LEAD and station.joint and began_with_ours(station, params, now):
         retry(station, params, now, 1, out)
     elif mode == modes.WINDOW or mode == modes.LEAD:
         station.heard = max(station.heard, 1)
