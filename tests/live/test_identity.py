@@ -23,6 +23,7 @@ from tests.live.pair import (
     Wire,
     begin,
     join,
+    joined,
     network_sealer,
     own_sealer,
     public_authority,
@@ -77,10 +78,7 @@ def test_a_list_is_of_its_authority_alone():
 )
 @timed
 async def test_a_node_that_says_it_is_another_is_refused(liar):
-    a, b = Wire(), Wire()
-    join(a, b)
-    begin(own_sealer(1), a)
-    begin(liar(), b)
+    a, _b = joined(own_sealer(1), liar())
     await settle(3.0)
     a.frame(VALVE)
     await settle()
