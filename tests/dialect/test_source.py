@@ -43,7 +43,7 @@ def test_a_mistake_is_planted_in_one_place_only():
     assert ast.unparse(made["nearer_than_fd"].node).endswith("return True")
     for text in ("no such text", "cell.hold = 0"):
         with pytest.raises(ValueError, match="times in innervate"):
-            source.functions(CELL, change=(text, "pass"))
+            source.functions(CELL, change=(text, text))
 
 
 def test_constants_are_in_capitals():
