@@ -55,12 +55,16 @@ def test_a_cable_that_is_cut_at_a_port_is_seen_among_cells_without_a_way(look, s
         assert page.evaluate(PX_OF, [*at, ALARM]) > 20
 
 
+def drawn(page, at_s, what):
+    """What a page's script has noted of the picture of a moment."""
+    hold(page, at_s)
+    page.evaluate(DRAWN)
+    return page.evaluate(f"window.{what}")
+
+
 def test_every_way_of_a_dense_mesh_on_a_phone_is_an_arrow(look):
     with beside("mesh-leipzig", 0) as address:
-        page = look(address, PHONE, script=LINES)
-        hold(page, 20.0)
-        page.evaluate(DRAWN)
-        lines = page.evaluate("window.arrows")
+        lines = drawn(look(address, PHONE, script=LINES), 20.0, "arrows")
         assert len(lines) == 2 * 85  # a shaft and a head of all but the gateway
         for (begin, end), (left, tip, _) in zip(lines[::2], lines[1::2], strict=True):
             assert tip == end
@@ -69,10 +73,7 @@ def test_every_way_of_a_dense_mesh_on_a_phone_is_an_arrow(look):
 
 def test_a_narrow_box_has_its_colour_and_no_rim(look):
     with beside("radio-churn", 0.1) as address:
-        page = look(address, PHONE, script=RIMS)
-        hold(page, 5.0)
-        page.evaluate(DRAWN)
-        rims = page.evaluate("window.rims")
+        rims = drawn(look(address, PHONE, script=RIMS), 5.0, "rims")
         assert rims
         assert all(wide >= 4 for wide, colour in rims if colour != "#c43d00")
 

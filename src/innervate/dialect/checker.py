@@ -127,9 +127,17 @@ class _Numbers(ast.NodeTransformer):
             return ast.copy_location(ast.Name(f"{owner}.{node.attr}", node.ctx), node)
         return self.generic_visit(node)
 
+    def visit_Assign(self, node):
+        self.generic_visit(node)
+        return [
+            ast.copy_location(ast.Assign([target], node.value), node) for target in node.targets
+        ]
+
 
 def with_numbers(tree):
-    """A file's tree in which a number of another module is one name: "kinds.DATA"."""
+    """A file's tree, plainer: a number of another module is one name, "kinds.DATA"; where several
+    fields are assigned to at once, an assignment each.
+    """
     return _Numbers({name for _, name in imports_of(tree)}).visit(tree)
 
 
@@ -202,6 +210,14 @@ class Checker:
                                     "field of the state")  # fmt: skip
             if any(isinstance(part, ast.Call) for part in ast.walk(node.value)):
                 self.complain(node, "a module constant calls nothing; write the number")
+
+    def check_Assign(self, node):
+        """Several places that are given a value at once are fields, and the value is no call's."""
+        if len(node.targets) > 1 and self.parents[node] is not self.tree:
+            is_call = any(isinstance(part, ast.Call) for part in ast.walk(node.value))
+            if is_call or any(isinstance(target, ast.Name) for target in node.targets):
+                self.complain(node, "only fields are given a value together, and one that nothing "
+                                    "is called for; write an assignment each")  # fmt: skip
 
     def check_Import(self, node):
         """What is imported as modules."""

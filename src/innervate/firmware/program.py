@@ -195,8 +195,6 @@ class _Reader:
             handle(statement)
 
     def _Assign(self, node: ast.Assign) -> None:
-        if len(node.targets) != 1:
-            raise self.made.refuse(node, "one assignment at a time")
         self._store(node.targets[0], self.type(node.value), node.value)
 
     def _AugAssign(self, node: ast.AugAssign) -> None:
