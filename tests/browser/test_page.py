@@ -91,7 +91,11 @@ def test_the_state_of_the_network_is_one_line(look, fresh):
     expect(line).to_contain_text("1 of 48 cells (p0 r3 c3) is switched off")
     spoken = page.locator("#state-spoken[role=status]")
     expect(spoken).to_contain_text("degraded: 1 of 48 cells (p0 r3 c3) is switched off")
-    click(page, "p0 r3 c3", has="through port")
+    click(page, "p0 r2 c6")
+    expect(spoken).to_contain_text("still degraded; cell p0 r2 c6 switched off: ")
+    expect(spoken).to_contain_text("2 of 48 cells (p0 r2 c6, p0 r3 c3) are switched off")
+    for cell in ("p0 r2 c6", "p0 r3 c3"):
+        click(page, cell, has="through port")
     click(page, CABLE)
     click(page, "p0 r5 c6 - pc.1")
     expect(level).to_have_text("✕ down")

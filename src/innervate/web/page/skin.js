@@ -6,7 +6,7 @@ import {
   affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hexagon,
   middle, stroke, word,
 } from "./shapes.js";
-import { off, offWord, plural } from "./words.js";
+import { PUT_OUT, off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
 const PORT_COLOURS = 8;
@@ -94,12 +94,13 @@ export class SkinView {
 
   facts(i) {
     const { now, nodes } = this.network;
-    if (nodes[i].role === "port") return `interface ${nodes[i].port} of the PC`;
-    if (!this.isCell[i]) return "the PC";
+    const out = now.put_out[i] ? PUT_OUT : "";
+    const pc = nodes[i].role === "port" ? `interface ${nodes[i].port} of the PC` : "the PC";
+    if (!this.isCell[i]) return out ? `${pc}, ${out}` : pc;
     if (!now.node_up[i]) return off(this.network, i);
     const touched = now.touch[i] ? `, touched ${now.touch[i]} of 255` : "";
     const told = now.told[i] >= 0 ? `, command ${now.told[i]} came` : "";
-    if (!this.#isRouted(i)) return `no way to the PC${touched}${told}`;
+    if (!this.#isRouted(i)) return `${out || "no way to the PC"}${touched}${told}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
     const load = now.load[i] ? `, load ${Math.round(100 * now.load[i])} %` : "";
     const way = now.beyond[i] ? "by nodes that do not run here" : `through port ${now.port[i]}`;
