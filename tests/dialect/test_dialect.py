@@ -152,6 +152,7 @@ BAD = {
     "while with else": inside("while n:\n        pass\n    else:\n        pass"),
     "variables together": inside("m = cell.a = 1"),
     "a call for several": inside("cell.a = cell.b = min(n, 1)"),
+    "several of what one of them was": inside("cell.a = cell.b[0] = cell.a + 1"),
     "range kept": inside("m = range(n)"),
     "while that never ends": inside("while n > 0:\n        cell.x = 1"),
     "while true": inside("while True:\n        n -= 1"),

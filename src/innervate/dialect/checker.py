@@ -141,6 +141,11 @@ def with_numbers(tree):
     return _Numbers({name for _, name in imports_of(tree)}).visit(tree)
 
 
+def _attributes(node):
+    """The names behind a dot in an expression."""
+    return {part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute)}
+
+
 class Checker:
     """Collects what a source breaks (see broken_rules)."""
 
@@ -212,12 +217,16 @@ class Checker:
                 self.complain(node, "a module constant calls nothing; write the number")
 
     def check_Assign(self, node):
-        """Several places that are given a value at once are fields, and the value is no call's."""
+        """Several places that are given a value at once are fields, and the value is no call's and
+        of none of them: C and proofs read it once for each.
+        """
         if len(node.targets) > 1 and self.parents[node] is not self.tree:
             is_call = any(isinstance(part, ast.Call) for part in ast.walk(node.value))
-            if is_call or any(isinstance(target, ast.Name) for target in node.targets):
-                self.complain(node, "only fields are given a value together, and one that nothing "
-                                    "is called for; write an assignment each")  # fmt: skip
+            given = set().union(*map(_attributes, node.targets))
+            is_variable = any(isinstance(target, ast.Name) for target in node.targets)
+            if is_call or is_variable or given & _attributes(node.value):
+                self.complain(node, "only fields are given a value together, and one that calls "
+                                    "nothing and reads none of them; write one each")  # fmt: skip
 
     def check_Import(self, node):
         """What is imported as modules."""
