@@ -88,7 +88,7 @@ nobody left, by `finish` to `IDLE`.
 | `SEND_OPEN`   | radio listens: carrier        | `retry`: others collided with us; | IDLE         |
 |               |                               | quick radios: probes from now on  |              |
 | `SEND_OPEN`   | radio listens: silence        | `await_answers`, `opened`         | LEAD         |
-| `LEAD`        | a carrier before `apart`      | `retry`: others collided with us  | IDLE         |
+| `LEAD`        | one before `first_answer`     | `retry`: others collided with us  | IDLE         |
 | `LEAD`        | `CRR`                         | `hear_slot`: proof; a good        |              |
 |               |                               | minislot, if bounds hold          |              |
 | `LEAD`        | a burst ends: noise           | `end_burst`: a bad minislot; too  | LEAD or TURN |
@@ -106,7 +106,7 @@ nobody left, by `finish` to `IDLE`.
 |               |                               | over                              |              |
 | any           | `OPEN`, `began_together` with | as noise of that length           |              |
 |               | what was heard before         |                                   |              |
-| `WINDOW`      | a carrier before `apart`      | `lose_opening`: nobody is         | IDLE         |
+| `WINDOW`      | a carrier before it begins    | `lose_opening`: nobody is         | IDLE         |
 |               |                               | answered                          |              |
 | any           | `DATA`, opens a window        | `hear_data`: `settle`, proof or   | WINDOW       |
 |               |                               | not                               |              |
