@@ -138,7 +138,7 @@ def test_who_is_switched_on_starts_and_a_cell_feels_from_then_on(do, node, sourc
 
 def due(do, node, timer, state):
     do.world.alive[node] = state
-    calls.on_timer_slot(do.world, do, clocks.timer_slot(do.world, node, timer), NOW)
+    calls.on_event(do.world, do, clocks.timer_slot(do.world, node, timer), NOW)
     return do.said
 
 
@@ -176,7 +176,7 @@ def test_a_frame_comes_to_the_port_at_its_cables_end(do, end, node, port, alive,
     slot = wheel.take(world.wheel)
     event, frame = world.wheel.events[slot], world.frames[slot - world.run[0].pool_slots]
     event.kind, event.target, event.epoch = URGENT_BLOCK, end, 0
-    calls.on_arrival(world, do, event, slot, NOW)
+    calls.on_event(world, do, slot, NOW)
     assert do.said == [("on_frame", node, NOW, port, frame)] * arrives
     assert (world.counters[ARRIVED + URGENT_BLOCK], world.counters[ARRIVED]) == (arrives, 0)
     assert world.wheel.pool[wheel.FREE] == slot  # for another frame
