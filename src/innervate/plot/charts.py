@@ -105,8 +105,7 @@ class Bar(NamedTuple):
     kind: str = "bar"
 
 
-@dataclass(frozen=True, slots=True)
-class Bars:
+class Bars(NamedTuple):
     """Bars with a caption; `even` is marked as the fair share."""
 
     bars: Sequence[Bar]
