@@ -203,10 +203,11 @@ def turn_away(node, params, failed, out):
 def most_tries(node, params, i, who):
     """How often the packet in place i is sent to the neighbour in place `who` of the table.
 
-    Once where another may be asked and this one was silent since it did not answer; tables have
-    few to choose from. What climbs asks the same few again and again: of a dead gateway, too.
+    Once where this one was silent since it did not answer: another may be asked, and a response
+    asks the same few again and again. Tables and their acks have few to choose from.
     """
-    if who >= 0 and node.suspect[who] & DOUBT and node.q_kind[i] != TABLE:
+    kind = node.q_kind[i]
+    if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and kind != TABLE_ACK:
         return 1
     return tries_for(node, params, who)
 
