@@ -94,3 +94,17 @@ def test_on_a_large_screen_no_place_between_plots_is_empty(look, tmp_path):
         edge = box(page, "#plots")
         assert last["y"] > first["y"]
         assert last["x"] + last["width"] == edge["x"] + edge["width"]
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_what_a_plot_is_of_is_read_whole_at_any_size(look, size):
+    with beside("demo", 0.1, held=True) as address:
+        page = look(address, size)
+        page.evaluate("""() => {
+          document.querySelector(".plot span").textContent = "frames received, all nodes";
+          document.querySelector(".plot b").textContent = "12,345 per s";
+        }""")
+        name = page.locator(".plot span").first
+        assert name.evaluate("name => name.scrollWidth <= name.clientWidth")
+        value, plot = (page.locator(one).first.bounding_box() for one in (".plot b", ".plot"))
+        assert value["x"] + value["width"] <= plot["x"] + plot["width"]

@@ -1,11 +1,15 @@
 """The page by its sources: what is said of a node that is not there, what plots show of silence."""
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from matplotlib.colors import to_rgb
+
+from innervate.plot.sweeps import contrast
 
 PAGE = Path(__file__).resolve().parents[2] / "src" / "innervate" / "web" / "page"
 
@@ -169,6 +173,35 @@ def test_what_is_lost_while_the_level_stays_is_read_out_once():
         "degraded: A; b.", "degraded: A; b.", still, still, "down: F.", "down: F.", "ok: Well.",
         "ok: Well.", "degraded: G.", "degraded: G.",
     ]  # fmt: skip
+
+
+# What a node of a map is filled with, as a name of the theme.
+FILLED = """
+globalThis.matchMedia = () => ({ addEventListener() {} });
+globalThis.Path2D = class { arc() {} moveTo() {} lineTo() {} closePath() {} };
+const { colours } = await import(COLOURS);
+const { symbol } = await import(SYMBOLS);
+Object.assign(colours, { ink: "ink", d: [0, 1, 2, 3, 4, 5, 6, 7].map((n) => `d${n}`) });
+const context = { fill() { this.filled = this.fillStyle; }, stroke() {}, setLineDash() {} };
+const filled = ["node", "robot"].map((role) => {
+  symbol(context, 0, 0, 5, role, 1);
+  return context.filled;
+});
+console.log(JSON.stringify(filled));
+"""
+
+
+def test_nodes_stand_out_from_the_map_in_light_and_dark():
+    """By at least 3:1, as WCAG 2.1 has it for what is no text (1.4.11)."""
+    text = FILLED
+    for name, file in (("COLOURS", "colours.js"), ("SYMBOLS", "symbols.js")):
+        text = text.replace(name, json.dumps((PAGE / file).as_uri()))
+    themes = (PAGE / "colours.css").read_text().split(":root")[1:]
+    assert len(themes) == 2
+    for names in run_js(text):
+        for theme in themes:
+            of = dict(re.findall(r"--(\w+): (#\w{6});", theme))
+            assert contrast(to_rgb(of[names]), to_rgb(of["ground"])) >= 3, names
 
 
 def plotted(source, points, call):

@@ -99,8 +99,10 @@ export function showNumbers(network) {
   $("recovery").hidden = isOnAir || !tellsWays;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
-  const out = network.nodes.filter((node, i) => node.role !== "port" && network.now.put_out[i]).length;
-  const part = (some, what) => (some ? `; ${some === unconnected ? "" : `${some} of them `}${what}` : "");
+  const isOut = (node, i) => node.role !== "port" && network.now.put_out[i];
+  const out = network.nodes.filter(isOut).length;
+  const some = (count) => (count === unconnected ? "" : `${count} of them `);
+  const part = (count, what) => (count ? `; ${some(count)}${what}` : "");
   const off = `${part(tellsWays && apart, "cut off")}${part(out, "put out")}`;
   const away = network.now.away ? `; ${network.now.away} more ${absentWord(network.kind)}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
