@@ -7,6 +7,7 @@ there is to draw; the server simulates on the same machine meanwhile.
 import tempfile
 from pathlib import Path
 
+from innervate import scenario
 from tests.browser.servers import chromium, serving
 
 CELLS = {1_000: (40, 25), 4_000: (80, 50)}
@@ -14,23 +15,6 @@ SPEED = 0.02
 SECONDS = 8
 NOW = "({...innervate, at: null, seconds: performance.now() / 1000})"
 SIZE = {"width": 1280, "height": 800}
-SKIN = """
-kind = "skin"
-name = "page"
-duration_s = 60
-[[patch]]
-columns = {columns}
-rows = {rows}
-[[interface]]
-row = 0
-column = {third}
-[[interface]]
-row = {last}
-column = {third}
-[protocol]
-updates = "wave"
-max_depth = 120
-"""
 
 
 def measure(cells):
@@ -46,7 +30,11 @@ def measure(cells):
     columns, rows = CELLS[cells]
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         file = Path(folder) / "page.toml"
-        file.write_text(SKIN.format(columns=columns, rows=rows, third=columns // 3, last=rows - 1))
+        ports = [{"row": row, "column": columns // 3} for row in (0, rows - 1)]
+        keys = {"kind": "skin", "name": "page", "duration_s": 60, "interface": ports,
+                "patch": [{"columns": columns, "rows": rows}],
+                "protocol": {"updates": "wave", "max_depth": 120}}  # fmt: skip
+        file.write_text(scenario.dump(scenario.from_dict(keys)))
         browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         with serving(file, "--speed", SPEED) as address:
             page = browser.new_page(viewport=SIZE)

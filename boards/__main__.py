@@ -14,8 +14,8 @@ from boards import join, records
 from boards.compile import mpy
 from boards.errors import BoardMissing
 from boards.parity.record import part, plan_of
-from boards.roles import kind_of, roles
-from innervate.folders import NetworkError, not_for_boards
+from boards.roles import kind_of, roles_or_told
+from innervate.folders import not_for_boards
 from innervate.live.board import Program, Role
 from innervate.live.errors import LiveError
 from innervate.live.parameters import check_parameters, settings_of
@@ -83,10 +83,7 @@ def numbers_of(role: Role, arguments: list[str]) -> dict[str, int]:
 
 def main(arguments: list[str]) -> int:
     """The command; its exit code."""
-    try:
-        known = roles()
-    except NetworkError as error:  # what INNERVATE_NETWORKS names
-        print(error, file=sys.stderr)
+    if (known := roles_or_told()) is None:
         return 2
     words = [argument for argument in arguments if "=" not in argument]
     if words == ["--help"]:

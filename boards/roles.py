@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+
+from innervate.folders import NetworkError
 from innervate.live.board import Role, roles_of
 from innervate.network import networks
 
@@ -9,6 +12,15 @@ from innervate.network import networks
 def roles() -> dict[str, Role]:
     """All roles by name."""
     return {role.name: role for network in networks().values() for role in roles_of(network)}
+
+
+def roles_or_told() -> dict[str, Role] | None:
+    """All roles; None where INNERVATE_NETWORKS names what is no network, which is told."""
+    try:
+        return roles()
+    except NetworkError as error:
+        print(error, file=sys.stderr)
+        return None
 
 
 def kind_of(role: Role) -> str:

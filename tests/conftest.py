@@ -35,6 +35,7 @@ ROOM = 2 << 30  # bytes; the tests leave a twentieth of that
 def pytest_configure():
     if is_roomy(MEMORY):
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(MEMORY))
+    os.environ.pop("PYTHONUNBUFFERED", None)  # what is printed waits, as it does at users'
     # Who was started in the background by a script ignores Ctrl-C, and so would all that it starts.
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -40,6 +40,14 @@ class Own:
         return next(number for number, line in enumerate(lines, 1) if text in line)
 
 
+def at_once(kind, **fields):
+    """An `on_input` that sends a frame of a kind as soon as a node is given something."""
+    lines = ["def on_input(node, params, now, kind, item, out):", "    'Send it now.'",
+             "    frame = out.frame[send(out, 0, 0, 0)]", f"    frame.kind = {kind}"]  # fmt: skip
+    lines += [f"    frame.{name} = {value}" for name, value in fields.items()]
+    return "\n".join([*lines, "    frame.made_at = item.made_at", ""])
+
+
 @pytest.fixture
 def alone(monkeypatch, tmp_path):
     """The working folder is an empty one, and no other folders are known."""

@@ -14,8 +14,7 @@ from pathlib import Path
 from boards.errors import BoardFailed, BoardMissing
 from boards.parity import microbit, nodejs, record
 from boards.parity.record import Transcript
-from boards.roles import roles
-from innervate.folders import NetworkError
+from boards.roles import roles_or_told
 from innervate.live.board import Role
 from innervate.scenario import ScenarioError
 
@@ -65,10 +64,7 @@ def compare(role: Role, file: Path | None, quick: bool) -> bool:
 
 def main(arguments: list[str]) -> int:
     """The command; its exit code."""
-    try:
-        known = roles()
-    except NetworkError as error:  # what INNERVATE_NETWORKS names
-        print(error, file=sys.stderr)
+    if (known := roles_or_told()) is None:
         return 2
     named = [name.partition("=") for name in arguments if name != "--quick"]
     files = {name: Path(file) for name, is_file, file in named if is_file}

@@ -95,12 +95,8 @@ class Player:
     """
 
     def __init__(self, handlers, who, frame, item, out, layouts, read):
-        self.handlers = handlers
-        self.who = who
-        self.frame = frame
-        self.item = item
-        self.out = out
-        self.layouts = layouts
+        self.handlers, self.who, self.layouts = handlers, who, layouts
+        self.frame, self.item, self.out = frame, item, out
         self.read = read
 
     def step(self):

@@ -126,9 +126,18 @@ def place(page, name):
     )
 
 
-def click(page, name):
-    """Click a node or link."""
+def click(page, name, says=None, has=None):
+    """Click a node or link; its card then says these words, or has them among others."""
     page.mouse.click(*place(page, name))
+    if says is not None:
+        expect(facts(page)).to_have_text(says)
+    if has is not None:
+        expect(facts(page)).to_contain_text(has)
+
+
+def facts(page):
+    """What the card of the selected node or link says."""
+    return page.locator("#selected-facts")
 
 
 def expect(locator):

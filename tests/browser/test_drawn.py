@@ -55,12 +55,16 @@ def test_a_cable_that_is_cut_at_a_port_is_seen_among_cells_without_a_way(look, s
         assert page.evaluate(PX_OF, [*at, ALARM]) > 20
 
 
+def drawn(page, at_s, what):
+    """What a page's script has noted of the picture of a moment."""
+    hold(page, at_s)
+    page.evaluate(DRAWN)
+    return page.evaluate(f"window.{what}")
+
+
 def test_every_way_of_a_dense_mesh_on_a_phone_is_an_arrow(look):
     with beside("mesh-leipzig", 0) as address:
-        page = look(address, PHONE, script=LINES)
-        hold(page, 20.0)
-        page.evaluate(DRAWN)
-        lines = page.evaluate("window.arrows")
+        lines = drawn(look(address, PHONE, script=LINES), 20.0, "arrows")
         assert len(lines) == 2 * 85  # a shaft and a head of all but the gateway
         for (begin, end), (left, tip, _) in zip(lines[::2], lines[1::2], strict=True):
             assert tip == end
@@ -69,10 +73,7 @@ def test_every_way_of_a_dense_mesh_on_a_phone_is_an_arrow(look):
 
 def test_a_narrow_box_has_its_colour_and_no_rim(look):
     with beside("radio-churn", 0.1) as address:
-        page = look(address, PHONE, script=RIMS)
-        hold(page, 5.0)
-        page.evaluate(DRAWN)
-        rims = page.evaluate("window.rims")
+        rims = drawn(look(address, PHONE, script=RIMS), 5.0, "rims")
         assert rims
         assert all(wide >= 4 for wide, colour in rims if colour != "#c43d00")
 
@@ -93,3 +94,17 @@ def test_on_a_large_screen_no_place_between_plots_is_empty(look, tmp_path):
         edge = box(page, "#plots")
         assert last["y"] > first["y"]
         assert last["x"] + last["width"] == edge["x"] + edge["width"]
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_what_a_plot_is_of_is_read_whole_at_any_size(look, size):
+    with beside("demo", 0.1, held=True) as address:
+        page = look(address, size)
+        page.evaluate("""() => {
+          document.querySelector(".plot span").textContent = "frames received, all nodes";
+          document.querySelector(".plot b").textContent = "12,345 per s";
+        }""")
+        name = page.locator(".plot span").first
+        assert name.evaluate("name => name.scrollWidth <= name.clientWidth")
+        value, plot = (page.locator(one).first.bounding_box() for one in (".plot b", ".plot"))
+        assert value["x"] + value["width"] <= plot["x"] + plot["width"]

@@ -17,10 +17,11 @@ from docs.patch import scenario
 from innervate import scenario as scenarios
 from innervate.live import status
 from innervate.networks.skin.sim.simulate import simulation
-from tests.browser.servers import WAIT_MS, click, expect, serving
+from tests.browser.servers import WAIT_MS, click, expect, facts, serving
 from tests.browser.test_design import WRITTEN
 from tests.browser.test_kinds import written
 from tests.firmware.test_patch_of_twelve import hops
+from tests.fixtures.scenarios import one_port
 
 pytestmark = pytest.mark.slow
 RING = Path(__file__).parents[1] / "networks" / "tokenring"
@@ -35,16 +36,7 @@ LINKS = "".join(
     f'[[link]]\na = "n{a}"\nb = "n{b}"\n' for a, b in ((0, 1), (1, 2), (2, 3), (3, 0), (2, 4))
 )
 MESH = f'kind = "mesh"\nduration_s = 60\nradio = {{ profile = "ip" }}\n{LINKS}'
-SKIN = """
-kind = "skin"
-duration_s = 60
-[[patch]]
-columns = 3
-rows = 2
-[[interface]]
-row = 0
-column = 0
-"""
+SKIN = one_port(3, 2)
 
 
 @contextmanager
@@ -82,12 +74,11 @@ def test_a_station_is_cut_off_and_let_back(look, short, monkeypatch):
             expect(page.locator("#keys dd", has_text=absent)).to_be_hidden()
         page.keyboard.press("Escape")
         expect(page.locator("#timeline")).to_be_hidden()
-        click(page, "s1")
-        expect(page.locator("#selected-facts")).to_have_text("cut off")
+        click(page, "s1", "cut off")
         expect(page.locator("#headline")).to_contain_text("Robot s1 is silent")
         expect(other.locator("#unconnected output")).to_have_text("1")
         click(other, "s1")
-        expect(page.locator("#selected-facts")).to_have_text("idle")
+        expect(facts(page)).to_have_text("idle")
         expect(page.locator("#unconnected output")).to_have_text("0")
 
 
@@ -109,12 +100,10 @@ def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
         page = look(address)
         expect(page.locator("#unconnected output")).to_have_text("0")
         expect(page.locator("#legend")).to_contain_text("by nodes that do not run here")
-        click(page, "c0 - pc.0")
-        expect(page.locator("#selected-facts")).to_have_text("link, cut")
+        click(page, "c0 - pc.0", "link, cut")
         expect(page.locator("#unconnected output")).to_have_text("6")
         expect(page.locator("#recovery .more")).to_contain_text("no cell is left")
-        click(page, "c0 - pc.0")
-        expect(page.locator("#selected-facts")).to_have_text("link, up")
+        click(page, "c0 - pc.0", "link, up")
         expect(page.locator("#unconnected output")).to_have_text("0")
         page.locator("#tool").select_option("look")
         click(page, "c4")
@@ -123,7 +112,7 @@ def test_serial_cables_are_drawn_and_cut(look, short, monkeypatch):
         page.locator("#command-send", has_text="Send to this cell").click()
         expect(page.locator("#log")).to_contain_text("sent to c4")
         expect(page.locator("#log")).to_contain_text("came to c4")
-        expect(page.locator("#selected-facts")).to_contain_text("came")
+        expect(facts(page)).to_contain_text("came")
 
 
 def test_boards_of_the_quick_start_heal_on_the_page(look, short, monkeypatch):
@@ -136,8 +125,7 @@ def test_boards_of_the_quick_start_heal_on_the_page(look, short, monkeypatch):
         expect(page.locator("#log")).to_contain_text("link c0 - pc.0 cut", timeout=3 * WAIT_MS)
         expect(page.locator("#headline")).to_have_text(well)
         assert status.ask_one(here / "c0.sock", {"do": "status"})["dist"] == 4  # the long way round
-        click(page, "c0 - pc.0")
-        expect(page.locator("#selected-facts")).to_have_text("link, up")
+        click(page, "c0 - pc.0", "link, up")
         os.kill(pid_of("c4.toml", here), signal.SIGKILL)
         expect(page.locator("#log")).to_contain_text("c4 does not answer any more")
         expect(page.locator("#level")).to_have_text("! degraded")
@@ -189,12 +177,12 @@ def test_a_node_is_killed_and_started_and_the_page_finds_its_server_again(look, 
             os.kill(pid_of("n3.toml", here), signal.SIGKILL)
             expect(page.locator("#log")).to_contain_text("n3 does not answer any more")
             click(page, "n3")  # nothing to be done about it from here
-            expect(page.locator("#selected-facts")).to_contain_text("does not answer")
+            expect(facts(page)).to_contain_text("does not answer")
             expect(page.locator("#selected-do button", has_text="Let back")).to_have_count(0)
         expect(page.locator("#lost")).to_contain_text("lost. Trying again")
         with node(here, "n3.toml"), serving("live", port=port):
             expect(page.locator("#connection")).to_have_text("connected")
-            expect(page.locator("#selected-facts")).not_to_contain_text("does not answer")
+            expect(facts(page)).not_to_contain_text("does not answer")
             well = "All 5 nodes have a way to the gateway."  # else it is n3 that recovers
             expect(page.locator("#headline")).to_have_text(well, timeout=3 * WAIT_MS)
             click(page, "n2 - n4")
@@ -239,11 +227,10 @@ def test_a_network_that_only_declares_itself_is_drawn_by_its_fields(look, short,
         page = look(address)
         expect(page.locator("#headline")).to_have_text("All 4 nodes answer.")
         expect(page.locator("#colour option")).to_have_text(["lap", "passed", "made_at"])
-        click(page, "n1")
-        expect(page.locator("#selected-facts")).to_contain_text("cut off")
+        click(page, "n1", has="cut off")
         expect(page.locator("#level")).to_have_text("! degraded")
         click(page, "n1")
-        expect(page.locator("#selected-facts")).to_have_text(
+        expect(facts(page)).to_have_text(
             re.compile(r"lap \d+ number, passed \d+ tokens, made_at 0 us")
         )
         expect(page.locator("#unconnected .more")).to_have_text("of 4 nodes")

@@ -3,7 +3,7 @@
 import re
 import socket
 
-from tests.browser.servers import PHONE, SKIN, click, expect, place, seek, serving
+from tests.browser.servers import PHONE, SKIN, click, expect, facts, place, seek, serving
 
 CABLE = "p0 r0 c2 - pc.0"
 OTHER = "p0 r2 c3 - p0 r2 c4"
@@ -29,23 +29,19 @@ def test_it_shows_the_network_and_asks_nobody_else(look, skin):
 
 def test_a_click_cuts_a_cable_and_the_next_heals_it(look, fresh):
     page = look(fresh)
-    click(page, CABLE)
-    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    click(page, CABLE, "link, cut")
     expect(page.locator("#recovery")).to_have_class("number done")
     expect(page.locator("#recovery output")).to_have_text(DURATION)
     expect(page.locator("#recovery .more")).to_contain_text("interface 0")
     expect(page.locator("#since output")).to_have_text(DURATION)
     expect(page.locator("#log")).to_contain_text("cable to interface 0 cut")
-    click(page, CABLE)
-    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    click(page, CABLE, "link, up")
 
 
 def test_a_click_kills_a_cell_and_the_next_revives_it(look, skin):
     page = look(skin)
-    click(page, "p0 r3 c3")
-    expect(page.locator("#selected-facts")).to_have_text("switched off")
-    click(page, "p0 r3 c3")
-    expect(page.locator("#selected-facts")).to_contain_text("through port")
+    click(page, "p0 r3 c3", "switched off")
+    click(page, "p0 r3 c3", has="through port")
 
 
 def test_a_command_is_sent_to_the_selected_cell(look, skin):
@@ -57,7 +53,7 @@ def test_a_command_is_sent_to_the_selected_cell(look, skin):
     page.locator("#command-value").fill("500")
     page.locator("#command-send", has_text="Send to this cell").click()
     expect(page.locator("#log")).to_contain_text("came to p0 r4 c1 after")
-    expect(page.locator("#selected-facts")).to_contain_text("came")
+    expect(facts(page)).to_contain_text("came")
     page.locator("#command-code").fill("256")
     page.locator("#command-send").click()  # refused by the field itself
     expect(page.locator("#log")).not_to_contain_text("not a command")
@@ -67,21 +63,20 @@ def test_a_click_touches_a_cell_and_the_pc_receives_it(look, fresh):
     page = look(fresh)
     page.locator("#tool").select_option("touch")
     page.locator("#colour").select_option("touch")
+    click(page, "p0 r4 c1", has="touched")
     click(page, "p0 r4 c1")
-    expect(page.locator("#selected-facts")).to_contain_text("touched")
-    click(page, "p0 r4 c1")
-    expect(page.locator("#selected-facts")).not_to_contain_text("touched")
+    expect(facts(page)).not_to_contain_text("touched")
     page.locator("#selected-do button", has_text="Kill").click()
-    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    expect(facts(page)).to_have_text("switched off")
     page.locator("#selected-do button", has_text="Revive").click()
-    expect(page.locator("#selected-facts")).to_contain_text("through port")
+    expect(facts(page)).to_contain_text("through port")
     click(page, OTHER)  # the middle of a cable: it is one of its cells that is touched
-    expect(page.locator("#selected-facts")).to_contain_text("touched")
+    expect(facts(page)).to_contain_text("touched")
     expect(page.locator("#selected-name")).not_to_contain_text(" - ")
     page.locator("#selected-do button", has_text="Kill").wait_for()
     assert page.locator("#log").get_by_text("cable").count() == 0
     click(page, OTHER)
-    expect(page.locator("#selected-facts")).not_to_contain_text("touched")
+    expect(facts(page)).not_to_contain_text("touched")
 
 
 def test_the_state_of_the_network_is_one_line(look, fresh):
@@ -96,8 +91,11 @@ def test_the_state_of_the_network_is_one_line(look, fresh):
     expect(line).to_contain_text("1 of 48 cells (p0 r3 c3) is switched off")
     spoken = page.locator("#state-spoken[role=status]")
     expect(spoken).to_contain_text("degraded: 1 of 48 cells (p0 r3 c3) is switched off")
-    click(page, "p0 r3 c3")
-    expect(page.locator("#selected-facts")).to_contain_text("through port")
+    click(page, "p0 r2 c6")
+    expect(spoken).to_contain_text("still degraded; cell p0 r2 c6 switched off: ")
+    expect(spoken).to_contain_text("2 of 48 cells (p0 r2 c6, p0 r3 c3) are switched off")
+    for cell in ("p0 r2 c6", "p0 r3 c3"):
+        click(page, cell, has="through port")
     click(page, CABLE)
     click(page, "p0 r5 c6 - pc.1")
     expect(level).to_have_text("✕ down")
@@ -135,8 +133,7 @@ def test_keys_alone_cut_and_heal(look, skin):
 
 def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
     page = look(skin)
-    click(page, OTHER)
-    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    click(page, OTHER, "link, cut")
     found = {}
     for _ in range(STOPS_MAX):
         page.keyboard.press("Tab")
@@ -153,8 +150,7 @@ def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
     assert set(wanted) <= set(found)
     assert all(name.strip() for name, _ in found.values())
     assert all(outline == "solid" for one, (_, outline) in found.items() if one in wanted)
-    click(page, OTHER)
-    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    click(page, OTHER, "link, up")
 
 
 READ_ALOUD = """() => {
@@ -178,10 +174,9 @@ READ_ALOUD = """() => {
 def test_programs_that_read_aloud_find_lists_names_and_places(look, skin):
     page = look(skin, {"width": 1160, "height": 600})  # plots do not fit
     click(page, OTHER)  # the log has a line, and the card is there
-    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    expect(facts(page)).to_have_text("link, cut")
     found = page.evaluate(READ_ALOUD)
-    click(page, OTHER)
-    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    click(page, OTHER, "link, up")
     assert found == {what: [] for what in found}
 
 
@@ -218,12 +213,11 @@ def test_two_pages_see_the_same(look, skin):
     expect(other.locator("#go")).to_have_text("Play")
     click(other, OTHER)
     click(one, "p0 r2 c3")
-    expect(other.locator("#selected-facts")).to_have_text("link, off at one end")
+    expect(facts(other)).to_have_text("link, off at one end")
     one.locator("#selected-do button", has_text="Revive").click()
-    expect(other.locator("#selected-facts")).to_have_text("link, cut")
+    expect(facts(other)).to_have_text("link, cut")
     expect(one.locator("#clock")).to_have_text(text(other, "#clock"))
-    click(other, OTHER)
-    expect(other.locator("#selected-facts")).to_have_text("link, up")
+    click(other, OTHER, "link, up")
     other.locator("#go").click()
     expect(one.locator("#go")).to_have_text("Pause")
 
@@ -245,9 +239,9 @@ def test_a_phone_shows_it_all(look, skin):
     page = look(skin, PHONE, has_touch=True, is_mobile=True)
     assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
     page.touchscreen.tap(*place(page, OTHER))
-    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    expect(facts(page)).to_have_text("link, cut")
     page.locator("#selected-do button").tap()
-    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    expect(facts(page)).to_have_text("link, up")
     assert page.evaluate("document.documentElement.scrollWidth") == PHONE["width"]
 
 
@@ -256,23 +250,21 @@ def test_a_tap_on_what_is_smaller_than_a_finger_only_selects(look, skin):
     page.touchscreen.tap(*place(page, "p0 r2 c3"))
     expect(page.locator("#selected-name")).to_have_text("p0 r2 c3")
     page.locator("#selected-do button", has_text="Kill").tap()
-    expect(page.locator("#selected-facts")).to_have_text("switched off")
+    expect(facts(page)).to_have_text("switched off")
     page.locator("#selected-do button", has_text="Revive").tap()
-    expect(page.locator("#selected-facts")).to_contain_text("through port")
+    expect(facts(page)).to_contain_text("through port")
 
 
 def test_the_scenario_is_saved_with_what_was_done(look, fresh):
     page = look(fresh)
-    click(page, OTHER)
-    expect(page.locator("#selected-facts")).to_have_text("link, cut")
+    click(page, OTHER, "link, cut")
     with page.expect_download() as told:
         page.locator("#save").click()
     assert told.value.suggested_filename == "a-b-small-b-skin.toml"
     saved = told.value.path().read_text()
     assert 'name = "a <b>small</b> skin"' in saved
     assert 'action = "cut"' in saved
-    click(page, OTHER)
-    expect(page.locator("#selected-facts")).to_have_text("link, up")
+    click(page, OTHER, "link, up")
 
 
 def test_keys_are_listed(look, skin):

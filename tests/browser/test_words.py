@@ -1,11 +1,15 @@
 """The page by its sources: what is said of a node that is not there, what plots show of silence."""
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from matplotlib.colors import to_rgb
+
+from innervate.plot.sweeps import contrast
 
 PAGE = Path(__file__).resolve().parents[2] / "src" / "innervate" / "web" / "page"
 
@@ -17,10 +21,16 @@ def said(networks, call="it.off(network, 0)"):
 
 def found(file, value):
     """A value in JavaScript where `it` is one of the page's sources."""
+    text = f"""globalThis.matchMedia = () => ({{ addEventListener() {{}} }});
+    const it = await import({json.dumps((PAGE / file).as_uri())});
+    console.log(JSON.stringify({value}));"""
+    return run_js(text)
+
+
+def run_js(text):
+    """What a text in JavaScript writes, which is JSON."""
     if shutil.which("node") is None:
         pytest.skip("Node.js is missing")
-    text = f"""const it = await import({json.dumps((PAGE / file).as_uri())});
-    console.log(JSON.stringify({value}));"""
     done = subprocess.run(
         ["node", "--input-type=module", "-e", text], capture_output=True, check=True, timeout=60
     )
@@ -72,6 +82,126 @@ def test_a_plot_has_a_gap_while_no_live_node_answers(source, shown):
 ])  # fmt: skip
 def test_a_plot_shows_more_time_where_that_goes_fast(times, source, span_s):
     assert plotted(source, [[t, 1] for t in times], "network.span('load')") == span_s
+
+
+@pytest.mark.parametrize(("view", "facts"), [
+    ("skin.js", "put out: its identity is revoked"),
+    ("mesh.js", "node, put out: its identity is revoked"),
+    ("plain.js", "put out: its identity is revoked, heat 3 K"),
+])  # fmt: skip
+def test_every_page_says_of_who_is_revoked_that_it_was_put_out(view, facts):
+    name = {"skin.js": "SkinView", "mesh.js": "MeshView", "plain.js": "PlainView"}[view]
+    role = "cell" if view == "skin.js" else "node"
+    nodes = [{"id": at, "label": f"n{at}", "role": role, "x": at, "y": 0} for at in range(2)]
+    scene = {"kind": "own", "source": "live", "nodes": nodes, "links": [], "can": [], "ports": 0,
+             "series": [], "fields": [{"name": "heat", "unit": "K"}]}  # fmt: skip
+    state = {"put_out": [0, 1], "way": [0, 2], "fields": {"heat": [3, 3]}}
+    made = f"new it.{name}(new (await import({json.dumps((PAGE / 'network.js').as_uri())})).Network"
+    told = found(view, f"""(() => {{
+      const view = {made}({json.dumps(scene)}));
+      view.network.apply({json.dumps(state)});
+      return [0, 1].map((i) => view.facts(i));
+    }})()""".replace("(() =>", "await (async () =>", 1))  # fmt: skip
+    assert told[1] == facts
+    assert "put out" not in told[0]
+
+
+def test_a_second_fault_is_read_out_with_what_is_new():
+    headlines = [
+        "1 of 9 nodes is off; 8 of 9 messages were delivered.",
+        "2 of 9 nodes are off; 8 of 9 messages were delivered.",
+        "1 of 9 nodes is cut off; 2 of 9 nodes are off; 8 of 9 messages were delivered.",
+    ]
+    asked = [
+        (["n3 switched off"], headlines[1], headlines[0]),
+        (["link n1 - n2 cut", "n4 killed", "n5 killed"], headlines[2], headlines[1]),
+        (["link n1 - n7 cut"], headlines[2], headlines[2]),
+    ]
+    calls = [f"it.still('degraded', ...{json.dumps(one)})" for one in asked]
+    assert found("panel.js", f"[{', '.join(calls)}]") == [
+        "still degraded; n3 switched off: 2 of 9 nodes are off",
+        "still degraded; link n1 - n2 cut, and 2 more: 1 of 9 nodes is cut off",
+        "still degraded; link n1 - n7 cut",
+    ]
+
+
+# What a page shows: elements by their names, and what each state made of what is read out.
+READ_OUT = """
+globalThis.matchMedia = () => ({ addEventListener() {} });
+const boxes = {};
+globalThis.document = { getElementById: (id) => boxes[id] ??= {
+  textContent: "", classList: { toggle() {} } } };
+const { Network } = await import(NETWORK);
+const { showState } = await import(PANEL);
+const scene = { kind: "mesh", source: "simulation", nodes: [], links: [], can: [], series: [] };
+const network = new Network(scene);
+const said = [];
+for (const [t_s, level, text, ...lines] of STEPS) {
+  network.apply({ t_s, headline: { level, text, nodes: [] } });
+  for (const [at, mark, line] of lines) network.note({ t_s: at, mark, text: line });
+  showState(network, true);
+  said.push(boxes["state-spoken"].textContent);
+}
+console.log(JSON.stringify(said));
+"""
+
+
+def test_what_is_lost_while_the_level_stays_is_read_out_once():
+    steps = [
+        [5.0, "degraded", "A; b."],
+        [
+            5.1,
+            "degraded",
+            "A; c.",
+            [1.0, "loss", "before anybody looked"],
+            [5.1, "return", "n9 switched on"],
+        ],
+        [5.2, "degraded", "D; c.", [5.2, "loss", "n1 switched off"]],
+        [5.3, "degraded", "D; e."],
+        [5.4, "down", "F.", [5.4, "loss", "n2 switched off"]],
+        [5.5, "down", "F."],
+        [5.6, "ok", "Well."],
+        [5.7, "ok", "Well.", [5.7, "loss", "a link that nobody needs cut"]],
+        [5.8, "degraded", "G."],
+        [5.9, "degraded", "G."],
+    ]
+    text = READ_OUT.replace("STEPS", json.dumps(steps))
+    for name, file in (("NETWORK", "network.js"), ("PANEL", "panel.js")):
+        text = text.replace(name, json.dumps((PAGE / file).as_uri()))
+    still = "still degraded; n1 switched off: d"
+    assert run_js(text) == [
+        "degraded: A; b.", "degraded: A; b.", still, still, "down: F.", "down: F.", "ok: Well.",
+        "ok: Well.", "degraded: G.", "degraded: G.",
+    ]  # fmt: skip
+
+
+# What a node of a map is filled with, as a name of the theme.
+FILLED = """
+globalThis.matchMedia = () => ({ addEventListener() {} });
+globalThis.Path2D = class { arc() {} moveTo() {} lineTo() {} closePath() {} };
+const { colours } = await import(COLOURS);
+const { symbol } = await import(SYMBOLS);
+Object.assign(colours, { ink: "ink", d: [0, 1, 2, 3, 4, 5, 6, 7].map((n) => `d${n}`) });
+const context = { fill() { this.filled = this.fillStyle; }, stroke() {}, setLineDash() {} };
+const filled = ["node", "robot"].map((role) => {
+  symbol(context, 0, 0, 5, role, 1);
+  return context.filled;
+});
+console.log(JSON.stringify(filled));
+"""
+
+
+def test_nodes_stand_out_from_the_map_in_light_and_dark():
+    """By at least 3:1, as WCAG 2.1 has it for what is no text (1.4.11)."""
+    text = FILLED
+    for name, file in (("COLOURS", "colours.js"), ("SYMBOLS", "symbols.js")):
+        text = text.replace(name, json.dumps((PAGE / file).as_uri()))
+    themes = (PAGE / "colours.css").read_text().split(":root")[1:]
+    assert len(themes) == 2
+    for names in run_js(text):
+        for theme in themes:
+            of = dict(re.findall(r"--(\w+): (#\w{6});", theme))
+            assert contrast(to_rgb(of[names]), to_rgb(of["ground"])) >= 3, names
 
 
 def plotted(source, points, call):

@@ -81,6 +81,7 @@ def on_frame(cell, params, now, port, frame, out):
 def test_what_the_dialect_has():
     assert broken_rules(GOOD, {"later", "after"}) == []
     assert broken_rules(inside("return later(cell, 1073741823)"), {"later"}) == []
+    assert broken_rules(inside("cell.a = cell.b[n] = n + 1")) == []
 
 
 def inside(body):
@@ -149,6 +150,9 @@ BAD = {
     "for with else": inside("for i in range(n):\n        pass\n    else:\n        pass"),
     "for with two": inside("for i, j in range(n):\n        pass"),
     "while with else": inside("while n:\n        pass\n    else:\n        pass"),
+    "variables together": inside("m = cell.a = 1"),
+    "a call for several": inside("cell.a = cell.b = min(n, 1)"),
+    "several of what one of them was": inside("cell.a = cell.b[0] = cell.a + 1"),
     "range kept": inside("m = range(n)"),
     "while that never ends": inside("while n > 0:\n        cell.x = 1"),
     "while true": inside("while True:\n        n -= 1"),

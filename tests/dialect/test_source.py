@@ -41,9 +41,9 @@ def test_a_mistake_is_planted_in_one_place_only():
     old = "return sq == cell.fd_sq and dist < cell.fd_dist"
     made = source.functions(CELL, change=(old, "return True"))
     assert ast.unparse(made["nearer_than_fd"].node).endswith("return True")
-    for text in ("no such text", "cell.parent = NONE"):
+    for text in ("no such text", "cell.hold = 0"):
         with pytest.raises(ValueError, match="times in innervate"):
-            source.functions(CELL, change=(text, "pass"))
+            source.functions(CELL, change=(text, text))
 
 
 def test_constants_are_in_capitals():

@@ -97,7 +97,7 @@ def on_timer(state, params, now, timer, out):
     state.byte = -MOST
     state.byte = state.half
     state.half = state.half  # of one type
-
+    state.list[1] = state.half = state.byte = state.a
 
 
     state.list[0] = state.list[1]
@@ -258,6 +258,9 @@ void own_on_timer(own_state_t *state, const own_params_t *params, int32_t now, i
     state->byte = -OWN_MOST;
     state->byte = (uint8_t)state->half;
     state->half = state->half; /* of one type */
+    state->list[1] = (uint8_t)state->a;
+    state->half = (int16_t)state->a;
+    state->byte = (uint8_t)state->a;
     state->list[0] = state->list[1];
     state->byte = (uint8_t)(state->byte + state->n);
     state->half = (int16_t)(now + timer);

@@ -166,15 +166,6 @@ def own_cache(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_who_comes_while_another_compiles_waits(tmp_path):
-    fcntl = pytest.importorskip("fcntl", reason="files are locked as on POSIX")
-    path = tmp_path / "loop.lock"
-    with path.open("ab") as other:
-        with compilation.alone(path), pytest.raises(BlockingIOError):
-            fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
 def test_where_nothing_can_be_written_nobody_waits(tmp_path):
     with compilation.alone(tmp_path / "no such folder" / "loop.lock"):
         pass

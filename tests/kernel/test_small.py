@@ -320,13 +320,15 @@ def test_a_loop_is_loaded_once_for_each_form_and_compiled_once(monkeypatch):
     assert (ran[5:], len(asked)) == (["made", (fits, 5, 6)], 2)
 
 
-def test_nobody_else_may_even_look_while_one_is_alone(tmp_path):
+@pytest.mark.parametrize("to", ["LOCK_EX", "LOCK_SH"])
+def test_nobody_else_compiles_or_even_looks_while_one_is_alone(tmp_path, to):
     fcntl = pytest.importorskip("fcntl", reason="files are locked as on POSIX")
+    wanted = getattr(fcntl, to) | fcntl.LOCK_NB
     path = tmp_path / "loop.lock"
     with path.open("ab") as other:
         with cache.alone(path), pytest.raises(BlockingIOError):
-            fcntl.flock(other, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        fcntl.flock(other, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            fcntl.flock(other, wanted)
+        fcntl.flock(other, wanted)
 
 
 @pytest.mark.parametrize(("status", "is_fine"), [(0, True), (-2, True), (1, False), (-1, False)])

@@ -81,6 +81,24 @@ async def settle(seconds=0.2):
     await asyncio.sleep(seconds)
 
 
+def joined(one, other, names=("wire", "wire")):
+    """Two wires that these sealers have begun on."""
+    wires = [Wire(name) for name in names]
+    join(*wires)
+    begin(one, wires[0])
+    begin(other, wires[1])
+    return wires
+
+
+def anew(sealer, to, instead):
+    """A wire to another in place of one whose node has stopped; its sealer has begun."""
+    instead.sealer.stop()
+    wire = Wire()
+    join(to, wire)
+    begin(sealer, wire)
+    return wire
+
+
 async def two(make=network_sealer, ends=(("", ""), ("", ""))):
     """Two nodes that have proved to each other who they are, if they can."""
     a, b = Wire("a", ends=ends[0]), Wire("b", ends=ends[1])

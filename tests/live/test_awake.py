@@ -10,18 +10,10 @@ from innervate.live.build import build
 from innervate.live.errors import LiveError
 from innervate.live.machine import IDLE_STATES, Machine, on
 from innervate.live.nodefile import load
+from tests.fixtures.node_files import LINK, of_mesh
 from tests.live.test_udp import free_port
 
-AWAKE = """kind = "mesh"
-number = 0
-nodes = 3
-role = "gateway"
-awake = {}
-[[link]]
-kind = "udp"
-bind = "{}"
-peers = ["127.0.0.1:9"]
-"""
+AWAKE = of_mesh(0, 3, 'role = "gateway"\nawake = {}', LINK.replace("127.0.0.1:0", "{}"))
 
 
 def node_of(folder, awake="true", bind=None):

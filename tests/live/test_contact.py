@@ -9,7 +9,19 @@ from innervate.live.session import REKEY_US
 from innervate.wire import seal
 from tests.live import time_by_hand
 from tests.live.net import Mesh
-from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, own_sealer, settle, two
+from tests.live.pair import (
+    KEY,
+    OTHER,
+    Wire,
+    anew,
+    begin,
+    join,
+    joined,
+    network_sealer,
+    own_sealer,
+    settle,
+    two,
+)
 from tests.live.time_by_hand import timed
 
 VALVE = b"OPEN VALVE"
@@ -146,10 +158,7 @@ async def test_no_byte_of_any_message_can_be_changed(make, where):
 )  # fmt: skip
 @timed
 async def test_a_stranger_is_nobody(stranger):
-    a, b = Wire(), Wire()
-    join(a, b)
-    begin(network_sealer(1), a)
-    begin(stranger(), b)
+    a, b = joined(network_sealer(1), stranger())
     await settle(3.0)
     assert a.sealer.counts["handshakes"] == b.sealer.counts["handshakes"] == 0
     assert sum(a.sealer.dropped.values()) > 0
@@ -158,10 +167,7 @@ async def test_a_stranger_is_nobody(stranger):
 
 @timed
 async def test_another_kind_of_network_is_not_ours():
-    a, b = Wire(), Wire()
-    join(a, b)
-    begin(own_sealer(1), a)
-    begin(own_sealer(2, kind="skin"), b)
+    a, _b = joined(own_sealer(1), own_sealer(2, kind="skin"))
     await settle(3.0)
     assert a.sealer.counts["handshakes"] == 0
 
@@ -188,10 +194,7 @@ async def test_a_relay_without_keys_makes_no_neighbour(make):
 
 @timed
 async def test_a_number_that_does_not_exist_is_refused():
-    a, b = Wire(), Wire()
-    join(a, b)
-    begin(network_sealer(1, nodes=4), a)
-    begin(network_sealer(7), b)
+    a, _b = joined(network_sealer(1, nodes=4), network_sealer(7))
     await settle(3.0)
     assert a.sealer.counts["handshakes"] == 0
     assert a.sealer.dropped["sealed: from no node of ours"] > 0
@@ -242,10 +245,7 @@ async def test_also_if_only_a_third_node_hears_both(make):
 async def test_a_node_that_was_started_anew_is_no_second_one(make):
     a, b = await two(make)
     for _ in range(3):
-        b.sealer.stop()
-        b = Wire()
-        join(a, b)
-        begin(make(2), b)
+        b = anew(make(2), a, b)
         await settle(2.0)
         a.frame(VALVE)
         b.frame(b"back")
@@ -259,10 +259,7 @@ async def test_a_node_that_was_started_anew_is_no_second_one(make):
 @timed
 async def test_a_node_that_was_started_anew_is_back_at_once(make):
     a, b = await two(make)
-    b.sealer.stop()
-    b = Wire()
-    join(a, b)
-    begin(make(2), b)
+    b = anew(make(2), a, b)
     await settle(0.01)
     a.frame(VALVE)
     await settle(0.01)

@@ -9,20 +9,12 @@ import pytest
 from innervate.live.build import build
 from innervate.live.errors import LiveError
 from innervate.live.nodefile import load
+from tests.fixtures.node_files import LINK, of_mesh
 from tests.live.test_process import free_port
 
 PAGE = Path(__file__).parents[2] / "docs" / "live.md"
-NODE = """
-kind = "mesh"
-number = {number}
-nodes = 4
-role = "{role}"
-
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:{own}"
-peers = ["127.0.0.1:{other}"]
-"""
+BETWEEN = LINK.replace(":0", ":{own}").replace(":9", ":{other}")
+NODE = of_mesh("{number}", 4, 'role = "{role}"', BETWEEN)
 
 
 def test_the_documented_node_waits_for_its_table_and_delivers(tmp_path, monkeypatch, capsys):

@@ -21,6 +21,7 @@ from innervate.live.machine import Machine, on
 from innervate.live.metrics import MetricsPage
 from innervate.live.nodefile import load
 from innervate.live.state import State
+from tests.fixtures.node_files import of_mesh
 from tests.live import time_by_hand
 from tests.live.net import Mesh
 
@@ -129,15 +130,7 @@ def test_a_request_without_a_bottom_is_answered():
     assert "recursion" in told[0]["error"]
 
 
-FILE = """kind = "mesh"
-number = 0
-nodes = 2
-socket = "n0.sock"
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:0"
-peers = ["127.0.0.1:9"]
-"""
+FILE = of_mesh(0, 2, 'socket = "n0.sock"')
 
 
 def test_a_listener_that_has_stopped_takes_no_more_room_than_others(tmp_path, monkeypatch):

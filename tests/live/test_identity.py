@@ -16,6 +16,7 @@ from innervate.live.nodefile import load
 from innervate.live.notices import Notices
 from innervate.live.state import State
 from innervate.wire import seal
+from tests.fixtures.node_files import of_mesh
 from tests.live import time_by_hand
 from tests.live.pair import (
     AUTHORITY,
@@ -23,6 +24,7 @@ from tests.live.pair import (
     Wire,
     begin,
     join,
+    joined,
     network_sealer,
     own_sealer,
     public_authority,
@@ -77,10 +79,7 @@ def test_a_list_is_of_its_authority_alone():
 )
 @timed
 async def test_a_node_that_says_it_is_another_is_refused(liar):
-    a, b = Wire(), Wire()
-    join(a, b)
-    begin(own_sealer(1), a)
-    begin(liar(), b)
+    a, _b = joined(own_sealer(1), liar())
     await settle(3.0)
     a.frame(VALVE)
     await settle()
@@ -287,16 +286,7 @@ async def test_who_is_put_out_of_a_group_does_not_understand_it_any_more():
             heard.cipher.decrypt(identities.noise.nonce(0), sealed[9:], sealed[:9])
 
 
-FILE = """kind = "mesh"
-number = {number}
-nodes = 4
-[keys]
-identity = "keys/n{file}.identity"
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:0"
-peers = ["127.0.0.1:9"]
-"""
+FILE = of_mesh("{number}", 4, '[keys]\nidentity = "keys/n{file}.identity"')
 
 
 def test_one_command_makes_a_file_for_each_node(tmp_path, monkeypatch, capsys):

@@ -15,8 +15,7 @@ from tests.live.pair import (
     AUTHORITY,
     OTHER,
     Wire,
-    begin,
-    join,
+    joined,
     network_sealer,
     own_sealer,
     settle,
@@ -128,10 +127,7 @@ def test_no_two_sessions_or_questions_have_one_index():
 def test_who_ends_a_handshake_is_who_began_it(field):
     @timed
     async def shake():
-        liar, honest = Wire("liar"), Wire("honest")
-        join(liar, honest)
-        begin(own_sealer(1), liar)
-        begin(own_sealer(2), honest)
+        liar, honest = joined(own_sealer(1), own_sealer(2), ("liar", "honest"))
         one = contact_of(liar)
         contact_of(honest).stop()  # it only answers
         say = one._about

@@ -13,6 +13,7 @@ from innervate import cli
 from innervate import scenario as scenarios
 from innervate.live import hangup, status
 from innervate.live.up import Processes
+from tests.fixtures.node_files import of_mesh
 from tests.live.net import LINE, running, until
 
 FIRST_S = 40.0
@@ -25,18 +26,7 @@ def told(network, name):
     return status.ask_one(network.socket(name), {"do": "status"})
 
 
-ALONE = f"""kind = "mesh"
-number = 0
-nodes = 2
-socket = "{{folder}}/n0.sock"
-[keys]
-use = 1
-secret.1 = "{OLD}"
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:0"
-peers = ["127.0.0.1:9"]
-"""
+ALONE = of_mesh(0, 2, f'socket = "{{folder}}/n0.sock"\n[keys]\nuse = 1\nsecret.1 = "{OLD}"')
 
 
 class Sender(threading.Thread):

@@ -1,5 +1,7 @@
 """Other keys: nobody is shut out, whoever is started anew meanwhile, and every change ends."""
 
+import pytest
+
 from innervate.live.rotation import Rotation
 from tests.live.pair import KEY, OTHER, Wire, begin, join, network_sealer, settle, two
 from tests.live.time_by_hand import timed
@@ -64,21 +66,18 @@ async def test_changes_closer_than_the_grace_come_to_an_end():
     assert a.sealer.status() == {"use": 11, "accepted": [11]}
 
 
+@pytest.mark.parametrize(
+    ("grace_s", "number", "key", "then_s", "after_s"),
+    [(10.0, 1, KEY, 10.0, 60.0), (1000.0, 3, bytes([3]) * 32, 0.0, 5000.0)],
+    ids=["taken back", "a long grace, then none"],
+)
 @timed
-async def test_a_change_that_is_taken_back_leaves_the_old_key():
+async def test_the_later_of_two_changes_leaves_a_key_that_is_there(
+    grace_s, number, key, then_s, after_s
+):
     a, rotation = rotating()
-    rotation.begin({2: OTHER}, 2, 10.0)
+    rotation.begin({2: OTHER}, 2, grace_s)
     await settle(3.0)
-    rotation.begin({1: KEY}, 1, 10.0)
-    await settle(60.0)
-    assert a.sealer.status() == {"use": 1, "accepted": [1]}
-
-
-@timed
-async def test_a_long_grace_followed_by_none_leaves_a_key_that_is_there():
-    a, rotation = rotating()
-    rotation.begin({2: OTHER}, 2, 1000.0)
-    await settle(3.0)
-    rotation.begin({3: bytes([3]) * 32}, 3, 0.0)
-    await settle(5000.0)
-    assert a.sealer.status() == {"use": 3, "accepted": [3]}
+    rotation.begin({number: key}, number, then_s)
+    await settle(after_s)
+    assert a.sealer.status() == {"use": number, "accepted": [number]}

@@ -13,20 +13,10 @@ from innervate.live.multicast import MulticastLink
 from innervate.live.nodefile import load
 from innervate.live.serial import SerialLink
 from innervate.live.udp import UdpLink
+from tests.fixtures.node_files import of_mesh
 
 KEY = bytes(range(32))
-FILE = """\
-kind = "mesh"
-number = 3
-nodes = 5
-[keys]
-use = 1
-secret.1 = "{key}"
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:0"
-peers = ["127.0.0.1:9"]
-"""
+FILE = of_mesh(3, 5, '[keys]\nuse = 1\nsecret.1 = "{key}"')
 
 
 class Listening(Machine):

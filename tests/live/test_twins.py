@@ -8,7 +8,7 @@ from innervate.live.keyring import LIFE_BYTES, Proven
 from innervate.live.keys import LIVES, TELL_US, TWIN_US
 from innervate.wire import seal
 from tests.live import time_by_hand
-from tests.live.pair import Wire, begin, join, network_sealer, own_sealer, settle, two
+from tests.live.pair import Wire, begin, join, joined, network_sealer, own_sealer, settle, two
 from tests.live.test_rotation import timed
 
 
@@ -173,10 +173,7 @@ def test_its_own_calls_played_back_do_not_put_out_a_question_under_way(is_group)
 
 @timed
 async def test_a_twin_that_goes_on_calling_is_told_of_as_long_as_it_does():
-    a, twin = Wire("a"), Wire("twin")
-    join(a, twin)
-    begin(network_sealer(1), a)
-    begin(network_sealer(1), twin)
+    a, _twin = joined(network_sealer(1), network_sealer(1), ("a", "twin"))
     await settle(1.0)
     contact_of(a).stop()  # it has another neighbour on this path, and asks nobody
     await settle(keys.TWINS_US / 1e6 + 10)

@@ -12,19 +12,10 @@ from innervate.scenario.declared.shared import Input, check_values, inputs_of
 from innervate.scenario.events import in_time, told
 from innervate.scenario.overrides import parse_value
 from innervate.scenario.source import Source, shown
+from tests.fixtures.scenarios import one_port
 
 RING = {"kind": "babel", "nodes": 4, "duration_s": 2.0}
-SKIN = """\
-kind = "skin"
-
-[[patch]]
-columns = 4
-rows = 3
-
-[[interface]]
-row = 0
-column = 0
-"""
+SKIN = one_port(4, 3, "")
 
 
 def findings(at_s, duration_s=2.0):

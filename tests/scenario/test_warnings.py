@@ -115,6 +115,14 @@ CASES = [
             (101, ("", ""), "[radio]\nprofile = 'ip'"),
         )
     ),
+    *(
+        ("mesh", "nothing else says what was received: no hop is tried again", f"{text}false",
+         f"{text}true")
+        for text in ("nodes = 3\n[protocol]\nhop_acks = ",
+                     "nodes = 3\nradio = { profile = 'ip' }\n[protocol]\nhop_acks = ")
+    ),
+    ("mesh", "nothing else says what was received", "nodes = 3\n[protocol]\nhop_acks = false",
+     "nodes = 3\nradio = { mac = 'csma-cd-r' }\n[protocol]\nhop_acks = false"),
     ("mesh", "nobody can cross it", FENCE, FENCE + ROBOT),
     ("mesh", "outside the fence from the beginning: n1",
      *(f"{FENCE}[[robot]]\nnode = 1\nwaypoints = [[{at}]]" for at in ("1, 8", "4, 4"))),

@@ -49,111 +49,107 @@ async def sockets_of(mesh):
                 await server.stop()
 
 
-def test_a_mesh_is_drawn_cut_and_mended():
+def on_a_ring(test):
+    """A test that is given four nodes in a ring, their sockets, and what a page shows of them."""
+
     async def main():
         async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
             source = await asyncio.to_thread(Live, paths)
             async with serving(source) as served, Page(served.address) as page:
-                await page.take()
-                scene = page.scene
-                assert (scene["kind"], scene["source"]) == ("mesh", "live")
-                assert scene["duration_s"] is None
-                assert scene["can"] == ["cut", "heal", "kill", "revive"]
-                assert [node["label"] for node in scene["nodes"]] == ["n0", "n1", "n2", "n3"]
-                assert scene["nodes"][0]["role"] == "gateway"
-                pairs = [(link["a"], link["b"]) for link in scene["links"]]
-                assert pairs == sorted((min(pair), max(pair)) for pair in RING)
-                await page.until(lambda: page.state.get("unconnected") == 0)
-                assert page.state["parent"][0] == -1
-                assert {page.state["parent"][1], page.state["parent"][3]} == {0}
-                await page.give("cut", link=0)  # n0 - n1
-                await page.until(lambda: page.state["link_up"] == [0, 1, 1, 1])
-                here, there = mesh.cables[0, 1]
-                assert here.cut
-                assert there.cut
-                assert "n0 - n1 cut" in page.state["recovery"]["cause"]
-                cut_s = page.state["recovery"]["at_s"]
-                receipt = mesh.nodes[1].send_message(0, b"find another way")
-                assert await receipt.wait() == "delivered"
-                await page.until(lambda: page.state["parent"][1] == 2)
-                await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
-                refused = await page.ask("cut", link=0)
-                assert "already" in refused["text"]
-                await page.give("heal", link=0)
-                await page.until(lambda: page.state["link_up"] == [1, 1, 1, 1])
-                assert not here.cut
-                assert page.series["frames"]
-                since_s = page.state["t_s"] - page.state["since_cut_s"]
-                assert since_s == pytest.approx(cut_s, abs=1e-6)  # one moment, however often told
-                await page.give("kill", node=2)  # all of its paths, at its own end
-                await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
-                assert [path.cut for path in mesh.nodes[2].paths] == [True, True]
-                assert not any(path.cut for path in mesh.nodes[1].paths)
-                assert page.state["cut_off"] == [0, 0, 1, 0]
-                again = await page.ask("kill", node=2)
-                assert "already" in again["text"]
-                await page.give("revive", node=2)
-                await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
-                assert not any(path.cut for path in mesh.nodes[2].paths)
-                answer = await page.ask("seek", t_s=0)
-                assert "not possible" in answer["text"]
+                await test(mesh, paths, source, page)
 
-    asyncio.run(main())
+    return lambda: asyncio.run(main())
 
 
-def test_a_node_that_stops_is_seen_and_comes_back():
-    async def main():
-        async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
-            source = await asyncio.to_thread(Live, paths)
-            async with serving(source) as served, Page(served.address) as page:
-                await page.until(lambda: page.state.get("node_up") == [1, 1, 1, 1])
-                aside = paths[2].with_suffix(".aside")
-                paths[2].rename(aside)
-                source._poller._lines[2].sock.shutdown(socket.SHUT_RDWR)
-                await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
-                assert page.state["link_up"][1:3] != [1, 1]
-                await page.until(lambda: "n2 does not answer any more" in page.text())
-                aside.rename(paths[2])
-                await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
-                await page.until(lambda: "n2 answers again" in page.text())
+@on_a_ring
+async def test_a_mesh_is_drawn_cut_and_mended(mesh, paths, source, page):
+    await page.take()
+    scene = page.scene
+    assert (scene["kind"], scene["source"]) == ("mesh", "live")
+    assert scene["duration_s"] is None
+    assert scene["can"] == ["cut", "heal", "kill", "revive"]
+    assert [node["label"] for node in scene["nodes"]] == ["n0", "n1", "n2", "n3"]
+    assert scene["nodes"][0]["role"] == "gateway"
+    pairs = [(link["a"], link["b"]) for link in scene["links"]]
+    assert pairs == sorted((min(pair), max(pair)) for pair in RING)
+    await page.until(lambda: page.state.get("unconnected") == 0)
+    assert page.state["parent"][0] == -1
+    assert {page.state["parent"][1], page.state["parent"][3]} == {0}
+    await page.give("cut", link=0)  # n0 - n1
+    await page.until(lambda: page.state["link_up"] == [0, 1, 1, 1])
+    here, there = mesh.cables[0, 1]
+    assert here.cut
+    assert there.cut
+    assert "n0 - n1 cut" in page.state["recovery"]["cause"]
+    cut_s = page.state["recovery"]["at_s"]
+    receipt = mesh.nodes[1].send_message(0, b"find another way")
+    assert await receipt.wait() == "delivered"
+    await page.until(lambda: page.state["parent"][1] == 2)
+    await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
+    refused = await page.ask("cut", link=0)
+    assert "already" in refused["text"]
+    await page.give("heal", link=0)
+    await page.until(lambda: page.state["link_up"] == [1, 1, 1, 1])
+    assert not here.cut
+    assert page.series["frames"]
+    since_s = page.state["t_s"] - page.state["since_cut_s"]
+    assert since_s == pytest.approx(cut_s, abs=1e-6)  # one moment, however often told
+    await page.give("kill", node=2)  # all of its paths, at its own end
+    await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
+    assert [path.cut for path in mesh.nodes[2].paths] == [True, True]
+    assert not any(path.cut for path in mesh.nodes[1].paths)
+    assert page.state["cut_off"] == [0, 0, 1, 0]
+    again = await page.ask("kill", node=2)
+    assert "already" in again["text"]
+    await page.give("revive", node=2)
+    await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+    assert not any(path.cut for path in mesh.nodes[2].paths)
+    answer = await page.ask("seek", t_s=0)
+    assert "not possible" in answer["text"]
 
-    asyncio.run(main())
+
+@on_a_ring
+async def test_a_node_that_stops_is_seen_and_comes_back(mesh, paths, source, page):
+    await page.until(lambda: page.state.get("node_up") == [1, 1, 1, 1])
+    aside = paths[2].with_suffix(".aside")
+    paths[2].rename(aside)
+    source._poller._lines[2].sock.shutdown(socket.SHUT_RDWR)
+    await page.until(lambda: page.state["node_up"] == [1, 1, 0, 1])
+    assert page.state["link_up"][1:3] != [1, 1]
+    await page.until(lambda: "n2 does not answer any more" in page.text())
+    aside.rename(paths[2])
+    await page.until(lambda: page.state["node_up"] == [1, 1, 1, 1])
+    await page.until(lambda: "n2 answers again" in page.text())
 
 
-def test_what_others_do_to_a_network_is_seen_like_what_is_clicked():
+@on_a_ring
+async def test_what_others_do_to_a_network_is_seen_like_what_is_clicked(mesh, paths, source, page):
     """Cables cut by hand, a node that ends, and at last all of them."""
-
-    async def main():
-        async with Mesh(4, RING) as mesh, sockets_of(mesh) as paths:
-            source = await asyncio.to_thread(Live, paths)
-            async with serving(source) as served, Page(served.address) as page:
-                await page.until(lambda: page.state.get("headline", {}).get("level") == "ok")
-                assert page.state["headline"]["text"] == "All 4 nodes have a way to the gateway."
-                assert page.state["recovery"] is None
-                for path in mesh.cables[0, 1]:
-                    path.cut = True
-                await page.until(lambda: page.state["recovery"] is not None)
-                assert page.state["recovery"]["cause"] == "link n0 - n1 cut"
-                await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
-                assert page.state["since_cut_s"] is not None
-                await page.until(lambda: "link n0 - n1 cut" in page.text())
-                for path in mesh.cables[0, 1]:
-                    path.cut = False
-                await page.until(lambda: "link n0 - n1 put back" in page.text())
-                end(source, paths[2])
-                await page.until(lambda: page.state["headline"]["level"] == "degraded")
-                assert page.state["headline"]["text"] == "1 of 4 nodes is silent."
-                assert page.state["headline"]["nodes"] == [2]
-                cause = "n2 does not answer any more"
-                await page.until(lambda: page.state["recovery"]["cause"] == cause)
-                for path in (paths[0], paths[1], paths[3]):
-                    end(source, path)
-                await page.until(lambda: page.state["headline"]["level"] == "no data")
-                assert page.state["headline"]["text"] == "None of the 4 nodes answers."
-                assert page.state["unconnected"] is None
-                assert page.state["recovery"]["recovered_ms"] is None
-
-    asyncio.run(main())
+    await page.until(lambda: page.state.get("headline", {}).get("level") == "ok")
+    assert page.state["headline"]["text"] == "All 4 nodes have a way to the gateway."
+    assert page.state["recovery"] is None
+    for path in mesh.cables[0, 1]:
+        path.cut = True
+    await page.until(lambda: page.state["recovery"] is not None)
+    assert page.state["recovery"]["cause"] == "link n0 - n1 cut"
+    await page.until(lambda: page.state["recovery"]["recovered_ms"] is not None)
+    assert page.state["since_cut_s"] is not None
+    await page.until(lambda: "link n0 - n1 cut" in page.text())
+    for path in mesh.cables[0, 1]:
+        path.cut = False
+    await page.until(lambda: "link n0 - n1 put back" in page.text())
+    end(source, paths[2])
+    await page.until(lambda: page.state["headline"]["level"] == "degraded")
+    assert page.state["headline"]["text"] == "1 of 4 nodes is silent."
+    assert page.state["headline"]["nodes"] == [2]
+    cause = "n2 does not answer any more"
+    await page.until(lambda: page.state["recovery"]["cause"] == cause)
+    for path in (paths[0], paths[1], paths[3]):
+        end(source, path)
+    await page.until(lambda: page.state["headline"]["level"] == "no data")
+    assert page.state["headline"]["text"] == "None of the 4 nodes answers."
+    assert page.state["unconnected"] is None
+    assert page.state["recovery"]["recovered_ms"] is None
 
 
 def end(source, path):

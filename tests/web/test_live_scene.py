@@ -4,6 +4,7 @@ import pytest
 
 from innervate import scenario
 from innervate.web.live_scene import FILE, UNKNOWN, drawn
+from tests.fixtures.scenarios import one_port
 
 MESH = """
 kind = "mesh"
@@ -21,16 +22,7 @@ y_m = 20
 [fence]
 polygon = [[-5, -5], [40, -5], [40, 30]]
 """
-SKIN = """
-kind = "skin"
-name = "sleeve"
-[[patch]]
-columns = 3
-rows = 2
-[[interface]]
-row = 0
-column = 0
-"""
+SKIN = one_port(3, 2, 'name = "sleeve"')
 RADIO = 'kind = "radio"\nname = "team"\nstations = 3'
 
 

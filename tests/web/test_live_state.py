@@ -181,3 +181,69 @@ def test_a_look_collects_paths_to_others_once():
     told = skin_of_three()
     state = SkinState(SkinMap(told), told)
     assert state.paths_beyond is state.paths_beyond
+
+
+def revoked(one):
+    """What a node says that was told that its own identity is revoked."""
+    return one | {"keys": {"identity": {"serial": 7, "list": 1, "revoked": [7]}}}
+
+
+def test_every_network_says_of_who_is_revoked_that_it_was_put_out():
+    def chain():
+        ends = ((1, 2),), ((2, 1), (3, 4)), ((4, 3),)
+        return {at: {"kind": "own", "counters": {}, "paths": paths(*here)}
+                for at, here in enumerate(ends)}  # fmt: skip
+
+    told = chain()
+    told[2] = revoked(told[2])
+    state = State(Map(told), told)
+    out = "1 of 3 nodes was put out: its identity is revoked."
+    assert state.headline() == ("degraded", out, (2,))
+    assert (state.unconnected, state.apart, state.left) == (1, 0, 1)
+    assert state.fields()["put_out"].tolist() == [0, 0, 1]
+    assert state.without_words() == "1 that is put out"
+    told = {at: one | {"paths": []} for at, one in told.items()}
+    state = State(Map(told), told)
+    assert (state.headline().text, state.unconnected) == (out, 1), "cables or not"
+
+    told = chain()
+    told[2] = revoked(told[2])
+    told[2]["paths"] += [paths((9, 9))[0] | {"port": 1, "heard_s": 0.1}]
+    told[1]["paths"] += [paths((8, 8))[0] | {"port": 2, "heard_s": 0.1}]
+    state = State(Map(told), told)
+    assert (state.unconnected, state.left) == (1, 1), "whoever it hears elsewhere"
+    told = chain()
+    told[1] = revoked(told[1])
+    state = State(Map(told), told)
+    assert state.headline().text == f"No links join 1 of 3 nodes with the others; {out}"
+    assert (state.unconnected, state.apart) == (2, 1)
+    assert state.without_words() == "2 that are cut off or put out"
+    told = chain()
+    told[0] = revoked(told[0])
+    assert State(Map(told), told).headline().text == out, "the first of all, too"
+
+    told = skin_of_three()
+    told[1] = revoked(told[1])
+    state = SkinState(SkinMap(told), told)
+    found = state.headline()
+    assert found.text == (
+        "1 of 2 cells (1) was put out: its identity is revoked; the other cell has a way to the PC."
+    )
+    assert (found.level, found.nodes) == ("degraded", (1,))
+    assert (state.unconnected, state.lacking, state.left, state.apart) == (1, 0, 1, 0)
+    told = skin_of_three()
+    told[2] = revoked(told[2])
+    state = SkinState(SkinMap(told), told)
+    assert state.headline()[:2] == ("down", "The PC was put out: its identity is revoked.")
+    assert (state.unconnected, state.apart) == (2, 2)
+    told = {0: cell(0, 0, udp((1, 2))), 1: revoked(cell(1, None, udp((3, 4))))}
+    state = SkinState(SkinMap(told), told)
+    assert (state.map.links, state.unconnected, state.lacking, state.left) == ([], 1, 0, 1)
+
+
+def test_whoever_is_put_out_and_switched_off_is_silent():
+    told = skin_of_three()
+    told[1] = revoked(told[1])
+    where = SkinMap(told)
+    del told[1]
+    assert "does not answer" in SkinState(where, told).headline().text

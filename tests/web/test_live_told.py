@@ -242,8 +242,10 @@ def test_who_is_revoked_is_put_out_and_no_link_of_it_is_cut(nodes):
     assert shown["headline"]["text"] == "1 of 3 nodes was put out: its identity is revoked."
     texts = nodes.texts()
     assert texts == [
-        "c put out: revoked", "every node but 1 that is cut off kept its way, as they say",
+        "c put out: revoked", "every node but 1 that is put out kept its way, as they say",
     ]  # fmt: skip
+    assert (shown["put_out"].tolist(), shown["apart"]) == ([0, 0, 1], 0)
+    assert shown["recovery"]["apart"] == 0, "it was not cut off"
     assert nodes.marks() == ["loss"]
     nodes.look(1.0)
     assert nodes.texts() == texts

@@ -62,12 +62,17 @@ def test_cells_show_whose_tree_they_are_in():
     assert 0 < state["load"].max() <= 1
 
 
+def line_of(cells):
+    """Half a second of a row of cells, the PC at its first."""
+    made = simulated({**SKIN, "patch": [{"columns": cells, "rows": 1}],
+                      "interface": [{"row": 0, "column": 0, "port": "W"}]})  # fmt: skip
+    go_to(made, 0.5)
+    return made
+
+
 @pytest.mark.usefixtures("few_points")
 def test_a_cell_that_is_off_and_those_behind_it_have_no_way():
-    line = {**SKIN, "patch": [{"columns": 5, "rows": 1}],
-            "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
-    made = simulated(line)
-    go_to(made, 0.5)
+    made = line_of(5)
     made.carry_out(messages.Kill(2))
     state = made.fields()
     assert state["node_up"].tolist() == [1, 1, 0, 1, 1, 1]
@@ -282,10 +287,7 @@ def test_healing_leaves_the_number_of_the_cut():
 @pytest.mark.usefixtures("few_points")
 def test_a_cell_alone_has_recovered_when_it_is_back():
     """A cut that nothing can get over, until it is healed."""
-    line = {**SKIN, "patch": [{"columns": 3, "rows": 1}],
-            "interface": [{"row": 0, "column": 0, "port": "W"}]}  # fmt: skip
-    made = simulated(line)
-    go_to(made, 0.5)
+    made = line_of(3)
     made.carry_out(messages.Kill(1))
     made.carry_out(messages.Revive(1))
     made.run_to_end()

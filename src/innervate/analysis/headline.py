@@ -76,6 +76,12 @@ def part_of(part: int, whole: int, what: str) -> str:
     return every(whole, what)
 
 
+def put_out(who: str, count: int) -> str:
+    """Of running nodes whose identities are revoked: `who` they are, and how many."""
+    whose = "its identity is" if count == 1 else "their identities are"
+    return f"{who} {verb(count, 'was')} put out: {whose} revoked"
+
+
 def silent(count: int, what: str) -> Headline:
     """Of a network of which nobody answers; `what` one of them is called."""
     who = f"None of the {count:,} {what}s answers." if count > 1 else f"The only {what} is silent."

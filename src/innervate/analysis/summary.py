@@ -8,16 +8,8 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from innervate.analysis.headline import (
-    BEFORE_ALL,
-    DEGRADED,
-    DOWN,
-    NO_DATA,
-    OK,
-    Headline,
-    every,
-    verb,
-)
+from innervate.analysis import headline as level
+from innervate.analysis.headline import Headline, every, verb
 from innervate.analysis.percentiles import usual
 from innervate.analysis.summary_common import Common, Percentiles, measured
 from innervate.folders import blamed
@@ -129,7 +121,9 @@ def _headline(result: Any) -> Headline:
     script = script_of(result.plan)
     if script is None:
         return headline(result.counts, result.handled)
-    return Headline(OK, f"nothing broke in {number_of(len(script.steps), 'step')} of its script.")
+    return Headline(
+        level.OK, f"nothing broke in {number_of(len(script.steps), 'step')} of its script."
+    )
 
 
 def _measures(result: Any) -> Reports:
@@ -200,12 +194,12 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         goes_on: messages that are not delivered may still come.
     """
     if not handled and not counts.offered:
-        return BEFORE_ALL
+        return level.BEFORE_ALL
     nodes, off = counts.nodes, counts.off
     lost, dropped = sum(counts.lost_by.values()), sum(counts.dropped_by.values())
     if nodes and len(off) == nodes:
         who = every(nodes, "node").capitalize()
-        return Headline(DOWN, f"{who} {verb(nodes, 'is')} off.", off)
+        return Headline(level.DOWN, f"{who} {verb(nodes, 'is')} off.", off)
     if lost and not counts.arrived:
         how = ("succeeded", "failed") if counts.is_shared else ("arrived", "did not arrive")
         return _down(_none(counts.sent, _frame(counts), *how), counts)
@@ -215,7 +209,7 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         said = _none(counts.offered, "message", "was delivered", "was not delivered")
         return _down(said, counts)
     if not (counts.sent or counts.offered or off):
-        return Headline(NO_DATA, "No frame was sent.")
+        return Headline(level.NO_DATA, "No frame was sent.")
     failed = 0 if _is_spared(counts, missing + dropped) else lost
     wrong = [
         _part(dropped, counts.offered, "message", "given up"),
@@ -224,13 +218,13 @@ def headline(counts: Counts, handled: int, goes_on: bool = False) -> Headline:
         _part(failed, counts.sent, _frame(counts), "lost"),
     ]
     said = ", ".join(filter(None, wrong))
-    return Headline(DEGRADED, f"{said}.", off) if said else Headline(OK, _well(counts))
+    return Headline(level.DEGRADED, f"{said}.", off) if said else Headline(level.OK, _well(counts))
 
 
 def _down(said: str, counts: Counts) -> Headline:
     """That nothing came, and who is off."""
     off = _part(len(counts.off), counts.nodes, "node", "off")
-    return Headline(DOWN, f"{', '.join(filter(None, (said, off)))}.", counts.off)
+    return Headline(level.DOWN, f"{', '.join(filter(None, (said, off)))}.", counts.off)
 
 
 def _frame(counts: Counts) -> str:

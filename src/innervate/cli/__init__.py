@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 TYPE_CHECKING = False
@@ -27,6 +28,21 @@ def main(tokens: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("innervate: interrupted", file=sys.stderr)
         return 130
+    finally:
+        _drop_unwritten()
+
+
+def _drop_unwritten() -> None:
+    """What a full disk did not take goes nowhere: Python would try again as it ends, and say so."""
+    for stream in filter(None, (sys.stdout, sys.stderr)):  # None: it is closed
+        try:
+            stream.flush()
+        except OSError:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, stream.fileno())
+            os.close(nowhere)
+        except ValueError:
+            pass  # closed by who called
 
 
 def _node(file: str) -> int:

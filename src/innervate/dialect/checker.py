@@ -127,10 +127,23 @@ class _Numbers(ast.NodeTransformer):
             return ast.copy_location(ast.Name(f"{owner}.{node.attr}", node.ctx), node)
         return self.generic_visit(node)
 
+    def visit_Assign(self, node):
+        self.generic_visit(node)
+        return [
+            ast.copy_location(ast.Assign([target], node.value), node) for target in node.targets
+        ]
+
 
 def with_numbers(tree):
-    """A file's tree in which a number of another module is one name: "kinds.DATA"."""
+    """A file's tree, plainer: a number of another module is one name, "kinds.DATA"; where several
+    fields are assigned to at once, an assignment each.
+    """
     return _Numbers({name for _, name in imports_of(tree)}).visit(tree)
+
+
+def _attributes(node):
+    """The names behind a dot in an expression."""
+    return {part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute)}
 
 
 class Checker:
@@ -202,6 +215,18 @@ class Checker:
                                     "field of the state")  # fmt: skip
             if any(isinstance(part, ast.Call) for part in ast.walk(node.value)):
                 self.complain(node, "a module constant calls nothing; write the number")
+
+    def check_Assign(self, node):
+        """Several places that are given a value at once are fields, and the value is no call's and
+        of none of them: C and proofs read it once for each.
+        """
+        if len(node.targets) > 1 and self.parents[node] is not self.tree:
+            is_call = any(isinstance(part, ast.Call) for part in ast.walk(node.value))
+            given = set().union(*map(_attributes, node.targets))
+            is_variable = any(isinstance(target, ast.Name) for target in node.targets)
+            if is_call or is_variable or given & _attributes(node.value):
+                self.complain(node, "only fields are given a value together, and one that calls "
+                                    "nothing and reads none of them; write one each")  # fmt: skip
 
     def check_Import(self, node):
         """What is imported as modules."""

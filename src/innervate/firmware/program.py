@@ -195,9 +195,8 @@ class _Reader:
             handle(statement)
 
     def _Assign(self, node: ast.Assign) -> None:
-        if len(node.targets) != 1:
-            raise self.made.refuse(node, "one assignment at a time")
-        self._store(node.targets[0], self.type(node.value), node.value)
+        (target,) = node.targets  # `with_numbers` has made an assignment each of several
+        self._store(target, self.type(node.value), node.value)
 
     def _AugAssign(self, node: ast.AugAssign) -> None:
         whole = ast.copy_location(ast.BinOp(node.target, node.op, node.value), node)

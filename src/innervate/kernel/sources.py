@@ -8,7 +8,7 @@ from pathlib import Path
 # network these parts.
 SOURCE_ROOMS = (
     "dialect", "kernel", "sim", "verify",
-    "scenario/actions", "topology/patch.py", "topology/placement.py",
+    "scenario/actions", "topology/patch.py", "topology/placement.py", "topology/astray.py",
 )  # fmt: skip
 PARTS = (
     "protocol", "sim", "verify", "baselines", "slotted", "invariants.py",

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from textwrap import wrap
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ BARS_MAX = 24
 STEPS_MAX = 2000  # of the curve of a distribution
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(NamedTuple):
     """A moment on the time axis: where (in the axis's unit) and what to call it."""
 
     at: float
@@ -97,8 +96,7 @@ class Steps:
         return drawing
 
 
-@dataclass(frozen=True, slots=True)
-class Bar:
+class Bar(NamedTuple):
     """One bar: its name, its length, the words behind it, and its class."""
 
     name: str
@@ -107,8 +105,7 @@ class Bar:
     kind: str = "bar"
 
 
-@dataclass(frozen=True, slots=True)
-class Bars:
+class Bars(NamedTuple):
     """Bars with a caption; `even` is marked as the fair share."""
 
     bars: Sequence[Bar]

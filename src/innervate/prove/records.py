@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from innervate.dialect.source import Function
 from innervate.prove.terms import Term, Terms
@@ -70,8 +70,7 @@ class Either:
     b: Any
 
 
-@dataclass(frozen=True, slots=True)
-class Partly:
+class Partly(NamedTuple):
     """What has a value only where a truth holds: a name, or what a call returned."""
 
     where: Term

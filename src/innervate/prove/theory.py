@@ -74,6 +74,12 @@ def check_change(change: Change | None, *entries: str) -> None:
         raise ProveError(f"{change[0]!r} is in no source that is proved")
 
 
+def whole_source(entry: str, change: Change | None) -> Source:
+    """As `source`, of the only protocol that is proved: a mistake is in it (or ProveError)."""
+    check_change(change, entry)
+    return source(entry, change)
+
+
 def is_in(entry: str, change: Change) -> bool:
     """True if the text of a mistake is in what an entry's functions can reach."""
     return any(change[0] in inspect.getsource(module) for module in reached(entry))

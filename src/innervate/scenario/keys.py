@@ -56,3 +56,13 @@ When = Annotated[
     float | tuple[float, float],
     Meta(description="a number of seconds from 0, or a range [from, to]"),
 ]
+
+
+class Scenario(Table, frozen=True, kw_only=True):
+    """The keys that scenarios of all kinds begin with; how long a run lasts each says itself."""
+
+    kind: str
+    schema: Schema = SCHEMA
+    name: Name = ""
+    duration_s: float
+    seed: Seed = 1

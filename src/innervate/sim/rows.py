@@ -7,11 +7,7 @@ def record_row(world, time, node, code, a, b):
     if run.row_limit > 0:
         row = world.rows[run.rows]
         run.rows += 1
-        row.time = time
-        row.node = node
-        row.code = code
-        row.a = a
-        row.b = b
+        row.time, row.node, row.code, row.a, row.b = time, node, code, a, b
 
 
 def record_step(world, node, time, handler, port):
@@ -20,11 +16,8 @@ def record_step(world, node, time, handler, port):
     if run.trail_limit > 0:
         row = world.trail[run.trail]
         run.trail += 1
-        row.time = time
-        row.node = node
-        row.handler = handler
-        row.port = port
-        row.fingerprint = run.fingerprint
+        row.time, row.node, row.handler = time, node, handler
+        row.port, row.fingerprint = port, run.fingerprint
 
 
 def record_delivery(world, time, node, port, kind, latency):
@@ -33,8 +26,4 @@ def record_delivery(world, time, node, port, kind, latency):
     if run.delivery_limit > 0:
         row = world.deliveries[run.deliveries]
         run.deliveries += 1
-        row.time = time
-        row.node = node
-        row.port = port
-        row.kind = kind
-        row.latency = latency
+        row.time, row.node, row.port, row.kind, row.latency = time, node, port, kind, latency

@@ -27,12 +27,7 @@ def record_frame(world, time, at, out, why):
     run = world.run[0]
     row = world.taps[run.taps]
     run.taps += 1
-    row.time = time
-    row.start = time
-    row.at = at
-    row.sender = 0
-    row.out = out
-    row.why = why
+    row.time, row.start, row.at, row.sender, row.out, row.why = time, time, at, 0, out, why
     return row
 
 

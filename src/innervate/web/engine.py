@@ -94,6 +94,12 @@ class Engine:
         return max(int(self._times[at]), self.now_us + 1)
 
     @property
+    def is_before_fault(self) -> bool:
+        """Something is done to the network at this moment, and has not happened yet."""
+        at = bisect_left(self._times, self.now_us)
+        return at < len(self._times) and self._times[at] == self.now_us
+
+    @property
     def earliest_us(self) -> int:
         """When something can be done at the earliest: the network begins at 0, by itself."""
         return max(self.now_us, 1)

@@ -272,11 +272,10 @@ class Live(Source):
             kept = recovery.detected_ms is None and not were_none
             recovery.recovered_ms = 0.0 if kept else after_ms
             how = "kept its way" if kept else f"has a way again after {int(after_ms + 0.5)} ms"
-            apart = state.unconnected
-            are = "is" if apart == 1 else "are"
-            every = f"every node{'' if len(self._told) == len(self._last) else ' that answers'}"
-            who = every if not apart else f"{every} but {apart} that {are} cut off"
-            self._log.say(at_us, f"{who} {how}, as they say", "info" if apart else "good")
+            who = f"every node{'' if len(self._told) == len(self._last) else ' that answers'}"
+            others = state.without_words()
+            who = f"{who} but {others}" if others else who
+            self._log.say(at_us, f"{who} {how}, as they say", "info" if others else "good")
 
     def _lose(self, before: State, cause: str, more: int = 0) -> None:
         """Something was taken away, and so many others with it: a recovery begins."""

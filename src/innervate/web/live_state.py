@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.headline import DEGRADED, OK, Headline, every, silent
+from innervate.analysis.headline import (
+    DEGRADED,
+    OK,
+    Headline,
+    every,
+    part_of,
+    put_out,
+    sentence,
+    silent,
+)
 from innervate.analysis.ways import NOWHERE, Numbers, reach
 from innervate.web.live_map import Link, Map, Place, Status, is_put_out
 
@@ -29,6 +38,8 @@ class State:
         hop: per place the next one on its way, NOWHERE without one.
         root, depth: where its chain leads over live links, and how far that is.
         answers: per place whether its node answers.
+        out: per place whether its node answers, and has an identity that is revoked.
+        without: per place whether its node answers and has no way.
         unconnected: how many that answer have no way, those that are cut off whole too.
         lacking: how many of those could have one, as links that are up join them.
         left: how many could have one at all, with it or without: they answer and are joined.
@@ -47,6 +58,8 @@ class State:
         up = [p.node in told and not off for p, off in zip(where.places, self.cut_off, strict=True)]
         self.node_up: Numbers = np.array(up, np.int64)
         self.link_up: Numbers = np.array([self._is_up(link) for link in where.links], np.int64)
+        self.out = np.array([place.node in self.put_out for place in where.places], np.bool_)
+        self.without = self.out
         self.hop = self.depth = self.root = np.full(len(where.places), NOWHERE)
         self.unconnected, self.lacking, self.left = self.look()
 
@@ -56,17 +69,19 @@ class State:
         Of nodes that do not say what their ways are, those have one whom links that are up join
         with the first one that answers, and on which something comes where it has to.
         """
-        on = np.flatnonzero(self.node_up)
+        on = np.flatnonzero((self.node_up == 1) & ~self.out)
         if not self.map.links or not len(on):
-            return 0, 0, len(on)
+            return int(np.count_nonzero(self.without)), 0, len(on)
         first = np.zeros(len(self.node_up), np.bool_)
         first[on[0]] = True
         live, beyond = self.live(self._is_heard), self.hears_beyond()
         joined = reach(live, first)
         if (joined & beyond).any():  # others, of whom nothing is known here, can join them
             joined = reach(live, first | beyond)
+        joined &= ~self.out
         with_it = np.count_nonzero(joined) - 1
-        return int(np.count_nonzero(~joined & self.answers)), 0, int(with_it)
+        self.without = ~joined & self.answers
+        return int(np.count_nonzero(self.without)), 0, int(with_it)
 
     def hears_beyond(self) -> Any:
         """Per place whether it hears somebody who does not run here."""
@@ -100,8 +115,18 @@ class State:
 
     @property
     def apart(self) -> int:
-        """How many no links join with the others, without those who were cut off whole."""
-        return max(0, self.unconnected - sum(self.cut_off) - self.lacking)
+        """How many no links join with the others, without those cut off whole, or put out."""
+        known = self.out | np.array(self.cut_off, np.bool_)
+        return max(0, int(np.count_nonzero(self.without & ~known)) - self.lacking)
+
+    def without_words(self) -> str:
+        """Who has no way whatever anybody does: "2 that are cut off"; "" nobody."""
+        if not self.unconnected:
+            return ""
+        out = self.without & self.out
+        what = "cut off" if not out.any() else "put out" if out[self.without].all() else ""
+        are = "is" if self.unconnected == 1 else "are"
+        return f"{self.unconnected} that {are} {what or 'cut off or put out'}"
 
     def changed_links(self, now: State) -> list[tuple[Link, bool]]:
         """Links that were cut or put back since, while their ends went on answering.
@@ -142,14 +167,18 @@ class State:
     def judge(self) -> Headline:
         """The headline while somebody answers."""
         count, off = len(self.node_up), tuple(np.flatnonzero(self.node_up == 0).tolist())
+        out, said = np.flatnonzero(self.out), []
         if off:
             are = (
                 "does not answer or is cut off" if len(off) == 1 else "do not answer or are cut off"
             )
-            return Headline(DEGRADED, f"{len(off):,} of {count:,} {self.noun}s {are}.", off)
-        if self.unconnected:
-            apart = f"{self.unconnected:,} of {count:,} {self.noun}s"
-            return Headline(DEGRADED, f"No links join {apart} with the others.")
+            said.append(f"{len(off):,} of {count:,} {self.noun}s {are}")
+        elif apart := int(np.count_nonzero(self.without & ~self.out)):
+            said.append(f"no links join {apart:,} of {count:,} {self.noun}s with the others")
+        if len(out):
+            said.append(put_out(part_of(len(out), count, self.noun), len(out)))
+        if said:
+            return Headline(DEGRADED, sentence(said), tuple(sorted({*off, *out.tolist()})))
         who = every(count, self.noun)
         return Headline(OK, f"{who[0].upper()}{who[1:]} answer{'s' if count == 1 else ''}.")
 
@@ -202,6 +231,7 @@ class State:
             "node_up": self.node_up,
             "link_up": self.link_up,
             "cut_off": [int(off) for off in self.cut_off],
+            "put_out": self.out.astype(np.int64),
             "unconnected": self.unconnected if self.told else None,
             "flights": [],
             **self.more(),

@@ -169,6 +169,8 @@ class Simulated(Source):
         began = time.perf_counter()
         while self.engine.now_us < until_us and not self.at_end:
             edge = min(until_us, self._next_point_us, self._next_check_us(), self.engine.edge_us)
+            if self.engine.is_before_fault:
+                self.view.memory.before = self.view.apart()
             started = time.thread_time()  # not the time others have the processor
             try:
                 self.engine.advance(edge, self._budget)

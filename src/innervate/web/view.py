@@ -23,6 +23,7 @@ class Memory:
     fault: Any = None  # the newest that took something away
     event_us: int = 0  # when something was done last, whatever it was
     told_us: int = 0  # faults before this are told
+    before: int = 0  # so many were cut off before the newest moment in which something was done
     taken: Taken = field(default_factory=Taken)
 
 
@@ -98,6 +99,10 @@ class View(ABC):
         recovery = self.memory.recovery
         return recovery is not None and recovery.recovered_ms is None
 
+    def apart(self) -> int:
+        """How many are cut off now, so that no recovery can have them in it."""
+        return 0
+
     def check(self) -> None:  # noqa: B027 - only who says so by `check_us`
         """Look whether the network has recovered; called at `check_us`."""
 
@@ -167,10 +172,10 @@ class View(ABC):
 
     def _lost(self, cause: str, at_us: int) -> Recovery:
         """Something was taken away; what went at the same moment before it is named first."""
-        before = self.memory.recovery
-        if before is None or before.at_us != at_us:
-            return Recovery(cause, at_us)
-        return Recovery(before.cause, at_us, more=before.more + 1)
+        first, before = self.memory.recovery, self.memory.before
+        if first is None or first.at_us != at_us:
+            return Recovery(cause, at_us, before=before)
+        return Recovery(first.cause, at_us, more=first.more + 1, before=before)
 
     def tell_faults(self) -> list[Any]:
         """Begin all faults that have happened and were not told yet; them, in order of time."""

@@ -13,18 +13,8 @@ from innervate.live.declared import DeclaredNode, DeclaredStack
 from innervate.live.links import Link, Path
 from innervate.network import networks
 from innervate.networks.babel.packets import NOT_BABEL, NOTHING, Packets
+from innervate.networks.babel.protocol import constants as c
 from innervate.networks.babel.protocol import fields
-from innervate.networks.babel.protocol.constants import (
-    ACK,
-    ACK_REQUEST,
-    DATA,
-    HELLO,
-    IHU,
-    INFINITY,
-    ROUTE_REQUEST,
-    SEQNO_REQUEST,
-    UPDATE,
-)
 from innervate.networks.babel.tlvs import NOBODY, address, router_id
 from tests.networks.babel.bench import Bench
 
@@ -70,27 +60,27 @@ def said(data, number=US):
     return found
 
 
-HELLO_ONLY = {"kind": HELLO, "source": OTHER, "hello_no": 258, "hello": 100}
+HELLO_ONLY = {"kind": c.HELLO, "source": OTHER, "hello_no": 258, "hello": 100}
 ROUTE = {"seq": 5, "metric": 96, "update": 200}
 KNOWN = [
     (HELLO_ONLY, "04 06 00 00 01 02 00 01"),
     (HELLO_ONLY | {"rxcost": 96}, "04 06 00 00 01 02 00 01 05 06 00 00 00 60 00 03"),
     (
-        HELLO_ONLY | {"rxcost": INFINITY, "has_update": 1} | ROUTE,
+        HELLO_ONLY | {"rxcost": c.INFINITY, "has_update": 1} | ROUTE,
         "04 06 00 00 01 02 00 01 05 06 00 00 ff ff 00 03" + (SOURCE + TOLD).hex(),
     ),
-    ({"kind": UPDATE, "source": OTHER} | ROUTE, (SOURCE + TOLD).hex()),
-    ({"kind": IHU, "source": OTHER, "rxcost": 256, "hello": 500}, "05 06 00 00 01 00 00 05"),
-    ({"kind": ROUTE_REQUEST, "source": OTHER}, "09 12 02 80" + PREFIX.hex()),
+    ({"kind": c.UPDATE, "source": OTHER} | ROUTE, (SOURCE + TOLD).hex()),
+    ({"kind": c.IHU, "source": OTHER, "rxcost": 256, "hello": 500}, "05 06 00 00 01 00 00 05"),
+    ({"kind": c.ROUTE_REQUEST, "source": OTHER}, "09 12 02 80" + PREFIX.hex()),
     (
-        {"kind": SEQNO_REQUEST, "source": OTHER, "seq": 6, "hops": 64},
+        {"kind": c.SEQNO_REQUEST, "source": OTHER, "seq": 6, "hops": 64},
         "0a 1e 02 80 00 06 40 00" + SOURCE[4:].hex() + PREFIX.hex(),
     ),
     (
-        {"kind": ACK_REQUEST, "source": OTHER, "value": 48879, "hello": 1000},
+        {"kind": c.ACK_REQUEST, "source": OTHER, "value": 48879, "hello": 1000},
         "02 06 00 00 be ef 00 0a",
     ),
-    ({"kind": ACK, "source": OTHER, "value": 48879}, "03 02 be ef"),
+    ({"kind": c.ACK, "source": OTHER, "value": 48879}, "03 02 be ef"),
 ]
 
 
@@ -102,7 +92,7 @@ def test_4_6_octets_by_the_tables(values, octets):
 
 
 def test_data_is_a_tlv_of_those_for_experiments():
-    values = {"kind": DATA, "source": 9, "value": 513, "hops": 2}
+    values = {"kind": c.DATA, "source": 9, "value": 513, "hops": 2}
     data = packet(bytes.fromhex("e0 05 00 09 02 01 02"))
     assert coder().encode(frame(**values)) == data
     assert said(data) == [values]
@@ -202,12 +192,12 @@ def test_4_6_6_whom_an_ihu_is_for(encoding, to, taken):
 def test_4_6_6_an_ihu_alone_is_heard():
     node = Bench()
     node.hello(0, rxcost=0)
-    assert node.node.txcost[0] == INFINITY
-    node.comes(0, IHU, rxcost=96, hello=120)
+    assert node.node.txcost[0] == c.INFINITY
+    node.comes(0, c.IHU, rxcost=96, hello=120)
     assert node.node.txcost[0] == 96
     assert node.node.ihu_at[0] == node.now + 42_000  # 3.5 times its interval [appendix B]
-    node.comes(1, IHU, rxcost=96, hello=120)
-    assert node.node.txcost[1] == INFINITY, "nobody is known there"
+    node.comes(1, c.IHU, rxcost=96, hello=120)
+    assert node.node.txcost[1] == c.INFINITY, "nobody is known there"
 
 
 # "the first Omitted octets of the prefix are taken from the previous Update TLV with the Prefix
@@ -226,7 +216,7 @@ def test_4_6_9_compressed_prefixes():
 # "if there is no suitable TLV, then this update is ignored" [4.6.9]
 def test_4_6_9_whose_route_it_is():
     elsewhere = b"\x06\x0a\0\0" + router_id(OTHER)
-    lost = {"kind": UPDATE, "source": OTHER} | ROUTE | {"metric": INFINITY}
+    lost = {"kind": c.UPDATE, "source": OTHER} | ROUTE | {"metric": c.INFINITY}
     assert said(packet(SENDER, TOLD)) == NOTHING
     assert said(packet(SENDER, elsewhere, TOLD)) == [lost], "its way to our source is gone"
     assert said(packet(SENDER, b"\x06\x0a\0\0" + bytes(8), TOLD)) == NOTHING
@@ -235,7 +225,7 @@ def test_4_6_9_whose_route_it_is():
 # "If the metric is finite, AE MUST NOT be 0", "If the metric is infinite and AE is 0, Plen and
 # Omitted MUST both be 0" and "in which case this Update retracts all of the routes" [4.6.9]
 def test_4_6_9_retractions():
-    lost = {"kind": UPDATE, "source": OTHER, "metric": INFINITY, "update": 200}
+    lost = {"kind": c.UPDATE, "source": OTHER, "metric": c.INFINITY, "update": 200}
     one = TOLD[:10] + b"\xff\xff" + TOLD[12:]
     assert said(packet(SENDER, one)) == [lost | {"seq": 5}], "the router-id is not used"
     everything = bytes.fromhex("08 0a 00 00 00 00 00 02 00 00 ff ff")
@@ -247,7 +237,7 @@ def test_4_6_9_retractions():
 
 # "A Request TLV with AE set to 0 and Plen not set to 0 MUST be ignored." [4.6.10]
 def test_4_6_10_route_requests():
-    asked = [{"kind": ROUTE_REQUEST, "source": OTHER}]
+    asked = [{"kind": c.ROUTE_REQUEST, "source": OTHER}]
     assert said(packet(SENDER, b"\x09\2\0\0")) == asked, "a full dump"
     assert said(packet(SENDER, b"\x09\3\0\x08\0")) == NOTHING
     assert said(packet(SENDER, b"\x09\x12\2\x80" + address(OTHER))) == NOTHING
@@ -260,7 +250,7 @@ def test_4_6_11_seqno_requests():
         head = b"\x0a\x1e" + bytes([encoding, 128, 0, 6, hops, 0])
         return said(packet(SENDER, head + router + PREFIX))
 
-    assert asked() == [{"kind": ROUTE_REQUEST, "source": OTHER}]
+    assert asked() == [{"kind": c.ROUTE_REQUEST, "source": OTHER}]
     assert asked(hops=0) == asked(router=b"\xff" * 8) == asked(encoding=0) == NOTHING
 
 
@@ -276,9 +266,9 @@ def test_4_6_intervals_of_nothing(octets):
 
 # "every Babel speaker MUST be able to reply to such a request" [3.3]
 def test_3_3_a_request_for_an_acknowledgment_is_answered():
-    ((port, answer),) = Bench().comes(2, ACK_REQUEST, value=48879, hello=1000)
-    assert (port, answer.kind, answer.value) == (2, ACK, 48879)
-    assert Bench().comes(2, ACK, value=48879) == []
+    ((port, answer),) = Bench().comes(2, c.ACK_REQUEST, value=48879, hello=1000)
+    assert (port, answer.kind, answer.value) == (2, c.ACK, 48879)
+    assert Bench().comes(2, c.ACK, value=48879) == []
 
 
 def test_who_does_not_say_so_is_nobody():
@@ -291,7 +281,7 @@ def test_who_does_not_say_so_is_nobody():
 
 def test_times_are_rounded_up_and_cut():
     for told, heard in ((40, 100), (101, 200), (65535, 65535)):
-        data = coder(OTHER).encode(frame(HELLO, hello_no=1, hello=told, rxcost=1))
+        data = coder(OTHER).encode(frame(c.HELLO, hello_no=1, hello=told, rxcost=1))
         assert [one["hello"] for one in said(data)] == [heard]
     slow = bytes.fromhex("04 06 00 00 01 02 ff ff 05 06 00 00 00 60 ff ff")
     assert [one["hello"] for one in said(packet(slow))] == [65535]
@@ -307,8 +297,10 @@ def of_many_parts():
 
 def test_a_packet_of_many_parts_is_heard_in_its_order():
     found = said(of_many_parts())
-    assert [one["kind"] for one in found] == [HELLO, IHU, UPDATE, ROUTE_REQUEST]
-    assert found[-1] == {"kind": ROUTE_REQUEST, "source": NOBODY}, "nothing is left of those before"
+    assert [one["kind"] for one in found] == [c.HELLO, c.IHU, c.UPDATE, c.ROUTE_REQUEST]
+    assert found[-1] == {"kind": c.ROUTE_REQUEST, "source": NOBODY}, (
+        "nothing is left of those before"
+    )
 
 
 def test_a_live_node_is_told_each_of_its_parts():
@@ -336,18 +328,18 @@ def test_a_live_node_is_told_each_of_its_parts():
     assert counters["dropped: no Babel packet"] == 1
     assert (node.neighbour[0], node.txcost[0], node.seq[0], node.metric[0]) == (NOBODY, 256, 5, 96)
     asked, told = (said(data, OTHER) for data in sent)
-    assert [one["kind"] for one in (*asked, *told)] == [ROUTE_REQUEST, UPDATE]
+    assert [one["kind"] for one in (*asked, *told)] == [c.ROUTE_REQUEST, c.UPDATE]
 
 
 CARRIED = {
-    HELLO: ("hello_no", "hello", "rxcost", "has_update"),
-    UPDATE: ("seq", "metric", "update"),
-    SEQNO_REQUEST: ("seq", "hops"),
-    IHU: ("rxcost", "hello"),
-    ACK_REQUEST: ("value", "hello"),
-    ACK: ("value",),
-    DATA: ("value", "hops"),
-    ROUTE_REQUEST: (),
+    c.HELLO: ("hello_no", "hello", "rxcost", "has_update"),
+    c.UPDATE: ("seq", "metric", "update"),
+    c.SEQNO_REQUEST: ("seq", "hops"),
+    c.IHU: ("rxcost", "hello"),
+    c.ACK_REQUEST: ("value", "hello"),
+    c.ACK: ("value",),
+    c.DATA: ("value", "hops"),
+    c.ROUTE_REQUEST: (),
 }
 
 
@@ -359,14 +351,14 @@ def test_whatever_is_said_is_heard(kind):
         names = ["source", *CARRIED[kind]]
         values = {"kind": kind} | {name: draw.randint(*ranges[name]) for name in names}
         if values.get("has_update"):
-            values |= {name: draw.randint(*ranges[name]) for name in CARRIED[UPDATE]}
+            values |= {name: draw.randint(*ranges[name]) for name in CARRIED[c.UPDATE]}
         for name in ("hello", "update"):  # whole centiseconds
             if name in values:
                 values[name] = 100 * draw.randint(1, 218)
         for name in ("rxcost", "hops"):
-            if name in values and kind != DATA:
+            if name in values and kind != c.DATA:
                 values[name] = max(1, values[name])
-        sender = values["source"] if kind != DATA else OTHER
+        sender = values["source"] if kind != c.DATA else OTHER
         data = coder(sender).encode(frame(**values))
         assert len(data) <= 80
         assert said(data) == [{name: value for name, value in values.items() if value}]

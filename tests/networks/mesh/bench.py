@@ -76,8 +76,13 @@ class Bench:
 
     def start(self, i, cause=0):
         self.dead.discard(i)
-        mesh.on_start(self.nodes[i], self.gates[i], self.params, self.now & MASK30, cause, self.out)
+        params, now = self.params_of(i), self.now & MASK30
+        mesh.on_start(self.nodes[i], self.gates[i], params, now, cause, self.out)
         self.drain(i)
+
+    def params_of(self, _i):
+        """Parameters of a node: those of all."""
+        return self.params
 
     def push(self, at, what):
         self.order += 1
@@ -140,14 +145,14 @@ class Bench:
                 continue
             node, gate, now = self.nodes[i], self.gates[i], self.now & MASK30
             if kind == "frame":
-                mesh.on_frame(node, gate, self.params, now, 0, what, self.out)
+                mesh.on_frame(node, gate, self.params_of(i), now, 0, what, self.out)
             elif kind == "sent":
                 item = Item()
                 item.ok = 1
-                mesh.on_input(node, gate, self.params, now, SENT, item, self.out)
+                mesh.on_input(node, gate, self.params_of(i), now, SENT, item, self.out)
             elif self.due.get((i, what)) == at:
                 del self.due[i, what]
-                mesh.on_timer(node, gate, self.params, now, what, self.out)
+                mesh.on_timer(node, gate, self.params_of(i), now, what, self.out)
             elif kind == "timer":
                 continue
             self.drain(i)
@@ -158,7 +163,7 @@ class Bench:
         item.dest, item.flags, item.handle, item.length = dest, flags, handle, len(text)
         item.body[: len(text)] = list(text)
         now = self.now & MASK30
-        mesh.on_input(self.nodes[i], self.gates[i], self.params, now, MESSAGE, item, self.out)
+        mesh.on_input(self.nodes[i], self.gates[i], self.params_of(i), now, MESSAGE, item, self.out)
         self.drain(i)
 
     def of(self, code):

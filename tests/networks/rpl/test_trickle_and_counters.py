@@ -5,13 +5,13 @@ import pytest
 from innervate.networks.rpl.protocol import constants as c
 from innervate.networks.rpl.protocol import kinds, timers
 from innervate.networks.rpl.protocol.counters import dag_rank, following, is_newer
-from tests.networks.rpl.nodes import RPL, attached, dio, node
+from tests.networks.rpl import nodes as rpl
 
 MS = 1000
 
 
 def at_root(**params):
-    return node(0, **{"dio_min": 6, "dio_doublings": 3} | params)
+    return rpl.node(0, **{"dio_min": 6, "dio_doublings": 3} | params)
 
 
 def dios(frames):
@@ -60,44 +60,44 @@ def test_it_transmits_if_the_counter_is_below_k():
     """6206, 4.2: "transmits if and only if the counter c is less than the redundancy constant
     k" """
     for heard, expected in ((1, 1), (2, 0), (3, 0)):
-        one = attached(dio_k=2)
+        one = rpl.attached(dio_k=2)
         one.fire(timers.TRICKLE)  # t
         one.told()
         one.fire(timers.TRICKLE)  # the next interval begins
         one.sent.clear()
         for _ in range(heard):
-            one.hear(**dio(1, 256))
+            one.hear(**rpl.dio(1, 256))
         assert len(dios(one.fire(timers.TRICKLE))) == expected, heard
 
 
 def test_k_zero_is_infinity():
     """6550, 8.3.1: "when k has the value of 0x00, this is to be treated as a redundancy constant of
     infinity" """
-    one = attached(dio_k=0)
+    one = rpl.attached(dio_k=0)
     one.fire(timers.TRICKLE)
     one.told()
     one.fire(timers.TRICKLE)
     one.sent.clear()
     for _ in range(50):
-        one.hear(**dio(1, 256))
+        one.hear(**rpl.dio(1, 256))
     assert len(dios(one.fire(timers.TRICKLE))) == 1
 
 
 def test_consistent_is_a_lesser_rank_that_changes_nothing():
     """6550, 8.3: "A DIO from a sender with a lesser DAGRank that causes no changes to the
     recipient's parent set, preferred parent, or Rank SHOULD be considered consistent" """
-    one = attached()
-    one.hear(**dio(1, 256))
+    one = rpl.attached()
+    one.hear(**rpl.dio(1, 256))
     assert one.node.counter == 1
-    one.hear(**dio(2, 900))
+    one.hear(**rpl.dio(2, 900))
     assert one.node.counter == 1, "a greater rank"
     one.node.interval = 3
-    one.hear(**dio(1, 128))
+    one.hear(**rpl.dio(1, 128))
     assert one.node.counter == 0, "our rank has changed"
 
 
 def stretched(**params):
-    one = attached(**params)
+    one = rpl.attached(**params)
     one.node.interval = 3
     return one
 
@@ -113,7 +113,7 @@ def test_an_inconsistency_begins_an_interval_of_imin():
 def test_at_imin_an_inconsistency_does_nothing():
     """6206, 4.2: "If I is equal to Imin when Trickle hears an "inconsistent" transmission, Trickle
     does nothing." """
-    one = attached()
+    one = rpl.attached()
     assert one.node.interval == 0
     before = one.timers[timers.TRICKLE]
     one.hear(kind=kinds.DIS, to=65535, src=7, rssi=-60)
@@ -124,7 +124,7 @@ def test_at_imin_an_inconsistency_does_nothing():
     "heard",
     [
         {"kind": kinds.DIS, "to": 65535, "src": 7},  # a multicast DIS
-        dio(1, 256, version=241),  # joins a new DODAG version
+        rpl.dio(1, 256, version=241),  # joins a new DODAG version
         # a second inconsistency of ranks
         {
             "kind": kinds.DATA,
@@ -182,5 +182,5 @@ def test_counters_are_compared_within_the_window():
 
 def test_dag_rank_is_the_whole_part():
     """6550, 17: "such that DAGRank(ROOT_RANK) is 1" """
-    step = RPL.fields.DEFAULTS["step"]
+    step = rpl.RPL.fields.DEFAULTS["step"]
     assert [dag_rank(rank, step) for rank in (step, 2 * step - 1, 2 * step)] == [1, 1, 2]

@@ -125,7 +125,7 @@ def test_every_event_goes_where_it_belongs(monkeypatch):
     world, said = small_world(), []
     for room, names in (
         (wires, ["release", "wire_free"]),
-        (calls, ["on_arrival", "on_timer_slot"]),
+        (calls, ["on_event"]),
     ):
         for name in names:
             monkeypatch.setattr(
@@ -137,9 +137,9 @@ def test_every_event_goes_where_it_belongs(monkeypatch):
     for slot in (0, run.tx_slots - 1, run.tx_slots, first - 1, first, first + 1):
         loop.dispatch(world, None, slot, 70)
     assert said == [
-        ("on_timer_slot", 0, 70), ("on_timer_slot", run.tx_slots - 1, 70), ("wire_free", 0, 70),
+        ("on_event", 0, 70), ("on_event", run.tx_slots - 1, 70), ("wire_free", 0, 70),
         ("wire_free", first - 1 - run.tx_slots, 70), ("release", first, 70),
-        ("on_arrival", events[first + 1], first + 1, 70),
+        ("on_event", first + 1, 70),
     ]  # fmt: skip
 
 

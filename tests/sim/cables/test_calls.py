@@ -138,7 +138,7 @@ def test_who_is_switched_on_starts_and_a_cell_feels_from_then_on(do, node, sourc
 
 def due(do, node, timer, state):
     do.world.alive[node] = state
-    calls.on_timer_slot(do.world, do, clocks.timer_slot(do.world, node, timer), NOW)
+    calls.on_event(do.world, do, clocks.timer_slot(do.world, node, timer), NOW)
     return do.said
 
 
@@ -167,6 +167,28 @@ def test_a_sample_is_offered_again_and_again(do):
     assert (timers(do.world), do.world.counters[OFFERED]) == ({(1, SOURCE): NOW + 900}, 1)
 
 
+@pytest.fixture
+def accounted(monkeypatch):
+    """What is said of each call when it is accounted for: node, time, handler, port."""
+    told = []
+    monkeypatch.setattr(calls, "finish", lambda _world, _do, *what: told.append(what))
+    return told
+
+
+@pytest.mark.parametrize(("timer", "handler", "port"), [(1, ON_TIMER, 1), (SOURCE, ON_INPUT, 0)])
+def test_what_is_due_is_accounted_for_as_what_it_was(do, accounted, timer, handler, port):
+    due(do, 1, timer, ALIVE)
+    assert accounted == [(1, NOW, handler, port)]
+
+
+def test_a_frame_is_accounted_for_at_its_port(do, accounted):
+    slot = wheel.take(do.world.wheel)
+    event = do.world.wheel.events[slot]
+    event.kind, event.target, event.epoch = URGENT_BLOCK, 3, 0
+    calls.on_event(do.world, do, slot, NOW)
+    assert accounted == [(0, NOW, ON_FRAME, 3)]
+
+
 @pytest.mark.parametrize(("end", "node", "port"), [(PEER, 1, 0), (3, 0, 3), (8, SINK, 0),
                                                    (9, SINK, 1)])  # fmt: skip
 @pytest.mark.parametrize(("alive", "arrives"), [(ALIVE, 1), (DEAD, 0)])
@@ -176,7 +198,7 @@ def test_a_frame_comes_to_the_port_at_its_cables_end(do, end, node, port, alive,
     slot = wheel.take(world.wheel)
     event, frame = world.wheel.events[slot], world.frames[slot - world.run[0].pool_slots]
     event.kind, event.target, event.epoch = URGENT_BLOCK, end, 0
-    calls.on_arrival(world, do, event, slot, NOW)
+    calls.on_event(world, do, slot, NOW)
     assert do.said == [("on_frame", node, NOW, port, frame)] * arrives
     assert (world.counters[ARRIVED + URGENT_BLOCK], world.counters[ARRIVED]) == (arrives, 0)
     assert world.wheel.pool[wheel.FREE] == slot  # for another frame

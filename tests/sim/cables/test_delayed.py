@@ -12,6 +12,7 @@ from innervate.network import networks
 from innervate.topology import free_graph
 from innervate.verify.declared import Net
 from innervate.verify.states import Budget, most_frames
+from tests.fixtures.node_files import LINK
 from tests.live import time_by_hand
 from tests.own import alone, made
 
@@ -133,14 +134,7 @@ def test_an_exploration_holds_back_as_many_frames_for_a_port_as_it_has_on_a_cabl
     assert most_frames(begun) == 3
 
 
-NODE = """
-kind = "late"
-number = 0
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:0"
-peers = ["127.0.0.1:9"]
-"""
+NODE = f'kind = "late"\nnumber = 0\n{LINK}'
 
 
 @pytest.mark.parametrize(("off_s", "sent"), [(None, 1), (DELAY_US / 2e6, 0)])

@@ -6,7 +6,7 @@ import pytest
 import innervate
 from innervate.network import NetworkError
 from innervate.plot.lines import summary_lines
-from tests.own import alone, refused, talk
+from tests.own import alone, at_once, refused, talk
 
 __all__ = ["alone", "talk"]
 
@@ -66,23 +66,13 @@ def test_who_sends_while_it_sends_is_told(talk):
 
 
 @pytest.fixture
-def at_once(talk):
+def blurting(talk):
     """Nodes that send 15 slots as soon as they are given something."""
-    talk.rewrite(
-        "on_input",
-        """def on_input(node, params, now, kind, item, out):
-    'Say it now.'
-    frame = out.frame[send(out, 0, 0, 0)]
-    frame.kind = SAID
-    frame.slots = params.length_slots
-    frame.value = item.value
-    frame.made_at = item.made_at
-""",
-    )
+    talk.rewrite("on_input", at_once("SAID", slots="params.length_slots", value="item.value"))
     return talk
 
 
-def test_who_dies_before_its_frame_is_on_the_air_disturbs_nobody(at_once):
+def test_who_dies_before_its_frame_is_on_the_air_disturbs_nobody(blurting):
     """Node 0 is on the air from 10.02 to 11.52 ms; node 1 turns its radio round from 10.5 on."""
     given = [{"at_s": 0.01, "node": 0}, {"at_s": 0.0105, "node": 1}]
     usual = {"nodes": 3, "input": given, "protocol.length_slots": 15}
@@ -92,25 +82,25 @@ def test_who_dies_before_its_frame_is_on_the_air_disturbs_nobody(at_once):
         (0.01053, {"off": 1, "sending": 1, "collision": 2}),
     ):
         dies = [{"at_s": at_s, "action": "kill", "node": 1}]
-        frames = ran(at_once, event=dies, **usual).summary["frames"]
+        frames = ran(blurting, event=dies, **usual).summary["frames"]
         assert {name: many for name, many in frames["lost_by"].items() if many} == lost, at_s
         assert (frames["sent"], frames["arrived"]) == (4, 4 - sum(lost.values())), at_s
 
 
-def test_a_frame_that_was_never_sent_is_no_carrier(at_once):
-    at_once.change("protocol.py", "    node.busy = cd\n", "    node.value += cd\n")
+def test_a_frame_that_was_never_sent_is_no_carrier(blurting):
+    blurting.change("protocol.py", "    node.busy = cd\n", "    node.value += cd\n")
     usual = {"nodes": 3, "input": [{"at_s": 0.01, "node": 1}], "protocol.length_slots": 15}
     for at_s, told in ((0.01001, 0), (0.011, 1)):
         dies = [{"at_s": at_s, "action": "kill", "node": 1}]
-        world = ran(at_once, event=dies, **usual).result.world
+        world = ran(blurting, event=dies, **usual).result.world
         assert [world.stations[node].value for node in (0, 2)] == [told, told], at_s
 
 
-def test_a_frame_of_no_slots_is_told(at_once):
-    at_once.change("protocol.py", "    frame.slots = params.length_slots\n    frame.value = item",
+def test_a_frame_of_no_slots_is_told(blurting):
+    blurting.change("protocol.py", "    frame.slots = params.length_slots\n    frame.value = item",
                    "    frame.slots = 0\n    frame.value = item")  # fmt: skip
     with pytest.raises(NetworkError, match="node 0 sent a frame of no slots"):
-        ran(at_once, input=[{"at_s": 0.01, "node": 0}], event=[])
+        ran(blurting, input=[{"at_s": 0.01, "node": 0}], event=[])
 
 
 def test_an_explored_collision_is_heard_as_one(talk):

@@ -12,7 +12,7 @@ from innervate.network import NetworkError, networks
 from innervate.sim.field import listening
 from innervate.sim.field.declared import simulation
 from innervate.web.field_view import FieldView
-from tests.own import alone, bare, made, plain, refused
+from tests.own import alone, at_once, bare, made, plain, refused
 
 __all__ = ["alone", "bare", "plain"]
 ENDS = [{"nodes": [0, 1], "quality": 1.0}, {"nodes": [1, 2], "quality": 1.0}]
@@ -153,22 +153,10 @@ def test_a_carrier_is_told_when_it_comes_and_goes(bare, carriers):
 
 
 @pytest.fixture
-def at_once(bare):
+def blurting(bare):
     """Nodes without a medium access that send as soon as they are given something."""
-    bare.rewrite(
-        "on_input",
-        """def on_input(node, params, now, kind, item, out):
-    'Send it now.'
-    frame = out.frame[send(out, 0, 0, 0)]
-    frame.kind = NEWS
-    frame.to = ALL
-    frame.hops = 1
-    frame.origin = node.number
-    frame.seq = item.value
-    frame.value = item.value
-    frame.made_at = item.made_at
-""",
-    )
+    news = {"to": "ALL", "hops": 1, "origin": "node.number", "seq": "item.value"}
+    bare.rewrite("on_input", at_once("NEWS", **news, value="item.value"))
     return bare
 
 
@@ -188,12 +176,12 @@ LONG = {"air.bits_per_s": 1_000, "nodes": 3, "link": ENDS}  # a frame takes more
         ([("jam", 1, 20), ("quiet", 1, 40)], [(1, 1), (0, 0), (1, 0)]),
     ],
 )  # fmt: skip
-def test_whatever_changes_the_carrier_it_is_told(at_once, carriers, event, told):
+def test_whatever_changes_the_carrier_it_is_told(blurting, carriers, event, told):
     """Node 0 is on the air from 100 ms on; the times of events are ms after that."""
     more = {"cut": {"other": 1}, "restore": {"other": 1}, "jam": {"noise_dbm": -60}}
     events = [{"at_s": 0.1 + ms / 1000, "action": what, "node": node, **more.get(what, {})}
               for what, node, ms in event]  # fmt: skip
-    in_line(at_once, event=events, **LONG)
+    in_line(blurting, event=events, **LONG)
     assert carriers == told
 
 
@@ -209,10 +197,10 @@ def test_whatever_changes_the_carrier_it_is_told(at_once, carriers, event, told)
         ([("cut", -20), ("restore", -10), ("restore", 20)], 1, {}),
     ],
 )
-def test_a_frame_whose_link_was_cut_in_the_middle_is_lost(at_once, event, arrived, lost):
+def test_a_frame_whose_link_was_cut_in_the_middle_is_lost(blurting, event, arrived, lost):
     events = [{"at_s": 0.1 + ms / 1000, "action": what, "node": 1, "other": 0}
               for what, ms in event]  # fmt: skip
-    frames = in_line(at_once, event=events, **LONG).summary["frames"]
+    frames = in_line(blurting, event=events, **LONG).summary["frames"]
     assert (frames["arrived"], frames["lost_by"]) == (arrived, lost)
 
 

@@ -12,7 +12,7 @@ from innervate.scenario.cables import Happening, Input
 from innervate.scenario.errors import ScenarioError
 from innervate.scenario.events import exact, in_time, refuse
 from innervate.scenario.explain import alternatives, nearest
-from innervate.scenario.keys import Name, Schema, Seed, Table, above_0, number, whole
+from innervate.scenario.keys import Name, Scenario, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown, with_article
 from innervate.topology import Graph, TopologyError, free_graph
@@ -51,14 +51,11 @@ class ScriptTable(Table, frozen=True, kw_only=True):
     graph: str = ""
 
 
-class Declared(Table, frozen=True, kw_only=True):
+class Declared(Scenario, frozen=True, kw_only=True):
     """The keys that scenarios of all media begin with."""
 
-    kind: str
-    schema: Schema = 1
     name: Name = "network"
     duration_s: Annotated[float, above_0("seconds", 1e6)] = 1.0
-    seed: Seed = 1
 
 
 def check(

@@ -15,6 +15,8 @@ from innervate.sim.cables.world import ALIVE, BROKEN_OUTBOX, BROKEN_PORT, DEAD, 
 from innervate.sim.status import COLD, ON_FRAME, ON_INPUT, ON_START, ON_TIMER
 from innervate.sim.wheel import NIL
 
+NOT_CALLED = -1  # no handler: the node is off, or the frame was lost
+
 
 def drain(world, do, node, time, now, port):
     """Carry out what a handler put into the outbox; fold it into the fingerprint."""
@@ -89,37 +91,56 @@ def switch_on(world, do, node, time, cause):
             queue.insert(world.wheel, slot, time + wait)
 
 
-def on_timer_slot(world, do, slot, time):
-    """A node's timer, its first switching on, or its next sample."""
-    timer = clocks.timer_of(world, slot)
-    node = slot - timer * world.run[0].nodes
+def on_event(world, do, slot, time):
+    """A node's timer, its next sample, or a frame at the end of its cable.
+
+    What follows a handler stands here once for all of them: compiled, it is part of its caller.
+    """
+    run = world.run[0]
+    is_frame = slot >= run.pool_slots
+    if is_frame:
+        end = world.wheel.events[slot].target
+        node = min(end >> 2, run.cells)
+        port = end - 4 * node
+        handler = on_arrival(world, do, slot, node, port, time)
+    else:
+        port = clocks.timer_of(world, slot)
+        node = slot - port * run.nodes
+        handler = on_due(world, do, node, port, time)
+        if handler == ON_INPUT:
+            port = 0
+    if handler != NOT_CALLED:
+        finish(world, do, node, time, handler, port)
+    if is_frame:
+        queue.give(world.wheel, slot)
+    elif handler == ON_INPUT:
+        wait = clocks.true_delay(world, node, time, run.source_us)
+        queue.insert(world.wheel, slot, time + wait)
+
+
+def on_due(world, do, node, timer, time):
+    """A node's timer, its first switching on, or its next sample; what was called of it."""
     if world.alive[node] == OFF:
         switch_on(world, do, node, time, COLD)
-    elif world.alive[node] == DEAD:
-        return
-    elif timer == SOURCE:
-        now = clocks.reading(world.clocks[node], time)
+        return NOT_CALLED
+    if world.alive[node] == DEAD:
+        return NOT_CALLED
+    now = clocks.reading(world.clocks[node], time) & MASK30
+    if timer == SOURCE:
         world.counters[OFFERED] += 1
         do.sense(world, node, time)
-        do.on_input(world, node, now & MASK30, SAMPLE)
-        finish(world, do, node, time, ON_INPUT, 0)
-        wait = clocks.true_delay(world, node, time, world.run[0].source_us)
-        queue.insert(world.wheel, slot, time + wait)
-    else:
-        now = clocks.reading(world.clocks[node], time)
-        do.on_timer(world, node, now & MASK30, timer)
-        finish(world, do, node, time, ON_TIMER, timer)
+        do.on_input(world, node, now, SAMPLE)
+        return ON_INPUT
+    do.on_timer(world, node, now, timer)
+    return ON_TIMER
 
 
-def on_arrival(world, do, event, slot, time):
-    """A frame at the end of its cable."""
-    run = world.run[0]
-    end = event.target
-    node = min(end >> 2, run.cells)
-    frame = world.frames[slot - run.pool_slots]
-    if wires.lands(world, do, event, node, frame, time):
-        port = end - 4 * node
-        do.on_frame(world, node, time, port, frame)
-        world.counters[wires.ARRIVED + event.kind] += 1
-        finish(world, do, node, time, ON_FRAME, port)
-    queue.give(world.wheel, slot)
+def on_arrival(world, do, slot, node, port, time):
+    """A frame at the end of its cable; what was called of the node there."""
+    event = world.wheel.events[slot]
+    frame = world.frames[slot - world.run[0].pool_slots]
+    if not wires.lands(world, do, event, node, frame, time):
+        return NOT_CALLED
+    do.on_frame(world, node, time, port, frame)
+    world.counters[wires.ARRIVED + event.kind] += 1
+    return ON_FRAME

@@ -76,16 +76,12 @@ def foresee(world, wheel):
 def dispatch(world, do, slot, time):
     """Hand an event to what it is for."""
     run = world.run[0]
-    if slot >= run.pool_slots:
-        event = world.wheel.events[slot]
-        if event.kind == wires.DELAYED:
-            wires.release(world, do, slot, time)
-        else:
-            calls.on_arrival(world, do, event, slot, time)
-    elif slot < run.tx_slots:
-        calls.on_timer_slot(world, do, slot, time)
-    else:
+    if slot >= run.pool_slots and world.wheel.events[slot].kind == wires.DELAYED:
+        wires.release(world, do, slot, time)
+    elif run.tx_slots <= slot < run.pool_slots:
         wires.wire_free(world, do, slot - run.tx_slots, time)
+    else:
+        calls.on_event(world, do, slot, time)
 
 
 def run_batch(world, do, limit):
@@ -148,6 +144,7 @@ def compiled(
 
     def jitted() -> Any:
         compilation.register_functions(*own)
+        compilation.register_functions(calls.switch_on, hot=False)
         compilation.register(*rare, commands, rows, taps, hot=False)
         compilation.register(arith, outbox, rng, *hot, queue, clocks, wires, delays, calls)
         compilation.register_functions(pressing, foresee, dispatch, run_batch, run_until)

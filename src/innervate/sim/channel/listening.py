@@ -50,11 +50,7 @@ def keep(world, node, kind, time, latency):
     if run.packet_limit > 0:
         row = world.packets[run.packets]
         run.packets += 1
-        row.time = time
-        row.node = node
-        row.port = 0
-        row.kind = kind
-        row.latency = latency
+        row.time, row.node, row.port, row.kind, row.latency = time, node, 0, kind, latency
     note_came(world.above.came, time, latency)
 
 

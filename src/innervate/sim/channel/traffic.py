@@ -93,10 +93,7 @@ def note_delivered(world, node, handle, time):
         row = world.packets[run.packets]
         run.packets += 1
         row.offered = world.offered[place]
-        row.end = radio.data_end
-        row.time = time
-        row.node = node
-        row.handle = handle
+        row.end, row.time, row.node, row.handle = radio.data_end, time, node, handle
         row.slots = world.sizes[place]
         row.receivers = receivers
         row.listeners = listeners

@@ -1,8 +1,8 @@
 """Robots move: where they are, what their radio links are worth there, what they are told."""
 
-from innervate.dialect.rng import LOW15, step
-from innervate.sim.field import astray, medium, powers
+from innervate.sim.field import medium, powers
 from innervate.sim.field.states import ALIVE
+from innervate.topology import astray
 from innervate.topology.placement import UNHEARD
 
 SPEED_MAX = 127
@@ -41,25 +41,12 @@ def tell_place(world, index):
     radio = world.radios[walk.node]
     x, y = radio.x - run.origin_x, radio.y - run.origin_y
     if walk.noise > 0:
-        err(world, walk)
+        astray.err(walk, world.normals)
         x += astray.centimetres(walk.noise, walk.off_x)
         y += astray.centimetres(walk.noise, walk.off_y)
     item.x = min(max((x + run.unit // 2) // run.unit, -PLACE_MAX), PLACE_MAX)
     item.y = min(max((y + run.unit // 2) // run.unit, -PLACE_MAX), PLACE_MAX)
     return radio.state == ALIVE
-
-
-def err(world, walk):
-    """The walker's next error, of which `keep` is the last one and `fresh` is new."""
-    walk.off_x = astray.next_of(walk.off_x, walk.keep, walk.fresh, normal(world, walk))
-    walk.off_y = astray.next_of(walk.off_y, walk.keep, walk.fresh, normal(world, walk))
-
-
-def normal(world, walk):
-    """A normally distributed number from the walker's own stream."""
-    high = step(walk.rng)
-    walk.rng = step(high)
-    return astray.normal(world.normals, (high & LOW15) << 15 | (walk.rng & LOW15))
 
 
 def renew(world, node):

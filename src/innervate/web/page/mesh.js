@@ -7,7 +7,7 @@ import {
   affected, affectedSample, arrow, boxRound, cross, cutSample, flightSample, flights, stroke, word,
 } from "./shapes.js";
 import { symbol } from "./symbols.js";
-import { off, offWords, plural } from "./words.js";
+import { PUT_OUT, off, offWords, plural } from "./words.js";
 
 const GOOD = 0.9; // links of this quality are drawn whole, worse ones dashed, poor ones dotted
 const FAIR = 0.6;
@@ -84,7 +84,7 @@ export class MeshView {
     const facts = [this.network.role(i)];
     if (!now.node_up[i]) return `${facts[0]}, ${off(this.network, i)}`;
     const next = this.network.parentOf(i);
-    const lacks = WAYS[now.way[i]];
+    const lacks = now.put_out[i] ? PUT_OUT : WAYS[now.way[i]];
     if (lacks) facts.push(lacks);
     else if (next >= 0) facts.push(`sends to the gateway through ${nodes[next].label}`);
     if (next >= 0 && now.depth[i] > 0) facts.push(plural(now.depth[i], "hop"));

@@ -30,7 +30,7 @@ export class Network {
       node_up: none(1), link_up: scene.links.map(() => 1),
       parent: none(-1), port: none(-1), depth: none(-1), load: none(0), touch: none(0),
       told: none(-1), alarm: none(0), outside: none(0), way: none(0), leads: none(0),
-      beyond: none(0), flights: [],
+      beyond: none(0), put_out: none(0), flights: [],
       since_cut_s: null, recovery: null, unconnected: 0, apart: 0, away: 0, headline: null,
     };
     this.radio = { now: none(0), turn: none(-1) };
@@ -38,11 +38,14 @@ export class Network {
     this.series = new Map(scene.series.map((one) => [one.id, []]));
     this.hasGaps = scene.source === "live"; // others that say nothing had nothing to measure
     this.marks = { loss: [], return: [] }; // when something was taken away, or given back, s
+    this.since = null; // losses before it happened before anybody looked, s
+    this.lost = []; // what was taken away and has not been read out
   }
 
   /** Take in a state message. Returns the names of what it changed, `back_s` if time went back. */
   apply(state) {
     if (state.back_s !== undefined) this.#forgetAfter(state.back_s);
+    this.since ??= state.t_s;
     const { type, back_s, timeline, series, position, radio, ...plain } = state;
     Object.assign(this.now, plain);
     if (position) this.place = position;
@@ -56,10 +59,18 @@ export class Network {
   }
 
   /** Keep the moment of a log line that plots are to show. */
-  note({ mark, t_s }) {
+  note({ mark, t_s, text }) {
     if (!this.marks[mark]) return;
     this.marks[mark].push(t_s);
     if (this.marks[mark].length > MARKS) this.marks[mark].shift();
+    if (mark === "loss" && this.since !== null && t_s >= this.since) this.lost.push(text);
+  }
+
+  /** What was taken away since this was asked last. */
+  takeLost() {
+    const { lost } = this;
+    this.lost = [];
+    return lost;
   }
 
   /** The node that stands for an id of `parent`, as an index, or -1. */
@@ -137,6 +148,7 @@ export class Network {
   }
 
   #forgetAfter(t_s) {
+    this.since = Math.min(this.since ?? t_s, t_s);
     this.timeline = this.timeline.filter((box) => box.to_s <= t_s);
     for (const [id, points] of this.series) {
       this.series.set(id, points.filter(([at]) => at <= t_s));

@@ -28,11 +28,34 @@ export function showState(network, connected) {
   if ($("connection").textContent !== link) $("connection").textContent = link;
   $("connection").classList.toggle("lost", !connected || isSilent);
   const word = `${LEVELS[level] ?? ""} ${level}`;
+  const lost = network.takeLost();
+  const before = $("headline").textContent;
   if ($("level").textContent !== word) { // said when it changes: the sentence counts messages
     $("level").textContent = word;
     $("state-spoken").textContent = `${level}: ${text}`;
+  } else if (lost.length && connected && level !== "ok") {
+    $("state-spoken").textContent = still(level, lost, text, before);
   }
-  if ($("headline").textContent !== text) $("headline").textContent = text;
+  if (before !== text) $("headline").textContent = text;
+}
+
+/** Something more was lost, and the level is the same: what it was, and what is new of the state.
+ *
+ * @param {string} level
+ * @param {string[]} lost what was taken away
+ * @param {string} text the headline
+ * @param {string} before the one before
+ */
+export function still(level, lost, text, before) {
+  const had = new Set(parts(before));
+  const fresh = parts(text).filter((part) => !had.has(part)).join("; ");
+  const cause = lost.length > 1 ? `${lost[0]}, and ${lost.length - 1} more` : lost[0];
+  return `still ${level}; ${cause}${fresh && `: ${fresh}`}`;
+}
+
+/** The parts of a headline, in small letters and without the full stop. */
+function parts(text) {
+  return `${text.charAt(0).toLowerCase()}${text.slice(1)}`.replace(/\.$/, "").split("; ");
 }
 
 /** The large numbers: time since the last cut, how long the recovery took, who has no way. */
@@ -76,8 +99,11 @@ export function showNumbers(network) {
   $("recovery").hidden = isOnAir || !tellsWays;
   const all = network.nodes.filter((node) => node.role !== "sink" && node.role !== "port").length;
   const of = `of ${plural(all, WORDS[network.kind] ?? "node")}`;
-  const who = apart === unconnected ? "cut off" : `${apart} of them cut off`;
-  const off = apart && tellsWays ? `; ${who}` : "";
+  const isOut = (node, i) => node.role !== "port" && network.now.put_out[i];
+  const out = network.nodes.filter(isOut).length;
+  const some = (count) => (count === unconnected ? "" : `${count} of them `);
+  const part = (count, what) => (count ? `; ${some(count)}${what}` : "");
+  const off = `${part(tellsWays && apart, "cut off")}${part(out, "put out")}`;
   const away = network.now.away ? `; ${network.now.away} more ${absentWord(network.kind)}` : "";
   show("unconnected", isKnown ? String(unconnected) : "–",
     isKnown ? `${of}${off}${away}` : "nobody answers", unconnected ? "bad" : "");

@@ -4,7 +4,7 @@ import { Labels } from "./labels.js";
 import { MeshView, NAME_PX } from "./mesh.js";
 import { affected, affectedSample, arrow, cross, cutSample, stroke, word } from "./shapes.js";
 import { LAYERS } from "./stage.js";
-import { off, offWords } from "./words.js";
+import { PUT_OUT, off, offWords } from "./words.js";
 
 const FONT = "12px system-ui, sans-serif";
 const FEW = 400; // up to so many links names keep off, as far as there is room
@@ -37,7 +37,9 @@ export class PlainView extends MeshView {
     if (!now.node_up[i]) return off(this.network, i);
     const said = this.fields.map(({ name, unit }) => [name, now.fields?.[name]?.[i], unit]);
     const known = said.filter(([, value]) => value !== undefined && value !== null);
-    return known.map((parts) => parts.join(" ")).join(", ") || "nothing known";
+    const facts = known.map((parts) => parts.join(" "));
+    if (now.put_out[i]) facts.unshift(PUT_OUT);
+    return facts.join(", ") || "nothing known";
   }
 
   legend() {

@@ -6,7 +6,7 @@ import {
   affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hexagon,
   middle, stroke, word,
 } from "./shapes.js";
-import { off, offWord, plural } from "./words.js";
+import { PUT_OUT, off, offWord, plural } from "./words.js";
 
 const NEAR = 1.6; // cables up to this many pitches long are between neighbours
 const PORT_COLOURS = 8;
@@ -94,16 +94,17 @@ export class SkinView {
 
   facts(i) {
     const { now, nodes } = this.network;
-    if (nodes[i].role === "port") return `interface ${nodes[i].port} of the PC`;
-    if (!this.isCell[i]) return "the PC";
+    const out = now.put_out[i] ? `, ${PUT_OUT}` : "";
+    const port = nodes[i].role === "port" ? `interface ${nodes[i].port} of ` : "";
+    if (!this.isCell[i]) return `${port}the PC${out}`;
     if (!now.node_up[i]) return off(this.network, i);
     const touched = now.touch[i] ? `, touched ${now.touch[i]} of 255` : "";
-    const told = now.told[i] >= 0 ? `, command ${now.told[i]} came` : "";
-    if (!this.#isRouted(i)) return `no way to the PC${touched}${told}`;
+    const more = `${touched}${now.told[i] >= 0 ? `, command ${now.told[i]} came` : ""}`;
+    if (!this.#isRouted(i)) return `${out.slice(2) || "no way to the PC"}${more}`;
     const hops = now.depth[i] >= 0 ? `${plural(now.depth[i], "hop")} to the PC, ` : "";
     const load = now.load[i] ? `, load ${Math.round(100 * now.load[i])} %` : "";
     const way = now.beyond[i] ? "by nodes that do not run here" : `through port ${now.port[i]}`;
-    return `${hops}${way}${load}${touched}${told}`;
+    return `${hops}${way}${load}${more}`;
   }
 
   legend() {
@@ -163,8 +164,7 @@ export class SkinView {
     const under = new Path2D();
     const shape = stage.scale < BRICKS_PX ? brick : hexagon;
     for (const i of cells) {
-      const x = stage.x[i];
-      const y = stage.y[i];
+      const [x, y] = [stage.x[i], stage.y[i]];
       if (x < -99 || y < -99 || x > stage.width + 99 || y > stage.height + 99) continue;
       let path = paths.get(this.kinds[i]);
       if (!path) paths.set(this.kinds[i], (path = new Path2D()));

@@ -20,7 +20,7 @@ export function symbol(context, x, y, dot, role, up) {
     corners([[0, -s], [s, s], [-s, s]]);
   } else path.arc(x, y, dot, 0, 7);
   const dark = role === "gateway" || role === "standby" || role === "robot";
-  context.fillStyle = up ? (dark ? colours.ink : colours.d[5]) : colours.faint;
+  context.fillStyle = up ? (dark ? colours.ink : colours.d[7]) : colours.faint;
   context.fill(path);
   stroke(context, up ? colours.ground : colours.soft, 1, path);
   if (role === "monitor") {

@@ -78,6 +78,9 @@ export function off(network, i) {
   return now.absent?.[i] ? absentWord(kind) : "switched off";
 }
 
+/** What a running node is whose identity is revoked: it runs, and nobody takes what it sends. */
+export const PUT_OUT = "put out: its identity is revoked";
+
 /** Who is not there by plan: whoever has left a team is told no other from who has not come. */
 const ABSENT = { radio: "not in the team", mesh: "yet to come" };
 

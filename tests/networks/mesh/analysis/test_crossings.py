@@ -4,15 +4,7 @@ import pytest
 
 from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm, alarms, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
-from innervate.networks.mesh.protocol.constants import (
-    ALARM,
-    CROSS,
-    DATA,
-    FLOOD,
-    PREDICT,
-    REPORT_ALARM,
-    REPORT_ROUND,
-)
+from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.scenario.plan import Walk
 from tests.networks.mesh.analysis.test_summary import S, given, made
 
@@ -31,7 +23,7 @@ SECOND = FIRST._replace(crossed_us=19 * S, back_us=END, overrun_m=pytest.approx(
 def crossed(raised=(), told=(), walks=(WALK,), ended_us=END, **params):
     """Rows of who raised an alarm (when, who, a, of whom), and deliveries (when, of whom, ...)."""
     result = made(
-        [(at, who, REPORT_ALARM, what, whose) for at, who, what, whose in raised],
+        [(at, who, c.REPORT_ALARM, what, whose) for at, who, what, whose in raised],
         delivered=[given(at, MONITOR, whose, 9, kind=kind, hops=hops, flags=flags,
                          body=(whose, 0, 0, what))
                    for at, whose, what, kind, hops, flags in told],
@@ -49,18 +41,18 @@ def test_what_nobody_noticed():
 
 def test_who_begins_outside_has_crossed_at_the_beginning():
     walk = Walk(ROBOT, ((2 * S, 1200, 500), (4 * S, 1000, 500), (6 * S, 800, 500)))
-    (found,) = crossed([(0, ROBOT, CROSS, ROBOT)], walks=[walk])
+    (found,) = crossed([(0, ROBOT, c.CROSS, ROBOT)], walks=[walk])
     assert (found.crossed_us, found.back_us, found.raised_us) == (0, 4 * S, 0)
     assert found.overrun_m == pytest.approx(2.0)
 
 
 RAISED = [
-    ([(SEEN - 1, ROBOT, CROSS, ROBOT)], None, None),
-    ([(SEEN, WITNESS, CROSS, ROBOT), (5 * S, ROBOT, CROSS, ROBOT)], (SEEN, WITNESS), None),
-    ([(6 * S, ROBOT, PREDICT, ROBOT), (7 * S, ROBOT, CROSS, ROBOT)], (7 * S, ROBOT), None),
-    ([(6 * S, OTHER, CROSS, OTHER)], None, None),
-    ([(SEEN_AGAIN - 1, ROBOT, CROSS, ROBOT)], (SEEN_AGAIN - 1, ROBOT), None),
-    ([(SEEN_AGAIN, ROBOT, CROSS, ROBOT)], None, (SEEN_AGAIN, ROBOT)),
+    ([(SEEN - 1, ROBOT, c.CROSS, ROBOT)], None, None),
+    ([(SEEN, WITNESS, c.CROSS, ROBOT), (5 * S, ROBOT, c.CROSS, ROBOT)], (SEEN, WITNESS), None),
+    ([(6 * S, ROBOT, c.PREDICT, ROBOT), (7 * S, ROBOT, c.CROSS, ROBOT)], (7 * S, ROBOT), None),
+    ([(6 * S, OTHER, c.CROSS, OTHER)], None, None),
+    ([(SEEN_AGAIN - 1, ROBOT, c.CROSS, ROBOT)], (SEEN_AGAIN - 1, ROBOT), None),
+    ([(SEEN_AGAIN, ROBOT, c.CROSS, ROBOT)], None, (SEEN_AGAIN, ROBOT)),
 ]
 
 
@@ -73,7 +65,7 @@ def test_which_crossing_an_alarm_was_raised_of_and_by_whom(rows, first, second):
     assert crossed(rows) == expected
 
 
-def told(at, what=CROSS, whose=ROBOT, kind=ALARM, hops=3, flags=0):
+def told(at, what=c.CROSS, whose=ROBOT, kind=c.ALARM, hops=3, flags=0):
     return (at, whose, what, kind, hops, flags)
 
 
@@ -81,19 +73,19 @@ ACCEPTED = [
     ([told(SEEN - 1)], {}, {}),
     ([told(6 * S), told(6 * S + 1, hops=2)], {"accepted_us": 6 * S, "row": 0, "hops": 3,
                                             "overrun_m": pytest.approx(1.0)}, {}),
-    ([told(SEEN, flags=FLOOD)], {"accepted_us": SEEN, "row": 0, "hops": 3, "flooded": True,
+    ([told(SEEN, flags=c.FLOOD)], {"accepted_us": SEEN, "row": 0, "hops": 3, "flooded": True,
                                "overrun_m": 0.0}, {}),
-    ([told(6 * S, kind=DATA), told(7 * S, flags=8, hops=1)],
+    ([told(6 * S, kind=c.DATA), told(7 * S, flags=8, hops=1)],
      {"accepted_us": 7 * S, "row": 1, "hops": 1, "overrun_m": pytest.approx(2.0)}, {}),
     ([told(6 * S, whose=OTHER)], {}, {}),
     ([told(SEEN_AGAIN)], {}, {"accepted_us": SEEN_AGAIN, "row": 0, "hops": 3, "overrun_m": 0.0}),
     ([told(20 * S, hops=5)], {}, {"accepted_us": 20 * S, "row": 0, "hops": 5,
                                  "overrun_m": pytest.approx(1.0)}),
-    ([told(1 * S, PREDICT), told(2 * S, PREDICT), told(5 * S, PREDICT)], {"warned_us": 2 * S}, {}),
-    ([told(0, PREDICT)], {"warned_us": 0}, {}),
-    ([told(9 * S - 1, PREDICT)], {}, {}),
-    ([told(9 * S, PREDICT)], {}, {"warned_us": 9 * S}),
-    ([told(19 * S, PREDICT)], {}, {}),
+    ([told(k * S, c.PREDICT) for k in (1, 2, 5)], {"warned_us": 2 * S}, {}),
+    ([told(0, c.PREDICT)], {"warned_us": 0}, {}),
+    ([told(9 * S - 1, c.PREDICT)], {}, {}),
+    ([told(9 * S, c.PREDICT)], {}, {"warned_us": 9 * S}),
+    ([told(19 * S, c.PREDICT)], {}, {}),
 ]  # fmt: skip
 
 
@@ -129,7 +121,7 @@ def test_crossings_of_all_robots_come_in_order_of_time():
 
 
 def test_rows_of_other_kinds_raise_nothing():
-    result = made([(6 * S, ROBOT, REPORT_ROUND, CROSS, ROBOT)], walks=[WALK], ended_us=END)
+    result = made([(6 * S, ROBOT, c.REPORT_ROUND, c.CROSS, ROBOT)], walks=[WALK], ended_us=END)
     assert {one.raised_us for one in all_crossings(result)} == {NEVER}
 
 

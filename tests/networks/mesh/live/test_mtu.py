@@ -10,26 +10,13 @@ from innervate.live.nodefile import load
 from innervate.live.receipts import DELIVERED, EXPIRED
 from innervate.networks.mesh.live.parameters import mesh_parameters
 from innervate.networks.mesh.live.stack import MeshStack
+from tests.fixtures.node_files import LINK, of_mesh
 from tests.live import time_by_hand as live_time
 from tests.live.net import Mesh
 
 LINE = [(0, 1), (1, 2)]
-FILE = """
-kind = "mesh"
-number = 0
-nodes = 2
-role = "gateway"
-{keys}
-[protocol]
-mtu = {mtu}
-[[link]]
-kind = "udp"
-bind = "127.0.0.1:0"
-peers = ["127.0.0.1:9"]
-[[link]]
-kind = "serial"
-device = "/dev/ttyUSB7"
-"""
+SERIAL = '[[link]]\nkind = "serial"\ndevice = "/dev/ttyUSB7"\n'
+FILE = of_mesh(0, 2, 'role = "gateway"\n{keys}\n[protocol]\nmtu = {mtu}', LINK + SERIAL)
 KEYS = f'[keys]\nuse = 1\nsecret.1 = "{"ab" * 32}"'
 
 

@@ -7,12 +7,15 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.live.errors import LiveError
-from innervate.networks.mesh.live.walks import STANDING_S, place_at, walk
+from innervate.networks.mesh.live.walks import STANDING_S, Errors, place_at, walk
 from innervate.networks.mesh.scenario.plan import Walk
 from tests.live import time_by_hand
+from tests.networks.mesh.pinger import REPORT_PLACE
+from tests.networks.mesh.runs import run
+from tests.networks.mesh.sim.test_motion import reports, walking
 
 WAY = Walk(0, ((1_000_000, 100, 100), (2_000_000, 300, 0), (4_000_000, 500, 400)))
-PLAN = SimpleNamespace(sample_us=250_000, origin_cm=(100, -50))
+PLAN = SimpleNamespace(sample_us=250_000, origin_cm=(100, -50), seed=1)
 
 
 @pytest.mark.parametrize(
@@ -32,7 +35,7 @@ def test_where_it_is_and_how_fast(at_us, place, speed):
     assert place_at(WAY, at_us) == (place, speed)
 
 
-def told(folder, until_s, answer=lambda _: {"ok": True}):
+def told(folder, until_s, answer=lambda _: {"ok": True}, way=WAY):
     """What a node was told within so long: (when, request); and what the walk raised."""
     heard, over = [], asyncio.Event()
 
@@ -49,7 +52,7 @@ def told(folder, until_s, answer=lambda _: {"ok": True}):
 
     async def main():
         server = await asyncio.start_unix_server(serve, folder / "r.sock")
-        task = asyncio.ensure_future(walk(PLAN, WAY, folder / "r.sock"))
+        task = asyncio.ensure_future(walk(PLAN, way, folder / "r.sock"))
         await asyncio.wait([task], timeout=until_s)
         task.cancel()
         over.set()
@@ -90,3 +93,33 @@ def test_a_node_that_is_no_robot_ends_it(tmp_path):
     _, raised = told(tmp_path, 1.0, lambda _: {"error": "it bears no robot"})
     assert isinstance(raised, LiveError)
     assert str(raised) == "r: it bears no robot"
+
+
+@pytest.mark.parametrize("hold_us", [0, 3_000_000])
+def test_a_robot_errs_as_in_a_simulation_of_the_same_seed(hold_us):
+    """What a simulated robot is told beyond where it is, sample by sample."""
+    stands = ((0, 1_234, 777),)
+    plan = walking(2.0, stands, seed=7)
+    way = Walk(0, stands, 500_000, hold_us)
+    plan.walks = [way]
+    simulated = [(x - 1_234, y - 777) for _, x, y in reports(run(plan), REPORT_PLACE)]
+    errors = Errors(plan, way)
+    assert [errors.at(sample) for sample in range(len(simulated))] == simulated
+    assert len(set(simulated)) > 20
+    late = Errors(plan, way)
+    assert late.at(57) == simulated[57], "whoever was not told for a while has not erred less"
+    assert late.at(57) == simulated[57]
+    assert Errors(plan, Walk(0, stands)).at(3) == (0, 0)
+
+
+def test_a_robot_that_errs_is_told_the_wrong_place_as_often_where_it_stands(tmp_path):
+    way = Walk(0, WAY.points, 1_000_000)
+    heard, _ = told(tmp_path, 6.1, way=way)
+    assert [at for at, _ in heard] == [0.25 * k for k in range(25)]
+    exact, _ = told(tmp_path, 6.1, way=Walk(0, (*WAY.points, (7_000_000, 500, 400))))
+    errors = Errors(PLAN, way)
+    for k, ((_, wrong), (_, right)) in enumerate(zip(heard, exact, strict=True)):
+        dx, dy = errors.at(k)
+        assert wrong["at_cm"] == [right["at_cm"][0] + dx, right["at_cm"][1] + dy]
+        assert wrong["speed_cm_s"] == right["speed_cm_s"], "measured by itself"
+    assert len({tuple(one["at_cm"]) for _, one in heard[17:]}) > 5

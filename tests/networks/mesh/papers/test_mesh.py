@@ -8,9 +8,9 @@ from innervate.networks.mesh.papers import FIGURES, alarms, gateway, scale, stre
 from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
-from innervate.papers.experiment import FAILS, HOLDS, Measured
+from innervate.papers.experiment import FAILS, Measured
 from innervate.plot import style
-from tests.fixtures.papers import read
+from tests.fixtures.papers import must, read, wrong
 from tests.networks.mesh.papers.test_edges import results
 from tests.plot.labels import legends_over_panels, over_panels
 from tests.plot.self_contained import check_paper
@@ -72,17 +72,12 @@ def test_a_legend_in_a_panel_is_noticed():
     assert over_panels(figure) == ["a line"]
 
 
-@pytest.mark.parametrize(
-    ("begins", "name", "words"),
-    [(HOLDS, *row) for row in MUST_HOLD] + [(FAILS, *row) for row in MUST_FAIL],
-)
+@must(MUST_HOLD, MUST_FAIL)
 def test_what_holds_and_what_does_not(mesh_made, begins, name, words):
-    found = [claim for claim in mesh_made.claims[name] if words in claim.claim]
-    assert found
-    wrong = [claim for claim in found if not claim.verdict.startswith(begins)]
+    others = wrong(mesh_made, begins, name, words)
     if words == ": all alarms":  # routed alone it may be late: that is why there is a flood
-        wrong = [claim for claim in wrong if "flooded" in claim.claim]
-    assert wrong == []
+        others = [claim for claim in others if "flooded" in claim.claim]
+    assert others == []
 
 
 def test_with_one_death_more_the_same_die_and_one_more():

@@ -1,5 +1,7 @@
 """Who knows no way floods its message, which finds its recipient; the ack comes back on the way."""
 
+import copy
+
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
@@ -300,3 +302,32 @@ def test_a_flood_that_was_forgotten_and_comes_again_is_delivered_once():
     bench.push(bench.now, ("frame", 2, bench.heard(1, 2, flood)))
     bench.run(2 * SPAN_US)
     assert [i for _, i, _ in bench.delivered] == [2]
+
+
+class Mixed(Net):
+    """A mesh of which only some flood."""
+
+    flooding = frozenset()
+
+    def params_of(self, i):
+        if i in self.flooding:
+            return self.params
+        plain = copy.copy(self.params)
+        plain.on_demand = 0
+        return plain
+
+
+@pytest.mark.parametrize(("flooding", "floods", "searched"), [
+    ({0, 1, 2, 3}, [0, 1, 2], False), ({0, 2}, [0, 0], True), ({1, 2}, [], True),
+])  # fmt: skip
+def test_where_only_some_flood_a_message_costs_two_tries_and_comes_once(flooding, floods, searched):
+    """Others let a flood pass; then it is looked for as ever."""
+    mixed = Mixed(4, line(4), on_demand=1)
+    mixed.flooding = flooding
+    mixed.run(100_000)  # a round is under way, and nobody has tables
+    mixed.send(0, 3)
+    mixed.run(10_000_000)
+    assert [i for _, i, f in mixed.delivered if f.kind == DATA] == [3]
+    hops = sent(mixed, DATA)
+    assert [i for i, to in hops if to == ALL] == floods
+    assert any(to != ALL for _, to in hops) == searched

@@ -2,15 +2,8 @@
 
 from itertools import pairwise
 
+from innervate.networks.mesh.protocol import constants as c
 from innervate.networks.mesh.protocol import queue as mesh_queue
-from innervate.networks.mesh.protocol.constants import (
-    DATA,
-    E2E_ACK,
-    NO_ROOM,
-    REPORT_ARRIVED,
-    REPORT_EXPIRED,
-    REPORT_FULL,
-)
 from innervate.networks.mesh.protocol.retransmission import AHEAD_MAX
 from tests.networks.mesh.net import Net, line
 
@@ -23,7 +16,7 @@ def codes(net, who, code):
 
 
 def heard(net, who):
-    return [bytes(f.body[: f.length]) for _, i, f in net.delivered if i == who and f.kind == DATA]
+    return [bytes(f.body[: f.length]) for _, i, f in net.delivered if i == who and f.kind == c.DATA]
 
 
 def test_a_slow_round_trip_does_not_stretch_the_tries_beyond_what_the_recipient_remembers():
@@ -34,8 +27,8 @@ def test_a_slow_round_trip_does_not_stretch_the_tries_beyond_what_the_recipient_
     net.send(0, 2)
     memory_us = net.params.forget * net.params.tick_us
     net.run(READY + memory_us)
-    assert len(codes(net, 0, REPORT_EXPIRED)) == 1
-    last = max(at for at, who, frame in net.sent if who == 0 and frame.kind == DATA)
+    assert len(codes(net, 0, c.REPORT_EXPIRED)) == 1
+    last = max(at for at, who, frame in net.sent if who == 0 and frame.kind == c.DATA)
     assert last - READY < memory_us
 
 
@@ -46,10 +39,10 @@ def test_retried_messages_teach_a_longer_round_trip_but_step_by_step():
     net.run(READY + 100_000)
     short = net.nodes[0].round_trip
     assert 0 < short < 10_000
-    net.lost = lambda frame, to: frame.kind == E2E_ACK and net.now < READY + 800_000
+    net.lost = lambda frame, to: frame.kind == c.E2E_ACK and net.now < READY + 800_000
     net.send(0, 2)
     net.run(READY + 2_000_000)
-    assert len(codes(net, 0, REPORT_ARRIVED)) == 2
+    assert len(codes(net, 0, c.REPORT_ARRIVED)) == 2
     assert short < net.nodes[0].round_trip <= (7 * short + 2 * net.params.e2e_us) // 8
 
 
@@ -66,10 +59,10 @@ def test_no_packet_goes_so_far_ahead_that_an_older_one_could_not_come_any_more()
         net.run(net.now + 10_000)
     assert heard(net, 2)[1:] == [b"%d" % k for k in range(AHEAD_MAX)]
     net.send(0, 1, b"ahead", handle=9)
-    assert codes(net, 0, REPORT_FULL) == [(9, NO_ROOM)]
+    assert codes(net, 0, c.REPORT_FULL) == [(9, c.NO_ROOM)]
     net.neighbours[0].add(1)
     net.run(net.now + 10_000_000)
-    assert 7 in [handle for handle, _ in codes(net, 0, REPORT_ARRIVED)]
+    assert 7 in [handle for handle, _ in codes(net, 0, c.REPORT_ARRIVED)]
     net.send(0, 1, b"ahead", handle=9)
     net.run(net.now + 200_000)
     assert heard(net, 1) == [b"first", b"late", b"ahead"]
@@ -80,7 +73,7 @@ def test_acks_do_not_shut_out_a_message_that_is_still_tried():
     net.run(READY)
     net.send(0, 1, b"first")
     net.run(READY + 200_000)
-    net.lost = lambda frame, to: frame.kind == DATA and frame.origin == 0
+    net.lost = lambda frame, to: frame.kind == c.DATA and frame.origin == 0
     net.send(0, 1, b"late")
     for k in range(2 * AHEAD_MAX):
         net.send(1, 0, b"%d" % k)
@@ -112,7 +105,7 @@ def test_acks_of_others_do_not_use_up_the_tries_of_one_that_is_lost_on_its_way()
             net.run(net.now + 500)
             if k < 10:
                 forget(net, 1, late)  # before its hop's ack is missed
-    assert 7 in [handle for handle, _ in codes(net, 0, REPORT_ARRIVED)]
+    assert 7 in [handle for handle, _ in codes(net, 0, c.REPORT_ARRIVED)]
     assert heard(net, 2).count(b"late") == 1
     tries = [at for at, who, frame in net.sent if who == 0 and frame.seq == late]
     assert all(b - a > net.params.e2e_us // 2 for a, b in pairwise(tries))
@@ -121,11 +114,11 @@ def test_acks_of_others_do_not_use_up_the_tries_of_one_that_is_lost_on_its_way()
 def test_an_ack_for_an_earlier_life_does_not_say_that_a_recipient_knows_this_one():
     net = Net(2, line(2))
     net.run(READY)
-    net.lost = lambda frame, to: frame.kind == E2E_ACK
+    net.lost = lambda frame, to: frame.kind == c.E2E_ACK
     net.send(0, 1, b"old")
     net.run(READY + 100_000)
-    (old,) = [frame.seq for _, i, frame in net.delivered if i == 1 and frame.kind == DATA]
-    late = next(frame for _, _, frame in net.sent if frame.kind == E2E_ACK)
+    (old,) = [frame.seq for _, i, frame in net.delivered if i == 1 and frame.kind == c.DATA]
+    late = next(frame for _, _, frame in net.sent if frame.kind == c.E2E_ACK)
     net.revive(0)
     net.nodes[0].seq = (old - 5_000) & 65_535  # it lost its numbers, and drew others
     net.push(net.now, ("frame", 0, late))

@@ -11,15 +11,14 @@ is a remark; INNERVATE_REWRITE=1 writes what is given now. Commands, nodes by nu
     tables                        everybody's next hops and (alternates)
 """
 
-import os
 from pathlib import Path
 
 import pytest
 
 from innervate.networks.mesh.protocol import constants as const
+from tests.networks import transcripts
 from tests.networks.mesh.net import Net
 
-REWRITE = os.environ.get("INNERVATE_REWRITE", "") not in ("", "0")
 FILES = sorted((Path(__file__).parent / "scripts").glob("*.txt"))
 FENCE = dict(points=4, px=[0, 1000, 1000, 0] + [0] * 44, py=[0, 0, 1000, 1000] + [0] * 44,
              after=[1, 2, 3, 0] + [0] * 44)  # fmt: skip
@@ -133,11 +132,7 @@ def played(text):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_script(path):
-    text = path.read_text()
-    given = played(text)
-    if REWRITE:
-        path.write_text(given)
-    assert given == text
+    transcripts.check(path, played)
 
 
 def test_there_are_scripts():

@@ -26,7 +26,6 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.jobs import pump
 from innervate.networks.mesh.protocol.neighbours import place_of
-from innervate.networks.mesh.protocol.node import FOR_WHAT_COMES_DOWN
 from innervate.networks.mesh.protocol.queue import enqueue
 from innervate.networks.mesh.protocol.round import on_request, queued_request
 from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
@@ -145,7 +144,9 @@ def test_without_tables_a_shorter_way_counts_that_comes_later(mode, depths):
     assert [bench.nodes[i].depth for i in (5, 6)] == depths
 
 
-@pytest.mark.parametrize(("rssi", "hops", "depth"), [(-92, 1, 2), (-93, 1, 5), (-60, 4, 5)])
+@pytest.mark.parametrize(("rssi", "hops", "depth"), [
+    (-92, 1, 2), (-92, 3, 4), (-93, 1, 5), (-60, 4, 5),
+])  # fmt: skip
 def test_a_way_as_long_or_too_faint_is_no_shorter_one(rssi, hops, depth):
     bench = Bench(3, [(0, 1), (1, 2)], mode=TABLE_FREE)
     bench.run(SETTLED)
@@ -170,7 +171,7 @@ def test_what_climbs_leaves_room_for_what_comes_down(mode, kind, flags, taken):
     bench = Bench(3, [(0, 1), (1, 2)], mode=mode)
     bench.run(SETTLED)
     node = bench.nodes[1]
-    free = 2 + MESSAGES if taken else 1 + FOR_WHAT_COMES_DOWN + MESSAGES
+    free = MESSAGES + (2 if taken else 4)  # three places are kept for what comes down
     for _ in range(node.places - free):
         i = enqueue(node, bench.now, MESSAGES, 2, bench.out)
         node.q_due[i] = bench.now + 60_000_000

@@ -93,17 +93,6 @@ MISTAKES = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "message"), MISTAKES)
-def test_mistakes(old: str, new: str, message: str) -> None:
-    assert old in SMALL
-    with pytest.raises(ScenarioError) as found:
-        plan(loads(SMALL.replace(old, new, 1), path="x.toml"))
-    text = str(found.value)
-    assert message in text
-    assert text.startswith("x.toml:")
-    assert "\n" not in text
-
-
 LINKS = """\
 kind = "mesh"
 [[link]]
@@ -133,13 +122,17 @@ WRONG_LINKS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "message"), WRONG_LINKS)
-def test_mistakes_in_links(old: str, new: str, message: str) -> None:
-    assert old in LINKS
+@pytest.mark.parametrize(
+    ("whole", "old", "new", "message"),
+    [(SMALL, *mistake) for mistake in MISTAKES] + [(LINKS, *mistake) for mistake in WRONG_LINKS],
+)
+def test_mistakes(whole: str, old: str, new: str, message: str) -> None:
+    assert old in whole
     with pytest.raises(ScenarioError) as found:
-        plan(loads(LINKS.replace(old, new, 1), path="x.toml"))
+        plan(loads(whole.replace(old, new, 1), path="x.toml"))
     text = str(found.value)
     assert message in text
+    assert text.startswith("x.toml:")
     assert "\n" not in text
 
 

@@ -82,6 +82,9 @@ def test_who_was_put_out_has_no_way_though_nobody_has_noticed_yet():
     found = MeshState(MeshMap(told), told).headline()
     assert (found.level, found.nodes) == ("down", (1,))
     assert found.text == "1 of 2 nodes was put out: its identity is revoked."
+    told[0]["role"] = "node"
+    state = MeshState(MeshMap(told), told)
+    assert (state.unconnected, state.lacking, state.left) == (2, 1, 1), "it could not have a way"
 
 
 def test_every_alarm_is_told_once_and_old_ones_with_their_age():

@@ -28,14 +28,6 @@ def baseline_plans(draw):
     return plan
 
 
-@given(baseline_plans())
-@settings(QUIET, max_examples=24)
-def test_baselines_compiled_equal_plain(plan):
-    check(plan)
-
-
-@pytest.mark.slow
-@given(baseline_plans())
-@settings(QUIET, max_examples=300)
-def test_many_compiled_runs_equal_plain_ones(plan):
-    check(plan)
+@pytest.mark.parametrize("examples", [24, pytest.param(300, marks=pytest.mark.slow)])
+def test_baselines_compiled_equal_plain(examples):
+    settings(QUIET, max_examples=examples)(given(baseline_plans())(check))()

@@ -10,7 +10,7 @@ from innervate.networks.radio.papers.fairness import longest
 from innervate.papers import main
 from innervate.papers.experiment import FAILS, HOLDS, Measured
 from innervate.papers.words import spans
-from tests.fixtures.papers import made_of_rows
+from tests.fixtures.papers import made_of_rows, must, wrong
 from tests.plot.self_contained import check_paper
 
 # Figure and words of its claims: those that have to hold, and those that must not.
@@ -54,14 +54,9 @@ MUST_FAIL = (
 )
 
 
-@pytest.mark.parametrize(
-    ("begins", "name", "words"),
-    [(HOLDS, *row) for row in MUST_HOLD] + [(FAILS, *row) for row in MUST_FAIL],
-)
+@must(MUST_HOLD, MUST_FAIL)
 def test_what_holds_and_what_does_not(radio_made, begins, name, words):
-    found = [claim for claim in radio_made.claims[name] if words in claim.claim]
-    assert found
-    assert [claim for claim in found if not claim.verdict.startswith(begins)] == []
+    assert wrong(radio_made, begins, name, words) == []
 
 
 def double(values):
@@ -197,9 +192,7 @@ def test_what_holds_and_what_does_not_in_full(tmp_path):
     whole = read(tmp_path, False, radio.FIGURES, radio)
     for begins, rows in ((HOLDS, MUST_HOLD), (FAILS, MUST_FAIL)):
         for name, words in rows:
-            found = [claim for claim in whole.claims[name] if words in claim.claim]
-            assert found, words
-            assert all(claim.verdict.startswith(begins) for claim in found), words
+            assert wrong(whole, begins, name, words) == [], words
 
 
 def test_the_page_needs_nothing_else_and_can_be_had_again(radio_made):

@@ -78,16 +78,8 @@ def outcome(plan, plain):
         result = simulate(plan, plain=plain, trail=True)
     except InvariantBroken as error:
         return {"broken": str(error)}
-    return {
-        "rows": result.rows,
-        "sent": result.sent,
-        "packets": result.packets,
-        "trail": result.trail,
-        "counts": result.counts,
-        "ended": result.ended_us,
-        "states": states(result),
-        "fingerprint": result.fingerprint,
-    }
+    kept = ("rows", "sent", "packets", "trail", "counts", "ended_us", "fingerprint")
+    return {name: getattr(result, name) for name in kept} | {"states": states(result)}
 
 
 def check(plan):

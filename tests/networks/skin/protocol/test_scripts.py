@@ -18,7 +18,6 @@ is given now: read it before you keep it. Commands, with nodes by name (`pc` is 
     show, wires, penalty 1         all nodes; what is under way; failure penalties of a cell
 """
 
-import os
 from pathlib import Path
 
 import pytest
@@ -26,11 +25,11 @@ import pytest
 from innervate import scenario
 from innervate.networks.skin.protocol.constants import NONE
 from innervate.networks.skin.sim.simulate import simulate
+from tests.networks import transcripts
 from tests.networks.skin.bench import REAL
 from tests.networks.skin.net import Net
 from tests.networks.skin.runs import loops_closed
 
-REWRITE = os.environ.get("INNERVATE_REWRITE", "") not in ("", "0")
 FILES = sorted((Path(__file__).parent / "scripts").glob("*.txt"))
 skin = REAL.skin
 DROPS = {skin.DROP_NO_ROUTE: "no route", skin.DROP_LOOP: "a loop"}
@@ -221,12 +220,7 @@ def replay(text):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_transcript(path):
-    text = path.read_text()
-    given = replay(text)
-    if REWRITE:
-        path.write_text(given)
-    else:
-        assert given.splitlines() == text.splitlines(), f"{path.name} gives something else"
+    transcripts.check(path, replay)
 
 
 @pytest.mark.parametrize("rule", ["paper", "paper-lax", "feasible", "strict"])

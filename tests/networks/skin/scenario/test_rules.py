@@ -7,20 +7,10 @@ from innervate.networks.skin.scenario.plan import Plan
 from innervate.networks.skin.scenario.script import DETECT
 from innervate.networks.skin.scenario.warnings import start_up_us, warnings
 from innervate.scenario import ScenarioError, loads, plan
+from tests.fixtures.scenarios import one_port
 from tests.networks.skin.runs import patch, plan_of
 
-SMALL = """\
-kind = "skin"
-duration_s = 0.8
-
-[[patch]]
-columns = 3
-rows = 2
-
-[[interface]]
-row = 0
-column = 0
-"""
+SMALL = one_port(3, 2, "duration_s = 0.8")
 
 
 def made(*more: str, sets: tuple[str, ...] = ()) -> Plan:

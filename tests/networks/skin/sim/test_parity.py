@@ -96,15 +96,8 @@ def outcome(plan, *, plain=False, checks=True):
         result = simulate(plan, plain=plain, checks=checks, deliveries=True, trail=True)
     except InvariantBroken as error:
         return {"broken": str(error)}
-    return {
-        "rows": result.rows,
-        "trail": result.trail,
-        "deliveries": result.deliveries,
-        "counters": result.counters,
-        "handled": (result.handled, result.arrived),
-        "states": states(result),
-        "fingerprint": result.fingerprint,
-    }
+    kept = ("rows", "trail", "deliveries", "counters", "handled", "arrived", "fingerprint")
+    return {name: getattr(result, name) for name in kept} | {"states": states(result)}
 
 
 def assert_same(one, other, what):

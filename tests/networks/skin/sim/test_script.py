@@ -113,7 +113,7 @@ def test_a_step_is_of_its_own_timer(monkeypatch, action, timer):
     slot = timer * 3 + 1
     if timer == SOON:
         wheel.insert(stage.world.wheel, slot, 9_000)
-    monkeypatch.setattr(calls, "on_timer_slot", lambda _world, _stack, *what: due.append(what))
+    monkeypatch.setattr(calls, "on_event", lambda _world, _stack, *what: due.append(what))
     script._take(stage, 0, Step(action, 1), 1_000)
     assert due == [(slot, 1_000)]
     assert stage.world.wheel.events[slot].bucket == wheel.NIL
@@ -179,7 +179,7 @@ def test_what_breaks_ends_a_script_at_its_step(monkeypatch):
     def tick(world, _stack, slot, time):
         world.run[0].broken, world.run[0].broken_node = (4, 1) if time == 2_000 else (0, -1)
 
-    monkeypatch.setattr(calls, "on_timer_slot", tick)
+    monkeypatch.setattr(calls, "on_event", tick)
     with pytest.raises(InvariantBroken, match=r"broken at 0\.002000 s .*: outbox of n1 overflowed"):
         simulate.simulate(plan)
 

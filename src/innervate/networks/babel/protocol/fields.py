@@ -1,9 +1,8 @@
 """What nodes, frames and settings of Babel hold: (name, length, low, high, unit, meaning)."""
 
+from innervate.dialect.fields import clock, flag, number
 from innervate.networks.babel.protocol.constants import WANTED_MAX
 
-clock = (0, 1073741823, "us")
-number = (0, 65535, "number")
 cost = (0, 65535, "cost")
 STATE = (
     ("number", 0, 0, 65535, "node", "who we are"),
@@ -21,28 +20,28 @@ STATE = (
     ("ihu_at", 4, *clock, "when that is too old"),
     ("cost", 4, *cost, "of the link [3.4.3]; 65535 = infinite"),
     # The route table [3.2.6], an entry a port.
-    ("known", 4, 0, 1, "flag", "there is an entry"),
+    ("known", 4, *flag, "there is an entry"),
     ("seq", 4, *number, "with which the route was advertised"),
     ("metric", 4, *cost, "with which it was advertised; 65535 = retracted"),
     ("route_us", 4, 0, 10_000_000, "us", "until the next update, as it promised"),
     ("route_at", 4, *clock, "when the route expires"),
-    ("asked", 4, 0, 1, "flag", "we have asked for an update, as it was about to expire"),
+    ("asked", 4, *flag, "we have asked for an update, as it was about to expire"),
     ("parent", 0, -1, 3, "port", "of the route that is selected; -1 = none"),
     # The source table [3.2.5].
-    ("fd_known", 0, 0, 1, "flag", "there is a feasibility distance"),
+    ("fd_known", 0, *flag, "there is a feasibility distance"),
     ("fd_seq", 0, *number, "of the feasibility distance"),
     ("fd_metric", 0, *cost, "of the feasibility distance"),
     ("fd_at", 0, *clock, "when it is forgotten"),
     # The table of pending seqno requests [3.2.7].
-    ("wanted", 0, 0, 1, "flag", "a request was sent and not answered yet"),
+    ("wanted", 0, *flag, "a request was sent and not answered yet"),
     ("wanted_seq", 0, *number, "that is requested"),
     ("wanted_tries", 0, 0, 3, "requests", "that follow if it stays unanswered"),
     ("wanted_us", 0, 0, WANTED_MAX, "us", "between the last two of them"),
     ("wanted_at", 0, *clock, "when the next is due, or it is given up"),
     ("said", 0, *cost, "our metric as we advertised it last"),
-    ("soon", 0, 0, 1, "flag", "a triggered update is about to be sent"),
+    ("soon", 0, *flag, "a triggered update is about to be sent"),
     ("copies", 0, 0, 5, "updates", "that repeat the one to be sent"),
-    ("looking", 0, 0, 1, "flag", "a look at what has expired is due"),
+    ("looking", 0, *flag, "a look at what has expired is due"),
     ("look_at", 0, *clock, "when"),
 )
 FRAME = (
@@ -51,7 +50,7 @@ FRAME = (
     ("hello_no", 0, *number, "of the Hello"),
     ("hello", 0, 0, 65535, "0.1 ms", "until the next Hello or IHU, or for an ack; 0 = no promise"),
     ("rxcost", 0, *cost, "IHU: what came of our Hellos; 65535 = infinite, 0 = there is none"),
-    ("has_update", 0, 0, 1, "flag", "an update comes with the Hello"),
+    ("has_update", 0, *flag, "an update comes with the Hello"),
     ("seq", 0, *number, "of the route, or requested"),
     ("metric", 0, *cost, "of the route; 65535 = a retraction"),
     ("update", 0, 0, 65535, "0.1 ms", "until the next update"),
@@ -63,7 +62,7 @@ PARAMS = (
     ("pc", 0, 0, 65535, "node", "the source, which all others want to reach"),
     ("hello_us", 0, 1_000, 1_000_000, "us", "between two Hellos"),
     ("update_hellos", 0, 1, 64, "Hellos", "between two periodic updates"),
-    ("etx", 0, 0, 1, "flag", "links are judged by ETX [A.2.2] instead of k-out-of-j [A.2.1]"),
+    ("etx", 0, *flag, "links are judged by ETX [A.2.2] instead of k-out-of-j [A.2.1]"),
     ("up_least", 0, 1, 16, "Hellos", "k: that many make a link up"),
     ("up_of", 0, 1, 16, "Hellos", "j: of the last so many; of ETX: the window"),
     ("nominal", 0, 1, 1024, "cost", "C: of a link that is up; least change that is told at once"),

@@ -33,18 +33,13 @@ OUTBOX = 34
 
 def on_start(node, params, now, cause, out):
     """Switch on: only our seqno is kept, as in stable storage."""
-    node.hello_no = 0
     node.beats = 1
     for p in range(PORTS):
         forget_neighbour(node, p)
     node.parent = NONE
-    node.fd_known = 0
-    node.wanted = 0
-    node.wanted_tries = 0
     node.said = INFINITY
-    node.soon = 0
-    node.copies = 0
-    node.looking = 0
+    node.hello_no = node.soon = node.copies = node.looking = 0
+    node.fd_known = node.wanted = node.wanted_tries = 0
     node.tick_at = now
     set_timer(out, TICK, now)
 

@@ -1,31 +1,30 @@
 """What nodes and frames of managed flooding hold."""
 
+from innervate.dialect.fields import DRAWS, clock, flag, number
 from innervate.networks.flooding.protocol.sizes import BODY, OWN, PLACES, SEEN
 
 CLOCK = 1073741823
 
 STATE = (
     ("number", 0, 0, 254, "node", "who we are"),
-    ("rng", 0, 1, CLOCK, "state", "generator of random choices"),
-    ("choice", 0, -1, CLOCK, "value", "what the next draw shall return; -1 = generate"),
-    ("asked", 0, 0, CLOCK, "count", "out of how many the last scripted draw was"),
-    ("id", 0, 0, 65535, "number", "of our newest packet"),
+    *DRAWS,
+    ("id", 0, *number, "of our newest packet"),
     ("seen_from", SEEN, -1, 254, "node", "whose packets we have met; -1 nothing"),
-    ("seen_id", SEEN, 0, 65535, "number", "and which"),
+    ("seen_id", SEEN, *number, "and which"),
     ("oldest", 0, 0, SEEN - 1, "place", "of those, that is used next"),
-    ("waits", PLACES, 0, 1, "flag", "a packet waits here to be passed on"),
+    ("waits", PLACES, *flag, "a packet waits here to be passed on"),
     ("kind", PLACES, 0, 3, "type", "of that packet"),
     ("origin", PLACES, 0, 254, "node", "who made it"),
-    ("packet", PLACES, 0, 65535, "number", "its id"),
+    ("packet", PLACES, *number, "its id"),
     ("dest", PLACES, 0, 255, "node", "who is to have it; 255 = all"),
     ("hops", PLACES, 0, 7, "hops", "that it may still go, after ours"),
     ("start", PLACES, 0, 7, "hops", "that it could go at first"),
-    ("want", PLACES, 0, 1, "flag", "its origin wants an acknowledgement"),
-    ("ack", PLACES, 0, 65535, "number", "of an acknowledgement: the id that it is for"),
+    ("want", PLACES, *flag, "its origin wants an acknowledgement"),
+    ("ack", PLACES, *number, "of an acknowledgement: the id that it is for"),
     ("body", PLACES * BODY, 0, 65535, "raw", "what users say"),
     ("made", PLACES, 0, CLOCK, "time", "when it was handed in: a run's own"),
-    ("open", OWN, 0, 1, "flag", "an own packet here is not acknowledged yet"),
-    ("open_id", OWN, 0, 65535, "number", "its id"),
+    ("open", OWN, *flag, "an own packet here is not acknowledged yet"),
+    ("open_id", OWN, *number, "its id"),
     ("open_dest", OWN, 0, 255, "node", "who is to have it"),
     ("open_tries", OWN, 0, 15, "times", "that it was sent again"),
     ("open_body", OWN * BODY, 0, 65535, "raw", "what users say"),
@@ -36,15 +35,15 @@ STATE = (
 FRAME = (
     ("kind", 0, 0, 3, "type", "1 packet, 2 acknowledgement"),
     ("origin", 0, 0, 254, "node", "who made it"),
-    ("id", 0, 0, 65535, "number", "of its origin's packets"),
+    ("id", 0, *number, "of its origin's packets"),
     ("dest", 0, 0, 255, "node", "who is to have it; 255 = all"),
     ("hops", 0, 0, 7, "hops", "that it may still go"),
     ("start", 0, 0, 7, "hops", "that it could go at first"),
-    ("want", 0, 0, 1, "flag", "its origin wants an acknowledgement"),
-    ("ack", 0, 0, 65535, "number", "the id that an acknowledgement is for"),
+    ("want", 0, *flag, "its origin wants an acknowledgement"),
+    ("ack", 0, *number, "the id that an acknowledgement is for"),
     ("body", BODY, 0, 65535, "raw", "what users say"),
     ("rssi", 0, -128, 127, "dBm", "how loud it came in"),
-    ("made_at", 0, 0, CLOCK, "us", "when it was handed in: a run's own, not sent"),
+    ("made_at", 0, *clock, "when it was handed in: a run's own, not sent"),
 )
 PARAMS = (
     ("hops", 0, 0, 7, "hops", "that packets may be passed on"),

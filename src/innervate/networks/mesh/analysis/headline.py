@@ -12,6 +12,7 @@ from innervate.analysis.headline import (
     OK,
     Headline,
     part_of,
+    put_out,
     sentence,
     verb,
 )
@@ -150,8 +151,7 @@ def _apart(
                 f"{part_of(astray, count, 'node')} {verb(astray, 'has')} no way to the gateway"
             )
     if gone := int(out.sum()):
-        whose = "its identity is" if gone == 1 else "their identities are"
-        found.append(f"{part_of(gone, count, 'node')} {verb(gone, 'was')} put out: {whose} revoked")
+        found.append(put_out(part_of(gone, count, "node"), gone))
     off = int(ways.off.sum())
     if off:
         found.append(f"{part_of(off, count, 'node')} {verb(off, 'is')} {absent}")

@@ -4,11 +4,14 @@ import asyncio
 import json
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from innervate.live.deployment import sleep_until
 from innervate.live.errors import LiveError
 from innervate.networks.mesh.scenario.plan import Point, Walk, position_cm
+from innervate.networks.mesh.scenario.robots import errs
+from innervate.topology import astray
 
 ANSWER_S = 5.0
 STANDING_S = 0.5
@@ -24,21 +27,42 @@ def place_at(way: Walk, time_us: int) -> tuple[Point, Point]:
     return position_cm(way, time_us), speed
 
 
+class Errors:
+    """By how much a robot is wrong about its place: sample by sample what a simulation has."""
+
+    def __init__(self, plan: Any, way: Walk) -> None:
+        self._walk = SimpleNamespace(**errs(plan, way)._asdict())
+        self._samples = 0
+
+    def at(self, sample: int) -> Point:
+        """Of a sample, from 0 on, and not before the last one that was asked for; cm."""
+        if not self._walk.noise:
+            return 0, 0
+        while self._samples <= sample:
+            astray.err(self._walk, astray.normal_table())
+            self._samples += 1
+        x, y = (astray.centimetres(self._walk.noise, off)
+                for off in (self._walk.off_x, self._walk.off_y))  # fmt: skip
+        return x, y
+
+
 async def walk(plan: Any, way: Walk, where: Path) -> None:
     """Tell a robot's node where it is, so often as the scenario says; seldom where it stands.
 
-    `where` is the node's status socket. Raises LiveError: the node is no robot.
+    One that errs is told as often where it stands, as its error goes on changing. `where` is the
+    node's status socket. Raises LiveError: the node is no robot.
     """
     loop = asyncio.get_running_loop()
     began, period_s = loop.time(), plan.sample_us / 1e6
     due = began
-    robot = Robot(where)
+    robot, errors = Robot(where), Errors(plan, way)
     x0, y0 = plan.origin_cm
     try:
         while True:
             at, speed = place_at(way, round((due - began) * 1e6))
-            await robot.locate((at[0] - x0, at[1] - y0), speed)
-            ended = due - began > way.points[-1][0] / 1e6
+            dx, dy = errors.at(int((due - began) / period_s + 0.5))
+            await robot.locate((at[0] - x0 + dx, at[1] - y0 + dy), speed)
+            ended = due - began > way.points[-1][0] / 1e6 and not way.noise_um
             # Late once, no burst after it; at rest only for a robot that starts anew.
             due = max(due + (STANDING_S if ended else period_s), loop.time() - period_s)
             await sleep_until(due)

@@ -203,11 +203,11 @@ def turn_away(node, params, failed, out):
 def most_tries(node, params, i, who):
     """How often the packet in place i is sent to the neighbour in place `who` of the table.
 
-    Once where another may be asked and this one was silent since it did not answer; tables and
-    what climbs to the gateway have few to choose from.
+    Once where this one was silent since it did not answer: another may be asked, and a response
+    asks the same few again and again. Tables and their acks have few to choose from.
     """
     kind = node.q_kind[i]
-    if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and not is_upward(kind):
+    if who >= 0 and node.suspect[who] & DOUBT and kind != TABLE and kind != TABLE_ACK:
         return 1
     return tries_for(node, params, who)
 

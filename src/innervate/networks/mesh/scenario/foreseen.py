@@ -6,6 +6,7 @@ from itertools import pairwise
 from math import dist, log10
 
 from innervate.networks.mesh.protocol.constants import ACK_BYTES, ALL, MONITOR
+from innervate.networks.mesh.scenario.access import is_shared
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.params import sent_at_most
 from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk, position_cm
@@ -32,6 +33,7 @@ def foreseen(made: MeshPlan) -> list[str]:
     bad = _badly_reached(made)
     return [
         *_acks(made),
+        *_untold(made),
         *_bad_ways(made, bad),
         *_hasty(made),
         *_at_the_end(made, bad),
@@ -51,6 +53,17 @@ def _acks(made: MeshPlan) -> list[str]:
     return [
         f"a hop's ack is there {needed_us:,} us after its frame at the earliest, and "
         f"protocol.ack_us is {wait_us:,}: every hop counts as lost; make it longer"
+    ]
+
+
+def _untold(made: MeshPlan) -> list[str]:
+    """Hops of which nobody learns what was received: each packet goes once, whoever is dead."""
+    if made.params["hop_acks"] or is_shared(made.mac):
+        return []
+    return [
+        f'hops do not acknowledge, and with radio.mac = "{made.mac}" nothing else says what was '
+        "received: no hop is tried again and nobody goes round a failure; leave "
+        "protocol.hop_acks out"
     ]
 
 

@@ -193,7 +193,7 @@ class MeshEventTable(keys.Table, frozen=True, kw_only=True):
     noise_dbm: Power | None = None
 
 
-class MeshScenario(keys.Table, frozen=True, kw_only=True):
+class MeshScenario(keys.Scenario, frozen=True, kw_only=True):
     """A scenario of kind "mesh"; its tables are built as Mesh.Node, Mesh.Flow and so on."""
 
     Node = NodeTable
@@ -209,10 +209,7 @@ class MeshScenario(keys.Table, frozen=True, kw_only=True):
     Event = MeshEventTable
 
     kind: Literal["mesh"] = "mesh"
-    schema: keys.Schema = keys.SCHEMA
-    name: keys.Name = ""
     duration_s: Annotated[float, keys.above_0("seconds", limit=100_000)] = 60.0
-    seed: keys.Seed = 1
     # Its range is checked in rules.py, where the reason is known.
     nodes: Annotated[int | None, Meta(description="a whole number of nodes")] = None
     gateway: NodeId | None = None

@@ -2,12 +2,15 @@
 
 from itertools import pairwise
 from math import sqrt
+from typing import NamedTuple
 
+from innervate.dialect import rng
 from innervate.networks.mesh.scenario.fence import rings_cm
 from innervate.networks.mesh.scenario.model import MeshScenario, RobotTable
 from innervate.networks.mesh.scenario.nodes import Nodes
-from innervate.networks.mesh.scenario.plan import Walk
-from innervate.topology.placement import Point
+from innervate.networks.mesh.scenario.plan import MeshPlan, Walk
+from innervate.topology import astray
+from innervate.topology.placement import Point, normal_cdb
 from innervate.trace.streams import Stream, stream
 
 POINTS_MAX = 100_000
@@ -75,6 +78,29 @@ def walks(model: MeshScenario, nodes: Nodes, points: list[Point], duration_us: i
         noise_um, hold_us = round(1e6 * robot.position_noise_m), round(1e6 * robot.position_hold_s)
         found.append(Walk(node, tuple(walk), noise_um, hold_us))
     return found
+
+
+class Errs(NamedTuple):
+    """How a robot errs about its place; what changes from sample to sample is `astray.err`'s."""
+
+    noise: int = 0  # standard deviation along each axis, um; 0 = it never errs
+    # keep, fresh: what stays of an error from one sample to the next, and what is new, in
+    # 1/astray.ONE
+    keep: int = 0
+    fresh: int = 0
+    rng: int = 0  # its own stream
+    off_x: int = 0  # off_x, off_y: the error before the first sample, in astray.SIGMA
+    off_y: int = 0
+
+
+def errs(plan: MeshPlan, walk: Walk) -> Errs:
+    """How a robot of a plan errs, by the seed and its number alone."""
+    if not walk.noise_um:
+        return Errs()
+    draw = stream(plan.seed, f"position/{walk.node}")
+    own = 1 + draw.draw(rng.FIXED_POINT - 1)
+    first = (normal_cdb(draw, astray.SIGMA), normal_cdb(draw, astray.SIGMA))
+    return Errs(walk.noise_um, *astray.shares(plan.sample_us, walk.hold_us), own, *first)
 
 
 def _here(model: MeshScenario, nodes: Nodes) -> list[tuple[int, RobotTable]]:

@@ -11,17 +11,17 @@ from innervate.networks.mesh.protocol import csma, csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
 from innervate.networks.mesh.scenario.plan import Walk
+from innervate.networks.mesh.scenario.robots import errs
 from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
 from innervate.networks.mesh.sim.over_channel import KEPT
-from innervate.sim.field import astray, powers, queue
 from innervate.sim.field import build as field
+from innervate.sim.field import powers, queue
 from innervate.sim.field.loop import NEVER
 from innervate.sim.field.world import COMMAND
 from innervate.sim.recorded import Recorded
 from innervate.sim.tables import ACTION, ROW, Tables, get, put, uniform
-from innervate.topology.placement import normal_cdb
-from innervate.trace.streams import stream
+from innervate.topology import astray
 
 OUTBOX = 32
 DUPLICATES = 1 << 15
@@ -146,18 +146,8 @@ def _walks(plan: Any) -> tuple[list[Any], list[Any]]:
         first = len(points)
         points += list(walk.points)
         place = (walk.node, first, len(points) - 1, int(phases[walk.node]), 0)
-        walks.append((*place, *_astray(plan, walk)))
+        walks.append((*place, *errs(plan, walk)))
     return walks, points
-
-
-def _astray(plan: Any, walk: Walk) -> tuple[int, ...]:
-    """How a robot errs about its place, and by how much at first."""
-    if not walk.noise_um:
-        return (0,) * 6
-    draw = stream(plan.seed, f"position/{walk.node}")
-    own = 1 + draw.draw(rng.FIXED_POINT - 1)
-    first = (normal_cdb(draw, astray.SIGMA), normal_cdb(draw, astray.SIGMA))
-    return (walk.noise_um, *astray.shares(plan.sample_us, walk.hold_us), own, *first)
 
 
 def _set_run(world: m.World, plan: Any) -> None:

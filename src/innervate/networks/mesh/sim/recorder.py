@@ -25,18 +25,10 @@ def record_transmission(world, place, time, length, receivers):
     if run.sent_limit > 0:
         row = world.sent[run.sent]
         run.sent += 1
-        row.time = air.start
-        row.end = time
-        row.node = air.node
-        row.kind = frame.kind
-        row.flags = frame.flags
-        row.link_dst = frame.link_dst
-        row.origin = frame.origin
-        row.dest = frame.dest
-        row.seq = frame.seq
-        row.path_len = frame.path_len
-        row.bytes = length
-        row.receivers = receivers
+        row.time, row.end, row.node = air.start, time, air.node
+        row.kind, row.flags, row.link_dst = frame.kind, frame.flags, frame.link_dst
+        row.origin, row.dest, row.seq = frame.origin, frame.dest, frame.seq
+        row.path_len, row.bytes, row.receivers = frame.path_len, length, receivers
 
 
 def tap(world, place, at, time, out, why):
@@ -59,14 +51,9 @@ def record_delivered(world, node, frame, time):
     if run.delivered_limit > 0:
         row = world.delivered[run.delivered]
         run.delivered += 1
-        row.time = time
-        row.node = node
-        row.kind = frame.kind
-        row.flags = frame.flags
-        row.origin = frame.origin
-        row.dest = frame.dest
-        row.seq = frame.seq
-        row.path_len = frame.path_len
+        row.time, row.node, row.kind = time, node, frame.kind
+        row.flags, row.origin, row.dest = frame.flags, frame.origin, frame.dest
+        row.seq, row.path_len = frame.seq, frame.path_len
         row.looped = is_looped(frame)
         row.body0 = frame.body[0] if frame.length > 0 else 0
         row.body1 = frame.body[1] if frame.length > 1 else 0

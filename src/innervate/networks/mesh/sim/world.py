@@ -21,7 +21,7 @@ RUN = (
 # What the medium knows of a node.
 RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "gate", "offset",
          "noise", "x", "y")  # fmt: skip
-# ... and how it errs about its place (see sim/field/astray.py): `noise` in um, errors in SIGMA.
+# ... and how it errs about its place (see topology/astray.py): `noise` in um, errors in SIGMA.
 WALK = ("node", "point", "last", "phase", "placed",
         "noise", "keep", "fresh", "rng", "off_x", "off_y")  # fmt: skip
 POINT = ("time", "x", "y")

@@ -50,15 +50,14 @@ class MeshState(State):
         """Find everybody's way anew: (how many have none, of these are astray, could have one)."""
         self.ways = self._find_ways()
         self.hop, self.depth = self.ways.hop, self.ways.depth
-        without = self.ways.without & self.answers
-        found = without, self.ways.astray, self.ways.served
+        self.without = self.ways.without & self.answers
+        found = self.without, self.ways.astray & ~self.out, self.ways.served & ~self.out
         none, astray, could = (int(np.count_nonzero(who)) for who in found)
         return none, astray, could
 
     def judge(self) -> Headline:
         """The headline by the ways that `look` found; who is off is called silent."""
-        out = np.array([place.node in self.put_out for place in self.map.places], np.bool_)
-        return headline(self.ways, absent="silent", elsewhere=self.elsewhere, revoked=out)
+        return headline(self.ways, absent="silent", elsewhere=self.elsewhere, revoked=self.out)
 
     def _find_ways(self) -> Ways:
         """Who reaches its gateway, by what the nodes say of each other."""
@@ -116,7 +115,7 @@ class MeshState(State):
             "depth": self.depth,
             "way": self.ways.lacks,
             "leads": self.ways.leads.astype(np.int64),
-            "apart": int(self.ways.cut_off.sum()),
+            "apart": int((self.ways.cut_off & ~self.out).sum()),
             **self._robots(),
         }
 

@@ -143,7 +143,7 @@ class MeshView(View):
         recovery = self.memory.recovery
         if recovery is None or recovery.recovered_ms is not None:
             return
-        recovery.cut_off(int(np.count_nonzero(self._ways().cut_off)))
+        recovery.cut_off(self.apart())
         recovery.nobody = not self._ways().served.any()
         if recovery.nobody or self._lacking():
             return
@@ -153,6 +153,10 @@ class MeshView(View):
         if not kept:
             text = f"all nodes have a way to the gateway again after {int(after_us / 1e3 + 0.5)} ms"
             self.log.say(self.engine.now_us, text, "good")
+
+    def apart(self) -> int:
+        """Nodes that no links join with a gateway now."""
+        return int(np.count_nonzero(self._ways().cut_off))
 
     def _ways(self) -> Ways:
         """Who reaches a gateway now."""
@@ -204,7 +208,7 @@ class MeshView(View):
             "depth": ways.depth,
             "load": np.minimum(self.memory.load, 1.0).round(3),
             "unconnected": int(np.count_nonzero(ways.without)),
-            "apart": int(np.count_nonzero(ways.cut_off)),
+            "apart": self.apart(),
             "way": ways.lacks,
             "leads": ways.leads.astype(np.int64),
             "flights": self._flights() if flights else [],

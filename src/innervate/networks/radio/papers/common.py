@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from innervate.networks.radio.slotted.drive import SLOT
 from innervate.networks.radio.slotted.model import slotted
 from innervate.papers import drawing
-from innervate.papers.experiment import Measured, Point, columns
-from innervate.papers.words import spans
+from innervate.papers.experiment import Measured, Point, columns, verdict
+from innervate.papers.words import joined, spans
 from innervate.plot import style
 
 TAU_US = 104
@@ -106,10 +106,14 @@ def slope(x: Any, y: Any) -> tuple[float, float, float]:
 
 
 def overtaken(
-    got: Measured, curves: Iterable[Curve], ahead: Callable[[int, float], bool]
-) -> dict[str, int | None]:
-    """By the names of CSMA/CDs, from which n on CSMA/CD-R is `ahead` of them: (n, their mean)."""
-    return {SHORT[one.mac]: first_from(one.ns, map(ahead, one.ns, one.mean(got))) for one in curves}
+    got: Measured, curves: Sequence[Curve], ahead: Callable[[int, float], bool]
+) -> tuple[str, str]:
+    """From which n on CSMA/CD-R is `ahead` (n, their mean) of CSMA/CDs, in words; the verdict."""
+    found = {
+        SHORT[one.mac]: first_from(one.ns, map(ahead, one.ns, one.mean(got))) for one in curves
+    }
+    words = joined(f"{name} from n = {n}" for name, n in found.items())
+    return f"{words} ({curves[-1].seeds} runs each)", verdict(all(found.values()), "Q14")
 
 
 class Look(NamedTuple):

@@ -86,7 +86,7 @@ class RadioEventTable(keys.Table, frozen=True, kw_only=True):
     frames: Annotated[int | None, Meta(description="a whole number of CR-Rs, 1 to 1000000")] = None
 
 
-class RadioScenario(keys.Table, frozen=True, kw_only=True):
+class RadioScenario(keys.Scenario, frozen=True, kw_only=True):
     """A scenario of kind "radio"; its tables are built as Radio.Traffic, Radio.Event and so on."""
 
     Traffic = TrafficTable
@@ -95,10 +95,7 @@ class RadioScenario(keys.Table, frozen=True, kw_only=True):
     Event = RadioEventTable
 
     kind: Literal["radio"] = "radio"
-    schema: keys.Schema = keys.SCHEMA
-    name: keys.Name = ""
     duration_s: Annotated[float, keys.above_0("seconds", limit=100_000)] = 60.0
-    seed: keys.Seed = 1
     stations: Annotated[int, keys.whole("stations", 1, 1023)] = 10
     packet_slots: Annotated[
         int | tuple[int, int],

@@ -25,16 +25,9 @@ def record_sent(world, node, frame, time):
     if run.sent_limit > 0:
         row = world.sent[run.sent]
         run.sent += 1
-        row.time = start
-        row.end = end
-        row.node = node
-        row.kind = frame.kind
-        row.slots = frame.slots
-        row.pos = frame.pos
-        row.next = frame.next
-        row.handle = frame.handle
-        row.count = frame.count
-        row.more = frame.more
+        row.time, row.end, row.node, row.kind = start, end, node, frame.kind
+        row.slots, row.pos, row.next, row.handle = frame.slots, frame.pos, frame.next, frame.handle
+        row.count, row.more = frame.count, frame.more
 
 
 def record_received(world, node, what, time, clear, received):

@@ -68,20 +68,15 @@ def registered(protocol: stacks.Protocol, packets: ModuleType) -> ModuleType:
 
 
 def simulate(
-    plan: Any,
-    *,
-    plain: bool = False,
-    progress: Progress | None = None,
-    tap: taps.Tap | None = None,
-    **kept: bool,
+    plan: Any, *, progress: Progress | None = None, tap: taps.Tap | None = None, **how: bool
 ) -> RadioResult:
     """Run a radio plan to its end; an interrupt (Ctrl-C) ends it early and keeps what was done.
 
-    `plain` runs the same loop uncompiled; `kept` as in `sim.recorded`.
+    `how` are `plain`, which runs the same loop uncompiled, and what `sim.recorded` knows.
     `tap` is handed copies of all frames as they leave and come in (see sim/taps.py).
     Raises InvariantBroken.
     """
-    running = simulation(plan, plain=plain, tap=tap is not None, **kept)
+    running = simulation(plan, tap=tap is not None, **how)
     ended = running.finish(progress, tap)
     return RadioResult(
         counts={name: int(get(running.world.run, 0, name)) for name in COUNTS},

@@ -1,5 +1,6 @@
 """What nodes and frames of RPL hold."""
 
+from innervate.dialect.fields import DRAWS, clock, flag
 from innervate.networks.rpl.protocol.constants import ETX_MOST, INFINITE
 from innervate.networks.rpl.protocol.sizes import (
     BODY,
@@ -15,11 +16,9 @@ CLOCK = 1073741823
 
 STATE = (
     ("number", 0, 0, 253, "node", "who we are"),
-    ("rng", 0, 1, CLOCK, "state", "generator of random choices"),
-    ("choice", 0, -1, CLOCK, "value", "what the next draw shall return; -1 = generate"),
-    ("asked", 0, 0, CLOCK, "count", "out of how many the last scripted draw was"),
+    *DRAWS,
     # Upward routes [RFC 6550, 8].
-    ("known", 0, 0, 1, "flag", "we are, or were, a member of a DODAG version"),
+    ("known", 0, *flag, "we are, or were, a member of a DODAG version"),
     ("version", 0, 0, 255, "number", "DODAGVersionNumber"),
     ("rank", 0, 0, INFINITE, "rank", "ours; 65535 = INFINITE_RANK"),
     ("lowest", 0, 0, INFINITE, "rank", "that we advertised in this version: L"),
@@ -28,12 +27,12 @@ STATE = (
     ("floor", 0, 0, INFINITE, "rank", "detached: parents must be below it"),
     ("hold", 0, 0, 255, "ticks", "for which that is so"),
     ("lonely", 0, 0, 255, "ticks", "since we had a parent"),
-    ("fresh", 0, 0, 1, "flag", "a root that has lost its memory, and heard nobody yet"),
+    ("fresh", 0, *flag, "a root that has lost its memory, and heard nobody yet"),
     ("lived", 0, 0, 65535, "ticks", "since we were switched on, modulo 65536"),
     # Trickle [RFC 6206].
     ("interval", 0, 0, 20, "bits", "the interval I is Imin, doubled so often"),
     ("counter", 0, 0, 255, "frames", "c: consistent ones heard in this interval"),
-    ("phase", 0, 0, 1, "flag", "time t of the interval has passed"),
+    ("phase", 0, *flag, "time t of the interval has passed"),
     ("rest", 0, 0, 536870912, "us", "from t to the interval's end"),
     # Neighbours.
     ("nbr", NEIGHBOURS, -1, 253, "node", "who they are; -1 = a free place"),
@@ -51,18 +50,18 @@ STATE = (
     ("left", NODES, 0, 1, "mark", "a parent that we left is to hear that it is gone"),
     ("old", 0, 0, 255, "node", "that parent; 255 = none"),
     ("path_seq", 0, 0, 255, "number", "our own"),
-    ("dao_armed", 0, 0, 1, "flag", "the timer DelayDAO is set"),
+    ("dao_armed", 0, *flag, "the timer DelayDAO is set"),
     ("dao_wait", 0, 0, 15, "times", "non-storing: that our DAO was sent, and not acknowledged"),
     # What is sent.
     ("under", 0, 0, 4, "kind", "1 DIO, 2 DIS, 3 DAO, 4 the first packet; 0 nothing"),
-    ("waiting", 0, 0, 1, "flag", "it has left, its acknowledgement has not come"),
+    ("waiting", 0, *flag, "it has left, its acknowledgement has not come"),
     ("to", 0, 0, 255, "node", "who it is for"),
     ("tries", 0, 0, 15, "times", "that it was transmitted"),
     ("rounds", 0, 0, 15, "times", "that the first packet was given to somebody, in vain"),
     ("dsn", 0, 0, 255, "number", "of our last frame to one node"),
-    ("dio_due", 0, 0, 1, "flag", "a DIO is to be sent"),
-    ("dis_due", 0, 0, 1, "flag", "a DIS is to be sent"),
-    ("dao_due", 0, 0, 1, "flag", "a DAO is to be sent"),
+    ("dio_due", 0, *flag, "a DIO is to be sent"),
+    ("dis_due", 0, *flag, "a DIS is to be sent"),
+    ("dao_due", 0, *flag, "a DAO is to be sent"),
     ("dao_life", 0, 0, 255, "ticks", "of the DAO under way: 0 = No-Path"),
     ("dao_target", TARGETS, 0, 255, "node", "of the DAO under way; 255 none"),
     ("dao_path", TARGETS, 0, 255, "number", "and their Path Sequences"),
@@ -74,9 +73,9 @@ STATE = (
     ("q_dest", QUEUE, 0, 255, "node", "who it is for"),
     ("q_from", QUEUE, 0, 255, "node", "who gave it to us; 255 = it is ours"),
     ("q_hops", QUEUE, 0, 255, "hops", "that it may still go"),
-    ("q_down", QUEUE, 0, 1, "flag", "'O': it goes down"),
-    ("q_error", QUEUE, 0, 1, "flag", "'R': ranks did not fit its way once"),
-    ("q_back", QUEUE, 0, 1, "flag", "'F': it could not be passed on"),
+    ("q_down", QUEUE, *flag, "'O': it goes down"),
+    ("q_error", QUEUE, *flag, "'R': ranks did not fit its way once"),
+    ("q_back", QUEUE, *flag, "'F': it could not be passed on"),
     (
         "q_info",
         QUEUE,
@@ -107,9 +106,9 @@ FRAME = (
     ("origin", 0, 0, 255, "node", "whose packet it is"),
     ("dest", 0, 0, 255, "node", "who it is for"),
     ("hops", 0, 0, 255, "hops", "that it may still go"),
-    ("down", 0, 0, 1, "flag", "'O': it goes down"),
-    ("error", 0, 0, 1, "flag", "'R': ranks did not fit its way once"),
-    ("back", 0, 0, 1, "flag", "'F': it could not be passed on"),
+    ("down", 0, *flag, "'O': it goes down"),
+    ("error", 0, *flag, "'R': ranks did not fit its way once"),
+    ("back", 0, *flag, "'F': it could not be passed on"),
     ("sender_rank", 0, 0, INFINITE, "rank", "DAGRank of its sender; 0 = it is its origin"),
     ("info", 0, 0, 255, "node", "DAO: the parent; route error: who was not reached"),
     ("path", 0, 0, 255, "number", "DAO, DAO-ACK: the Path Sequence"),
@@ -119,11 +118,11 @@ FRAME = (
     ("far", ROUTE - NEAR, 0, 255, "node", "those behind"),
     ("body", BODY, 0, 65535, "raw", "what users say"),
     ("rssi", 0, -128, 127, "dBm", "how loud it came in"),
-    ("made_at", 0, 0, CLOCK, "us", "when it was handed in: a run's own, not sent"),
+    ("made_at", 0, *clock, "when it was handed in: a run's own, not sent"),
 )
 PARAMS = (
     ("root", 0, 0, 253, "node", "the DODAG's root"),
-    ("storing", 0, 0, 1, "flag", "1 storing mode, 0 non-storing mode"),
+    ("storing", 0, *flag, "1 storing mode, 0 non-storing mode"),
     ("dio_min", 0, 0, 19, "bits", "DIOIntervalMin: Imin is 2^dio_min ms"),
     ("dio_doublings", 0, 0, 19, "bits", "DIOIntervalDoublings; Imax is 2^19 ms at most"),
     ("dio_k", 0, 0, 255, "frames", "DIORedundancyConstant; 0 = none is suppressed"),

@@ -70,29 +70,14 @@ def on_start(node, params, now, cause, out):
 
 def begin(node):
     """Nothing is known, nothing is under way."""
-    node.known = 0
-    node.version = INITIAL
-    node.rank = INFINITE
-    node.lowest = INFINITE
-    node.floor = INFINITE
+    node.version = node.dtsn = node.path_seq = INITIAL
+    node.rank = node.lowest = node.floor = INFINITE
     node.parent = NONE
-    node.dtsn = INITIAL
-    node.path_seq = INITIAL
-    node.hold = 0
-    node.lonely = 0
-    node.fresh = 0
-    node.interval = 0
     node.under = IDLE
-    node.waiting = 0
-    node.to = NOBODY
-    node.old = NOBODY
-    node.q_count = 0
-    node.rounds = 0
-    node.dio_due = 0
-    node.dis_due = 0
-    node.dao_due = 0
-    node.dao_armed = 0
-    node.dao_wait = 0
+    node.to = node.old = NOBODY
+    node.known = node.hold = node.lonely = node.fresh = node.interval = node.rounds = 0
+    node.waiting = node.q_count = 0
+    node.dio_due = node.dis_due = node.dao_due = node.dao_armed = node.dao_wait = 0
 
 
 def on_frame(node, params, now, port, frame, out):

@@ -14,15 +14,8 @@ def new_place(node):
     node.q_origin[i] = node.number
     node.q_dest[i] = node.number
     node.q_from[i] = NOBODY
-    node.q_hops[i] = 0
-    node.q_down[i] = 0
-    node.q_error[i] = 0
-    node.q_back[i] = 0
-    node.q_info[i] = 0
-    node.q_path[i] = 0
-    node.q_length[i] = 0
-    node.q_next[i] = 0
-    node.q_made[i] = 0
+    node.q_hops[i] = node.q_down[i] = node.q_error[i] = node.q_back[i] = 0
+    node.q_info[i] = node.q_path[i] = node.q_length[i] = node.q_next[i] = node.q_made[i] = 0
     for j in range(sizes.ROUTE):
         node.q_route[i * sizes.ROUTE + j] = 0
     for j in range(sizes.BODY):
@@ -72,31 +65,12 @@ def keep(node, i, frame):
 
 def clean(frame):
     """A frame of which nothing is said yet."""
-    frame.kind = 0
-    frame.to = 0
-    frame.src = 0
-    frame.dsn = 0
-    frame.version = 0
-    frame.rank = 0
-    frame.dtsn = 0
-    frame.mop = 0
-    frame.life = 0
-    frame.origin = 0
-    frame.dest = 0
-    frame.hops = 0
-    frame.down = 0
-    frame.error = 0
-    frame.back = 0
-    frame.sender_rank = 0
-    frame.info = 0
-    frame.path = 0
-    frame.length = 0
-    frame.next = 0
-    frame.rssi = 0
-    frame.made_at = 0
+    frame.kind = frame.to = frame.src = frame.dsn = frame.rssi = frame.made_at = 0
+    frame.version = frame.rank = frame.dtsn = frame.mop = frame.life = frame.path = 0
+    frame.origin = frame.dest = frame.hops = frame.sender_rank = frame.info = 0
+    frame.down = frame.error = frame.back = frame.length = frame.next = 0
     for i in range(sizes.TARGETS):
-        frame.targets[i] = 0
-        frame.paths[i] = 0
+        frame.targets[i] = frame.paths[i] = 0
     for i in range(sizes.NEAR):
         frame.near[i] = 0
     for i in range(sizes.ROUTE - sizes.NEAR):

@@ -14,6 +14,7 @@ from innervate.analysis.headline import (
     Headline,
     every,
     part_of,
+    put_out,
     sentence,
     verb,
 )
@@ -24,7 +25,7 @@ NAMED_MAX = 3
 
 
 class SkinFacts(NamedTuple):
-    """What is known of a skin at one moment. A cell is in at most one of the first four lists."""
+    """What is known of a skin at one moment; a cell is off, silent, cut_off, seeking or out."""
 
     cells: int  # how many there are; they are numbered 0 .. cells - 1
     off: Collection[int] = ()  # cells that are switched off
@@ -39,6 +40,8 @@ class SkinFacts(NamedTuple):
     since_s: float | None = None  # when the first of `cut_off` was cut off; None = unknown
     at_once: bool = True  # all of them were cut off then
     pc_off: bool = False  # the PC is switched off, or does not answer
+    out: Collection[int] = ()  # running nodes only: cells whose identities are revoked
+    pc_out: bool = False  # running nodes only: the PC's identity is revoked
     # running nodes only: cells whose way goes on by nodes that do not run here, and is believed
     beyond: Collection[int] = ()
     served: int = 0  # running nodes only: cells whose ways end at the PC, as it says itself
@@ -73,8 +76,8 @@ def skin_headline(facts: SkinFacts | None, label: Callable[[int], str] = str) ->
         return _pc_alone(facts.served, facts.of_cells)
     if len(facts.silent) == facts.cells:
         return Headline(NO_DATA, "No cell answers: nothing is known of the skin.")
-    troubled = (*facts.cut_off, *facts.seeking, *facts.silent, *facts.off)
-    with_way = 0 if facts.pc_off else facts.cells - len(troubled)
+    troubled = (*facts.cut_off, *facts.seeking, *facts.silent, *facts.off, *facts.out)
+    with_way = 0 if facts.pc_off or facts.pc_out else facts.cells - len(troubled)
     said = [*_reasons(facts, label), *_before(facts), *_samples(facts), *_commands(facts)]
     ending = [_others(facts, with_way, bool(troubled))] * bool(with_way or not said)
     text = sentence([*said, *ending, *_beyond(facts, label)])
@@ -98,12 +101,16 @@ def _reasons(facts: SkinFacts, label: Callable[[int], str]) -> list[str]:
     found = []
     if facts.pc_off:
         found.append("the PC is switched off: no cell has a way to it")
+    elif facts.pc_out:
+        found.append(put_out("the PC", 1))
     elif facts.cut_off:
         first = "" if facts.at_once else ", the first"
         since = "" if facts.since_s is None else f"{first} since {facts.since_s:.3f} s"
         who, them = _who(facts, facts.cut_off, label, "is"), _them(facts.cut_off)
         why = f"no cable joins {them} with the PC any more"
         found.append(f"{who} cut off{since}: {why}")
+    if facts.out:
+        found.append(put_out(_who(facts, facts.out, label), len(facts.out)))
     old = [cell for cell in facts.seeking if cell not in {*facts.never, *facts.afar}]
     if facts.never:
         none = len(facts.never) == facts.cells

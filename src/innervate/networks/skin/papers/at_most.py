@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.skin.papers.common import RULES, Rule, rule_panels
@@ -40,21 +41,23 @@ def converged_ms(got: Measured, setup: str, rule: Rule, k: int) -> Any:
 
 def draw(got: Measured) -> Figure:
     """Share of the recoveries over their time, a panel a rule."""
-    figure, axes = rule_panels(3.0)
-    for ax, rule in zip(axes, RULES, strict=True):
-        for i, k in enumerate(KS):
-            for j, (setup, cells) in enumerate(SKINS):
-                ms = np.sort(converged_ms(got, setup, rule, k))
-                drawing.cumulated(ax, ms, color=style.SERIES[i], ls=style.DASHES[j],
-                                  label=f"k = {k}, {cells} cells")  # fmt: skip
-        for _, limit in PRINTED:
-            ax.axvline(limit, color=style.BLACK, lw=0.9, ls=":")
-        ax.set(xscale="log", xlim=(20, 600), xlabel="convergence (ms)")
-        ax.set_xticks([20, 40, 50, 100, 200, 500], ["20", "40", "", "100", "200", "500"])
-        ax.minorticks_off()
-    axes[0].set(ylabel="recoveries (%)", ylim=(0, 103))
-    drawing.legend(figure, axes[0], "upper center", ncols=3)
+    figure, first = rule_panels(3.0, lambda ax, rule: _panel(ax, got, rule))
+    first.set(ylabel="recoveries (%)", ylim=(0, 103))
+    drawing.legend(figure, first, "upper center", ncols=3)
     return figure
+
+
+def _panel(ax: Axes, got: Measured, rule: Rule) -> None:
+    for i, k in enumerate(KS):
+        for j, (setup, cells) in enumerate(SKINS):
+            ms = np.sort(converged_ms(got, setup, rule, k))
+            drawing.cumulated(ax, ms, color=style.SERIES[i], ls=style.DASHES[j],
+                              label=f"k = {k}, {cells} cells")  # fmt: skip
+    for _, limit in PRINTED:
+        ax.axvline(limit, color=style.BLACK, lw=0.9, ls=":")
+    ax.set(xscale="log", xlim=(20, 600), xlabel="convergence (ms)")
+    ax.set_xticks([20, 40, 50, 100, 200, 500], ["20", "40", "", "100", "200", "500"])
+    ax.minorticks_off()
 
 
 def judge(got: Measured) -> Claims:

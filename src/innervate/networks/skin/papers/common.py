@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -138,12 +138,13 @@ def mean_of(values: Any) -> float:
     return float(np.nanmean(values))
 
 
-def rule_panels(height_in: float) -> tuple[Figure, list[Axes]]:
-    """A panel a rule, with its letter and name."""
+def rule_panels(height_in: float, drawn: Callable[[Axes, Rule], None]) -> tuple[Figure, Axes]:
+    """A panel a rule, with its letter and name, `drawn` on it; the figure and its first panel."""
     figure, axes = style.panels(style.WIDE_IN, height_in, 1, len(RULES), sharey=True)
     for ax, letter, rule in zip(axes, "abc", RULES, strict=True):
         ax.set_title(f"{letter}  {rule.words}")
-    return figure, axes
+        drawn(ax, rule)
+    return figure, axes[0]
 
 
 def number(setup: str) -> str:

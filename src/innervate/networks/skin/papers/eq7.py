@@ -72,13 +72,11 @@ def ratios(got: Measured, setup: str, rule: Rule, kind: str) -> Any:
 
 def draw(got: Measured) -> Figure:
     """Every failure as a dot over the bound of its setup, a panel a rule."""
-    figure, axes = common.rule_panels(3.2)
-    for ax, rule in zip(axes, RULES, strict=True):
-        _panel(ax, got, rule)
-    axes[0].set_ylabel("convergence (periods)")
-    drawing.logarithmic(axes[0], y=[2, 5, 10, 20, 50, 100])
-    axes[0].set_ylim(1.5, 140)
-    drawing.legend(figure, axes[0], "upper center", ncols=4)
+    figure, first = common.rule_panels(3.2, lambda ax, rule: _panel(ax, got, rule))
+    first.set_ylabel("convergence (periods)")
+    drawing.logarithmic(first, y=[2, 5, 10, 20, 50, 100])
+    first.set_ylim(1.5, 140)
+    drawing.legend(figure, first, "upper center", ncols=4)
     return figure
 
 

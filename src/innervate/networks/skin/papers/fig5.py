@@ -201,27 +201,19 @@ def judge(got: Measured) -> Claims:
         [after for after, _ in beyond(got, "line of depth 4, free running", some)]
         for some in (all_k[1:], all_k[:1])
     )
-    yield Claim(
-        "5",
-        "a single broken connection converges after exactly (k+3) T",
-        f"k+{min(lock):.2f} to k+{max(lock):.2f} T in {len(lock)} runs, k {joined(all_k)}",
-        verdict(EXACTLY.has(*lock), "E20"),
-        "cells in lock-step, beacons not delayed, M = 1 as printed, the failure at a tick",
-    )
-    yield Claim(
-        "5",
-        "a single broken connection takes (k+3) T exactly with M = min(k, 5), too",
-        f"k+{min(late):.0f} to k+{max(late):.0f} T in {len(late)} runs",
-        verdict(EXACTLY.has(*late), "E20"),
-        "F3: while k = M the number that lets n2 switch may come one period later",
-    )
-    yield Claim(
-        "5",
-        "a single broken connection takes (k+3) T exactly with free-running cells, too",
-        f"k{min(free):+.2f} to k{max(free):+.2f} T, mean k{sum(free) / len(free):+.2f} T",
-        verdict(EXACTLY.has(*free)),
-        "E21: the wait on the way out and the wait back over a link are one period together",
-    )
+    for found, readings, way, took, why in (
+        (lock, ["E20"], "converges after exactly (k+3) T",
+         f"k+{min(lock):.2f} to k+{max(lock):.2f} T in {len(lock)} runs, k {joined(all_k)}",
+         "cells in lock-step, beacons not delayed, M = 1 as printed, the failure at a tick"),
+        (late, ["E20"], "takes (k+3) T exactly with M = min(k, 5), too",
+         f"k+{min(late):.0f} to k+{max(late):.0f} T in {len(late)} runs",
+         "F3: while k = M the number that lets n2 switch may come one period later"),
+        (free, [], "takes (k+3) T exactly with free-running cells, too",
+         f"k{min(free):+.2f} to k{max(free):+.2f} T, mean k{sum(free) / len(free):+.2f} T",
+         "E21: the wait on the way out and the wait back over a link are one period together"),
+    ):  # fmt: skip
+        claim = f"a single broken connection {way}"
+        yield Claim("5", claim, took, verdict(EXACTLY.has(*found), *readings), why)
     yield Claim(
         "5",
         "free running on a line of depth 4, k >= 3: detection and exactly 3 T",

@@ -68,12 +68,10 @@ def converged(got: Measured, setup: str, k: int, rule: Rule) -> Any:
 
 def draw(got: Measured) -> Figure:
     """One panel a rule; grey boxes are Eq. 6 and its band."""
-    figure, axes = common.rule_panels(3.0)
-    for ax, rule in zip(axes, RULES, strict=True):
-        _panel(ax, got, rule)
-    axes[0].set_ylabel("convergence (ms)")
-    drawing.logarithmic(axes[0], y=[20, 30, 50, 100, 200, 400])
-    drawing.legend(figure, axes[0], "upper center", ncols=5)
+    figure, first = common.rule_panels(3.0, lambda ax, rule: _panel(ax, got, rule))
+    first.set_ylabel("convergence (ms)")
+    drawing.logarithmic(first, y=[20, 30, 50, 100, 200, 400])
+    drawing.legend(figure, first, "upper center", ncols=5)
     return figure
 
 

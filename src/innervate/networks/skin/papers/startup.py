@@ -4,6 +4,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from innervate.networks.skin.analysis.rows import unrouted_steps
@@ -65,21 +66,23 @@ def measure(setup: str, rule: Rule, lock_step: bool, seed: int) -> dict[str, Any
 
 def draw(got: Measured) -> Figure:
     """Each start-up over the depth of its skin."""
-    figure, axes = common.rule_panels(2.7)
-    for ax, rule in zip(axes, RULES, strict=True):
-        for i, (lock_step, name) in enumerate(CLOCKS.items()):
-            for place, setup in enumerate(SETUPS):
-                one = got[point(setup, rule, lock_step, got.quick)]
-                x = np.full(len(one["periods"]), place + 0.2 * (2 * i - 1))
-                ax.plot(x, one["periods"], style.MARKERS[i], color=style.SERIES[i], ms=2.6,
-                        label=name if place == 0 else None)  # fmt: skip
-                ax.plot([place - 0.4, place + 0.4], one["depth"][:1] * 2, color=style.BLACK, lw=1,
-                        label="max(H)" if place == i == 0 else None)  # fmt: skip
-        drawing.each_mode(ax, [setup[-1] for setup in SETUPS])
-        ax.set_xlabel("setup")
-    axes[0].set(ylabel="until all have a route (periods)", ylim=(0, None))
-    drawing.legend(figure, axes[0], "upper center", ncols=3)
+    figure, first = common.rule_panels(2.7, lambda ax, rule: _panel(ax, got, rule))
+    first.set(ylabel="until all have a route (periods)", ylim=(0, None))
+    drawing.legend(figure, first, "upper center", ncols=3)
     return figure
+
+
+def _panel(ax: Axes, got: Measured, rule: Rule) -> None:
+    for i, (lock_step, name) in enumerate(CLOCKS.items()):
+        for place, setup in enumerate(SETUPS):
+            one = got[point(setup, rule, lock_step, got.quick)]
+            x = np.full(len(one["periods"]), place + 0.2 * (2 * i - 1))
+            ax.plot(x, one["periods"], style.MARKERS[i], color=style.SERIES[i], ms=2.6,
+                    label=name if place == 0 else None)  # fmt: skip
+            ax.plot([place - 0.4, place + 0.4], one["depth"][:1] * 2, color=style.BLACK, lw=1,
+                    label="max(H)" if place == i == 0 else None)  # fmt: skip
+    drawing.each_mode(ax, [setup[-1] for setup in SETUPS])
+    ax.set_xlabel("setup")
 
 
 def judge(got: Measured) -> Claims:

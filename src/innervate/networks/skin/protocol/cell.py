@@ -70,28 +70,17 @@ def on_start(cell, params, now, cause, out):
     """Switch on with nothing known; number, rng and choice are the driver's and stay."""
     for p in range(PORTS):
         cell.dist[p] = INFINITY
-        cell.sq[p] = 0
-        cell.load[p] = 0
-        cell.size[p] = 0
-        cell.child[p] = 0
-        cell.heard[p] = 0
-        cell.pf[p] = 0
-    cell.parent = NONE
-    cell.sq_known = 0
-    cell.sq_own = 0
-    cell.fd_known = 0
-    cell.fd_sq = 0
+        cell.sq[p] = cell.load[p] = cell.size[p] = 0
+        cell.child[p] = cell.heard[p] = cell.pf[p] = 0
+    cell.parent = cell.sent_parent = NONE
+    cell.sq_known = cell.sq_own = cell.hold = 0
+    cell.fd_known = cell.fd_sq = 0
     cell.fd_dist = INFINITY
     cell.own_load = 1
-    cell.hold = 0
     cell.sent_dist = -1
-    cell.sent_parent = NONE
-    cell.sent_sq = 0
     cell.sent_at = (now - params.gap_us) & MASK30
-    cell.soon = 0
-    cell.seq = 0
-    cell.last_command = 0
-    cell.commands = 0
+    cell.sent_sq = cell.soon = cell.seq = 0
+    cell.last_command = cell.commands = 0
     # Children of our former life give us up within k + 1 of their periods: they hear that we have
     # no route, or nothing. Only then may we take one, or it could lead through them. The tick of
     # now is one of ours, and with clocks 5 % off theirs can be k/9 longer than as many of ours.

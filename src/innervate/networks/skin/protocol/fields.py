@@ -4,13 +4,15 @@ length 0 is a single integer, a number n an array of n, "ports" an array as long
 ports. Record types, plain classes, range checks, trace columns and the docs' tables come from here.
 """
 
+from innervate.dialect.fields import DRAWS, clock, flag, number
+
 FRAME = (
     ("kind", 0, 0, 15, "type", "1 beacon, 2 data, 3 restart (static rule only), 4 command"),
     ("dist", 0, 0, 255, "hops", "beacon: to the PC; 0 the PC, 255 no route; command: its code"),
-    ("sq", 0, 0, 65535, "number", "beacon: of the sender's route; command: counts the PC's"),
+    ("sq", 0, *number, "beacon: of the sender's route; command: counts the PC's"),
     ("load", 0, 0, 4095, "cells", "beacon: cells whose data leave through it; 0 never had a route"),
     ("size", 0, 0, 4095, "cells", "beacon: load of the interface port that serves the sender"),
-    ("parent", 0, 0, 1, "flag", "beacon: 1 = you, on this cable, are my parent"),
+    ("parent", 0, *flag, "beacon: 1 = you, on this cable, are my parent"),
     ("cell", 0, 0, 65535, "cell", "data: who measured it; command: who it is for, 65535 all"),
     ("seq", 0, 0, 255, "number", "data: counts the cell's samples"),
     ("hops", 0, 0, 255, "hops", "data, command: cells that forwarded it so far"),
@@ -18,7 +20,7 @@ FRAME = (
     ("force", 3, 0, 65535, "mN", "data: three force sensors"),
     ("temperature", 0, -128, 127, "0.5 degC", "data: from 20 degC"),
     ("accel", 3, -512, 511, "raw", "data: acceleration along x, y, z"),
-    ("made_at", 0, 0, 1073741823, "us", "when it was measured, or given: a run's own, not sent"),
+    ("made_at", 0, *clock, "when it was measured, or given: a run's own, not sent"),
 )
 
 # Fields of a frame that only a simulation fills in, for its tables: not sent, not on boards.
@@ -34,46 +36,44 @@ ACTION = (
 
 CELL = (
     ("dist", 4, 0, 255, "hops", "per port: distance last heard"),
-    ("sq", 4, 0, 65535, "number", "per port: sequence number last heard"),
+    ("sq", 4, *number, "per port: sequence number last heard"),
     ("load", 4, 0, 4095, "cells", "per port: load last heard"),
     ("size", 4, 0, 4095, "cells", "per port: subnetwork size last heard"),
-    ("child", 4, 0, 1, "flag", "per port: the neighbour says that we are its parent"),
-    ("heard", 4, 0, 1, "flag", "per port: a beacon came since our last tick"),
+    ("child", 4, *flag, "per port: the neighbour says that we are its parent"),
+    ("heard", 4, *flag, "per port: a beacon came since our last tick"),
     ("pf", 4, 0, 1680, "1/840", "per port: failure penalty p_f; broken from 840 on"),
     ("parent", 0, -1, 3, "port", "our way to the PC; -1 none"),
-    ("sq_known", 0, 0, 1, "flag", "sq_own says something: we have had a route"),
-    ("sq_own", 0, 0, 65535, "number", "sequence number of our present or last route"),
-    ("fd_known", 0, 0, 1, "flag", "fd is set"),
-    ("fd_sq", 0, 0, 65535, "number", "feasible distance: sequence number"),
+    ("sq_known", 0, *flag, "sq_own says something: we have had a route"),
+    ("sq_own", 0, *number, "sequence number of our present or last route"),
+    ("fd_known", 0, *flag, "fd is set"),
+    ("fd_sq", 0, *number, "feasible distance: sequence number"),
     ("fd_dist", 0, 0, 255, "hops", "feasible distance: hops"),
     ("own_load", 0, 1, 4095, "cells", "L: cells whose data leave through us, ourselves included"),
     ("countdown", 0, 0, 65535, "periods", "until we may balance again"),
     ("hold", 0, 0, 65535, "periods", "since we lost the route"),
     ("sent_dist", 0, -1, 255, "hops", "distance we last sent; -1 nothing yet"),
     ("sent_parent", 0, -1, 3, "port", "parent we last sent"),
-    ("sent_sq", 0, 0, 65535, "number", "sequence number we last sent"),
-    ("sent_at", 0, 0, 1073741823, "us", "when we last sent"),
-    ("soon", 0, 0, 1, "flag", "the send-soon timer is set"),
-    ("tick_at", 0, 0, 1073741823, "us", "when the next tick is due"),
+    ("sent_sq", 0, *number, "sequence number we last sent"),
+    ("sent_at", 0, *clock, "when we last sent"),
+    ("soon", 0, *flag, "the send-soon timer is set"),
+    ("tick_at", 0, *clock, "when the next tick is due"),
     ("number", 0, 0, 65535, "cell", "who we are, in our data frames"),
     ("seq", 0, 0, 255, "number", "counts our samples"),
-    ("rng", 0, 1, 1073741823, "state", "generator of random choices"),
-    ("choice", 0, -1, 1073741823, "value", "what the next draw shall return; -1 = generate"),
-    ("asked", 0, 0, 1073741823, "count", "out of how many the last scripted draw was"),
+    *DRAWS,
     ("wait", 0, 0, 1023, "periods", "after a restart, until we may take a parent"),
-    ("last_command", 0, 0, 65535, "number", "the newest command that came"),
+    ("last_command", 0, *number, "the newest command that came"),
     ("commands", 0, 0, 16777215, "bits", "of it and the 23 before it: 1 = that one came; 0 none"),
 )
 
 SINK = (
     ("ports", 0, 0, 1048576, "ports", "interface ports of the PC"),
-    ("sq", 0, 0, 65535, "number", "sequence number of all routes"),
-    ("sq_known", 0, 0, 1, "flag", "sq was sent or adopted since the start"),
+    ("sq", 0, *number, "sequence number of all routes"),
+    ("sq_known", 0, *flag, "sq was sent or adopted since the start"),
     ("periods", 0, 0, 65535, "periods", "since sq was last counted up"),
     ("listen", 0, 0, 65535, "periods", "left to listen before the first beacon"),
-    ("tick_at", 0, 0, 1073741823, "us", "when the next tick is due"),
-    ("command", 0, 0, 65535, "number", "the newest command that was given"),
-    ("repair", 0, 0, 1, "flag", "static rule: the network is down for a restart"),
+    ("tick_at", 0, *clock, "when the next tick is due"),
+    ("command", 0, *number, "the newest command that was given"),
+    ("repair", 0, *flag, "static rule: the network is down for a restart"),
 )
 
 SINK_PORT = (

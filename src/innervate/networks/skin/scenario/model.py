@@ -188,7 +188,7 @@ class ScriptTable(keys.Table, frozen=True, kw_only=True):
     keepalive: bool = False
 
 
-class SkinScenario(keys.Table, frozen=True, kw_only=True):
+class SkinScenario(keys.Scenario, frozen=True, kw_only=True):
     """A scenario of kind "skin"; its tables are built as Skin.Patch, Skin.Event and so on."""
 
     Patch = PatchTable
@@ -206,10 +206,7 @@ class SkinScenario(keys.Table, frozen=True, kw_only=True):
     Script = ScriptTable
 
     kind: Literal["skin"] = "skin"
-    schema: keys.Schema = keys.SCHEMA
-    name: keys.Name = ""
     duration_s: Annotated[float, keys.above_0("seconds", limit=1_000_000)] = 4.0
-    seed: keys.Seed = 1
     patch: list[PatchTable] = []
     interface: list[InterfaceTable] = []
     cable: list[CableTable] = []

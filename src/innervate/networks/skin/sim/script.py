@@ -83,7 +83,7 @@ def _take(stage: _Stage, number: int, step: Any, time: int) -> None:
         if world.wheel.events[slot].bucket == NIL:
             raise _refused(plan, number, f"{label(step.node)} has nothing to send soon")
         wheel.remove(world.wheel, slot)
-        calls.on_timer_slot(world, stack, slot, time)
+        calls.on_event(world, stack, slot, time)
     elif step.action in FROM_OUTSIDE:
         _obey(world, stack, step, time)
     else:
@@ -93,7 +93,7 @@ def _take(stage: _Stage, number: int, step: Any, time: int) -> None:
             raise _refused(plan, number, f"no frame is on its way from {where}")
         wheel.remove(world.wheel, slot)
         if step.action == steps.DELIVER:
-            calls.on_arrival(world, stack, world.wheel.events[slot], slot, time)
+            calls.on_event(world, stack, slot, time)
         else:
             world.counters[LOST_NOISE + world.wheel.events[slot].kind] += 1
             wheel.give(world.wheel, slot)

@@ -134,14 +134,9 @@ def on_deliver(world, time, node, port, frame):
         return
     row = world.deliveries[run.deliveries]
     run.deliveries += 1
-    row.time = time
-    row.port = port
-    row.cell = frame.cell
-    row.seq = frame.seq
-    row.hops = frame.hops
-    row.latency = latency_us
-    row.proximity = frame.proximity
-    row.temperature = frame.temperature
+    row.time, row.port, row.cell = time, port, frame.cell
+    row.seq, row.hops, row.latency = frame.seq, frame.hops, latency_us
+    row.proximity, row.temperature = frame.proximity, frame.temperature
     for i in range(3):
         row.force[i] = frame.force[i]
         row.accel[i] = frame.accel[i]

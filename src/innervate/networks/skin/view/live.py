@@ -51,7 +51,8 @@ class SkinState(State):
         here = reach(live, roots) if where.links else ~self.hears_beyond()
         self._facts = self._skin_facts(lost, joined, here)
         left = (self.node_up == 1) & joined & ~self._is_port()
-        found = lost, lost & joined, left
+        self.without = lost
+        found = lost, lost & joined & ~self.out, left & ~self.out
         without, astray, could = (int(np.count_nonzero(who)) for who in found)
         return without, astray, could
 
@@ -63,9 +64,9 @@ class SkinState(State):
         """What cells say of their ways; `joined`: cables can join them with the PC, `here`: do."""
         places = self.map.places
         is_cell = np.array([place.port < 0 for place in places], np.bool_)
-        told = np.array([place.node in self.told for place in places], np.bool_)
+        told = self.answers & ~self.out
         apart = told & (~joined | np.array(self.cut_off, np.bool_))
-        ports = told[~is_cell]
+        ports = self.answers[~is_cell]
 
         def of(flags: Any) -> list[int]:
             found: list[int] = np.flatnonzero(is_cell & flags).tolist()
@@ -73,10 +74,12 @@ class SkinState(State):
 
         return SkinFacts(
             cells=int(np.count_nonzero(is_cell)),
-            silent=of(~told),
+            silent=of(~self.answers),
+            out=of(self.out),
             cut_off=of(apart),
             seeking=of(told & lost & ~apart),
             pc_off=bool(len(ports)) and not ports.any(),
+            pc_out=bool(self.out[~is_cell].any()),
             beyond=of(self._beyond),
             served=sum(sum(one.get("cells", ())) for one in self.told.values()),
             of_cells=next((n for one in self.told.values() if (n := one.get("of_cells"))), None),

@@ -145,6 +145,11 @@ class SkinView(CabledView):
         said = sentence(at_us, what, label(node), label(other) if other >= 0 else "")
         self.log.often("outside", at_us, said, "bad")
 
+    def apart(self) -> int:
+        """Cells that are cut off from the PC now."""
+        found: int = self.memory.apart
+        return found
+
     def _apart(self, at_us: int, cells: int) -> None:
         """So many cells are cut off from the PC from now on."""
         memory, recovery = self.memory, self.memory.recovery

@@ -8,6 +8,8 @@ import math
 from functools import cache
 from statistics import NormalDist
 
+from innervate.dialect.rng import LOW15, step
+
 SIGMA = 1 << 20  # an error as large as its standard deviation
 SHARE_BITS = 30
 ONE = 1 << SHARE_BITS
@@ -44,6 +46,23 @@ def normal(table, drawn):
         octave += 1
     found = table[(octave << MANTISSA_BITS) + left]
     return -found if drawn & 1 else found
+
+
+def err(walk, normals):
+    """The walk's next error along either axis, `off_x` and `off_y` in SIGMA.
+
+    `keep` of the last one stays and `fresh` is new (see `shares`), drawn from the walk's own `rng`;
+    `normals` is the normal_table().
+    """
+    walk.off_x = next_of(walk.off_x, walk.keep, walk.fresh, drawn(walk, normals))
+    walk.off_y = next_of(walk.off_y, walk.keep, walk.fresh, drawn(walk, normals))
+
+
+def drawn(walk, normals):
+    """A normally distributed number from the walk's own stream."""
+    high = step(walk.rng)
+    walk.rng = step(high)
+    return normal(normals, (high & LOW15) << 15 | (walk.rng & LOW15))
 
 
 def next_of(last, keep, fresh, new):
