@@ -217,16 +217,17 @@ class Checker:
                 self.complain(node, "a module constant calls nothing; write the number")
 
     def check_Assign(self, node):
-        """Several places that are given a value at once are fields, and the value is no call's and
-        of none of them: C and proofs read it once for each.
+        """Of several fields that are given a value at once none is read in it, also by another
+        name, and nothing is called: C and proofs read it once for each.
         """
         if len(node.targets) > 1 and self.parents[node] is not self.tree:
-            is_call = any(isinstance(part, ast.Call) for part in ast.walk(node.value))
+            is_call = any(isinstance(part, ast.Call) for part in ast.walk(node))
+            is_place = any(isinstance(part, ast.Subscript) for part in ast.walk(node.value))
             given = set().union(*map(_attributes, node.targets))
             is_variable = any(isinstance(target, ast.Name) for target in node.targets)
-            if is_call or is_variable or given & _attributes(node.value):
-                self.complain(node, "only fields are given a value together, and one that calls "
-                                    "nothing and reads none of them; write one each")  # fmt: skip
+            if is_call or is_place or is_variable or given & _attributes(node.value):
+                self.complain(node, "only fields are given a value together, nothing is called, "
+                                    "no x[i] is read and none of them; write one each")  # fmt: skip
 
     def check_Import(self, node):
         """What is imported as modules."""
