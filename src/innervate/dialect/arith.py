@@ -11,6 +11,11 @@ def after(a, b):
     return ((a - b) & MASK30) < HALF30
 
 
+def time_left(due, now):
+    """Microseconds until a clock reads `due`, at most 2^29; 0 if it has."""
+    return 0 if after(now, due) else (due - now) & MASK30
+
+
 def later(a, b):
     """1 if sequence number a is newer than b (RFC 1982, 16 bits); equal numbers are not."""
     ahead = (a - b) & MASK16

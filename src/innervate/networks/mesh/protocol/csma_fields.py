@@ -3,10 +3,10 @@
 Columns as in the skin's.
 """
 
+from innervate.dialect.fields import DRAWS
+
 STATION = (
-    ("rng", 0, 1, 1073741823, "state", "generator of random choices"),
-    ("choice", 0, -1, 1073741823, "value", "what the next draw shall return; -1 = generate"),
-    ("asked", 0, 0, 1073741823, "count", "out of how many the last scripted draw was"),
+    *DRAWS,
     ("waiting", 0, 0, 1, "flag", "a frame waits for its backoff to end"),
     ("exponent", 0, 0, 15, "bits", "the backoff is one of 2^exponent"),
     ("busy", 0, 0, 255, "times", "the channel was busy when the frame's backoff ended"),

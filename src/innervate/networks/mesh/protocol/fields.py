@@ -3,6 +3,7 @@
 Arrays over nodes are as long as a capacity class has nodes: `node(n)`, `gate(n)` are of that class.
 """
 
+from innervate.dialect.fields import DRAWS
 from innervate.networks.mesh.protocol.constants import (
     BODY,
     CRC_BYTES,
@@ -118,9 +119,7 @@ OWN = (
     ("number", 0, 0, 253, "node", "who we are"),
     ("rank", 0, -1, 253, "rank", "0 gateway, 1.. standby: who is next, -1 neither"),
     ("robot", 0, 0, 1, "flag", "it moves and has a fence"),
-    ("rng", 0, 1, TIME, "state", "generator of random choices"),
-    ("choice", 0, -1, TIME, "value", "what the next draw shall return; -1 = generate"),
-    ("asked", 0, 0, TIME, "count", "out of how many the last scripted draw was"),
+    *DRAWS,
     ("seq", 0, 0, 65535, "number", "of our newest packet"),
     ("ticks", 0, 0, 65535, "ticks", "since we switched on; wraps"),
     ("epoch", 0, 0, 255, "epoch", "of the gateway we follow"),

@@ -56,14 +56,8 @@ def reset(gate, params):
         gate.mark_a[k] = 0
         gate.job[k] = 0
     gate.step = IDLE
-    gate.wait = 0
     gate.period = params.period
-    gate.links = 0
-    gate.version = 0
-    gate.open = 0
-    gate.sum_a = 0
-    gate.part = 0
-    gate.taken = 0
+    gate.wait = gate.links = gate.version = gate.open = gate.sum_a = gate.part = gate.taken = 0
 
 
 def lead(node, gate, params, now, out):

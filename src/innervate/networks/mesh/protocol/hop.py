@@ -9,7 +9,7 @@ With `hop_frames` every neighbour has frames under way of its own: one more with
 many after a missing one.
 """
 
-from innervate.dialect.arith import MASK30, after
+from innervate.dialect.arith import MASK30, after, time_left
 from innervate.dialect.outbox import set_timer
 from innervate.networks.mesh.protocol.constants import ACK_WAIT, ALARMS, ALL
 from innervate.networks.mesh.protocol.neighbours import place_of
@@ -118,7 +118,7 @@ def await_next(node, now, out):
     soonest = -1
     for i in range(node.places):
         if node.q_state[i] == UNACKED:
-            wait = 0 if after(now, node.q_due[i]) else (node.q_due[i] - now) & MASK30
+            wait = time_left(node.q_due[i], now)
             if soonest < 0 or wait < soonest:
                 soonest = wait
     if soonest >= 0:

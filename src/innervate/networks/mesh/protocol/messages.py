@@ -125,17 +125,10 @@ def hand_up_own(node, item, out):
 def head_own(node, frame, kind, seq, length):
     """The header of a packet of ours for ourselves, which has no way to go."""
     frame.kind = kind
-    frame.flags = 0
-    frame.link_src = node.number
-    frame.link_dst = node.number
-    frame.origin = node.number
-    frame.dest = node.number
+    frame.link_src = frame.link_dst = frame.origin = frame.dest = node.number
     frame.seq = seq
-    frame.table_ver = 0
-    frame.ttl = 0
-    frame.path_len = 0
     frame.length = length
-    frame.rssi = 0
+    frame.flags = frame.table_ver = frame.ttl = frame.path_len = frame.rssi = 0
 
 
 def flood_own(node, params, now, i, out):

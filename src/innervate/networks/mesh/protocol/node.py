@@ -122,33 +122,17 @@ def on_start(node, gate, params, now, cause, out):
     node.q_room = max(BODY, params.mtu - HEADER_BYTES - CRC_BYTES)
     node.wait_room = max(DATA_MAX, payload_limit(params))
     node.seq = draw(node, 65_536)
-    node.ticks = 0
+    node.ticks = node.epoch = node.round = node.known = node.active = 0
     node.tick_at = now
-    node.epoch = 0
-    node.round = 0
-    node.known = 0
-    node.gateway = ALL
-    node.gone = ALL
-    node.active = 0
+    node.gateway = node.gone = node.parent = ALL
     node.depth = NONE
-    node.parent = ALL
-    node.due = 0
-    node.quiet = 0
-    node.leading = 0
+    node.due = node.quiet = node.leading = 0
     node.tolerance = TOLERANCE
-    node.round_trip = 0
-    node.strain = 0
-    node.search_backoff = 0
+    node.round_trip = node.strain = node.search_backoff = 0
     node.pause = NO_BACKOFF
-    node.version = 0
-    node.table_epoch = 0
-    node.new_version = 0
-    node.new_epoch = 0
-    node.part_count = 0
-    node.ready = 0
-    node.placed = 0
-    node.outside = 0
-    node.heard_out = 0
+    node.version = node.table_epoch = node.new_version = node.new_epoch = 0
+    node.part_count = node.ready = 0
+    node.placed = node.outside = node.heard_out = 0
     clear_neighbours(node, params)
     clear_duplicates(node, params)
     clear_queue(node)

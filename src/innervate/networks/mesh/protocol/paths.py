@@ -6,7 +6,7 @@ Dijkstra's algorithm over hop counts is a breadth-first search; among equals the
 from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import LOW15
 from innervate.networks.mesh.protocol.constants import LIST, TABLE_FREE
-from innervate.networks.mesh.protocol.search import BITS
+from innervate.networks.mesh.protocol.search import BITS, begin_line
 
 FAR = 255
 NONE = 255
@@ -114,17 +114,11 @@ def list_neighbours(gate, params, a):
 
 def measure(gate, params, source, without):
     """Hops from `source` to everyone into gate.far, not through `without` (255: all may be)."""
-    for k in range(params.nodes):
-        gate.far[k] = FAR
-    gate.far[source] = 0
-    gate.line[0] = source
-    last = 1
-    at = 0
-    for _ in range(params.nodes):
+    last = begin_line(gate.far, gate.line, params.nodes, source)
+    for at in range(params.nodes):
         if at >= last:
             return
         a = gate.line[at]
-        at = at + 1
         for k in range(list_neighbours(gate, params, a)):
             b = gate.neighbours[k]
             if gate.far[b] == FAR and b != without:

@@ -1,6 +1,6 @@
 """Frames that wait, and those under way; alarms go before control, control before data."""
 
-from innervate.dialect.arith import MASK16, MASK30, after
+from innervate.dialect.arith import MASK16, MASK30, after, time_left
 from innervate.dialect.outbox import URGENT, report, send, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, end_backoff, is_held, note_answer
@@ -196,9 +196,7 @@ def wake(node, params, now, out):
     soonest = -1
     for i in range(node.places):
         if node.q_state[i] == WAITS and not is_full(node, params, i):
-            wait = (node.q_due[i] - now) & MASK30
-            if after(now, node.q_due[i]):
-                wait = 0
+            wait = time_left(node.q_due[i], now)
             if node.pause != NO_BACKOFF and is_held(node, i):
                 wait = max(wait, (node.pause - now) & MASK30)
             if soonest < 0 or wait < soonest:
@@ -318,17 +316,12 @@ def send_ack(node, to, origin, seq, rssi, out):
     at = send(out, 0, 0, URGENT)
     ack = out.frame[at]
     ack.kind = ACK
-    ack.flags = 0
     ack.link_src = node.number
-    ack.link_dst = to
+    ack.link_dst = ack.dest = to
     ack.origin = origin
-    ack.dest = to
     ack.seq = seq
-    ack.table_ver = 0
-    ack.ttl = 0
-    ack.path_len = 0
-    ack.length = 0
     ack.rssi = rssi
+    ack.flags = ack.table_ver = ack.ttl = ack.path_len = ack.length = 0
     return at
 
 

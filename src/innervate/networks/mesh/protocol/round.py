@@ -79,8 +79,7 @@ def begin(node, params, gateway, epoch, round, out):
     node.round = round
     node.depth = UNHEARD
     node.parent = ALL
-    node.quiet = 0
-    node.silent = 0
+    node.quiet = node.silent = 0
     node.due = NOTHING
     if gateway != node.number:
         node.leading = 0

@@ -59,22 +59,25 @@ def add_failed(node, i, who, room):
     return 1
 
 
+def begin_line(far, line, count, first):
+    """Of `count` nodes the first alone stands in line, 0 hops away; how many stand there."""
+    for k in range(count):
+        far[k] = FAR
+    far[first] = 0
+    line[0] = first
+    return 1
+
+
 def measure_distances(node, params, i, dest, here, anew):
     """Hops from everyone to `dest`, around `here` and whoever failed for the packet in place i.
 
     With `anew` around whoever had the packet, too.
     """
-    for k in range(params.nodes):
-        node.far[k] = FAR
-    node.far[dest] = 0
-    node.line[0] = dest
-    last = 1
-    at = 0
-    for _ in range(params.nodes):
+    last = begin_line(node.far, node.line, params.nodes, dest)
+    for at in range(params.nodes):
         if at >= last:
             return
         a = node.line[at]
-        at = at + 1
         if a == here:
             continue
         for byte in range(params.row):

@@ -3,6 +3,8 @@
 Columns as in the skin's.
 """
 
+from innervate.dialect.fields import DRAWS
+
 FRAME = (
     ("kind", 0, 0, 15, "type", "1 CR-R or pulse, 2 data, 3 open, 4 report"),
     ("slots", 0, 0, 4095, "slots", "length on the air"),
@@ -40,9 +42,7 @@ ACTION = (
 # What every station on the channel has, whatever its protocol.
 STATION = (
     ("number", 0, 0, 1023, "station", "who we are, in our data frames"),
-    ("rng", 0, 1, 1073741823, "state", "generator of random choices"),
-    ("choice", 0, -1, 1073741823, "value", "what the next draw shall return; -1 = generate"),
-    ("asked", 0, 0, 1073741823, "count", "out of how many the last scripted draw was"),
+    *DRAWS,
     ("size", 16, 0, 4095, "slots", "queue: length of each packet"),
     ("handle", 16, 0, 65535, "number", "queue: the owner's name for each packet"),
     ("head", 0, 0, 15, "place", "queue: the oldest packet"),

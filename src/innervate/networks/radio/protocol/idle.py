@@ -50,9 +50,7 @@ STEPS = 6  # of a turnaround and a delay in Wr
 def listen_first(station, params, now, cause, out):
     """Begin outside any sequence. On switching on, listen as long as one can be silent."""
     wait = 0
-    station.lonely = 0
-    station.fails = 0
-    station.opener = 0
+    station.lonely = station.fails = station.opener = 0
     station.slot = NONE
     if cause:
         wait = join_after(params, station.wide)
@@ -65,13 +63,8 @@ def leave_sequence(station, params, now, wait_us):
     """Leave the sequence; a new one may be opened `wait_us` from now."""
     rest_round(station, params)
     station.mode = modes.IDLE
-    station.credit = 0
-    station.pending = 0
-    station.act = 0
-    station.armed = 0
-    station.tail = 0
-    station.collided = 0
-    station.last_ok = 0
+    station.credit = station.pending = station.act = station.armed = 0
+    station.tail = station.collided = station.last_ok = 0
     station.used = station.wide
     station.at = (now + wait_us) & MASK30
 

@@ -66,10 +66,7 @@ def on_start(station, params, now, cause, out):
     reset(station)
     station.role = NOBODY
     station.left = NONE
-    station.total = 0
-    station.again = 0
-    station.act = 0
-    station.armed = 0
+    station.total = station.again = station.act = station.armed = 0
     station.free = 1
     station.mode = IDLE
     if cause:

@@ -29,10 +29,7 @@ def copy_frame(to, frm):
 
 def reset(station):
     """As on switching on: no packets, nothing heard. Number and generator are the driver's."""
-    station.head = 0
-    station.queued = 0
-    station.leaving = 0
-    station.cd = 0
+    station.head = station.queued = station.leaving = station.cd = 0
 
 
 def enqueue(station, packet, out):
@@ -66,19 +63,9 @@ def leave(station, out):
 def blank(out):
     """A frame to fill, sent at once: the radio is deaf from now until it listens again."""
     frame = out.frame[send(out, 0, 0, 0)]
-    frame.source = 0
-    frame.handle = 0
-    frame.count = 0
-    frame.pos = 0
-    frame.next = 0
-    frame.more = 0
-    frame.ok = 0
-    frame.base = 0
-    frame.window = 0
-    frame.span = 0
-    frame.split = 0
-    frame.kept = 0
-    frame.wide = 0
+    frame.source = frame.handle = frame.count = 0
+    frame.pos = frame.next = frame.more = frame.ok = 0
+    frame.base = frame.window = frame.span = frame.split = frame.kept = frame.wide = 0
     for i in range(2):
         frame.good[i] = 0
         frame.bad[i] = 0
