@@ -80,10 +80,10 @@ def serving(what, *options, port=0):
 
 
 @contextmanager
-def beside(path, speed, held=False):
+def beside(path, speed, held=False, settings=()):
     """A scenario's page as `watch` serves it, by a thread of this process: its loops are loaded
     once; gives the address. Held at its beginning, it needs no loop."""
-    source = Simulated(scenario.plan(scenario.load(str(path))), speed)
+    source = Simulated(scenario.plan(scenario.load(str(path), settings)), speed)
     if held:
         source.do(Pause())
     else:

@@ -58,12 +58,12 @@ def models() -> Iterator[MeshModel]:
     twice = (("e2e_tries", 1), ("transmissions", 2))
     yield MeshModel(line, offers=((2, 0),), budget=ack, settings=SHORT)
     yield MeshModel(line, offers=((2, 0),), budget=frame, settings=twice)
+    yield MeshModel(mesh_model.parse("0-1 1-2 2-3"), offers=((3, 1),), budget=calm, settings=WANTED)
     yield MeshModel(square, offers=((3, 0),), budget=death, settings=SHORT)
     yield MeshModel(line, robot=2, budget=calm, settings=SHORT)
     yield MeshModel(line, offers=((2, 0), (2, 0)), budget=calm, settings=twice)
     yield MeshModel(line, standby=(2,), beats=4, budget=MeshBudget(1, 1, 0, 0), settings=QUICK)
     yield MeshModel(line, standby=(2,), beats=3, budget=calm, settings=ASKED)
-    yield MeshModel(mesh_model.parse("0-1 1-2 2-3"), offers=((3, 1),), budget=calm, settings=WANTED)
 
 
 def hunt(mutant: Mutant) -> Catch:
