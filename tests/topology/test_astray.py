@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from innervate.sim.field import astray, motion
-from innervate.sim.field.astray import ONE, SIGMA
+from innervate.topology import astray
+from innervate.topology.astray import ONE, SIGMA
 
 TABLE = astray.normal_table()
 BITS = 1 << 30
@@ -37,7 +37,7 @@ def drawn(count, keep=0, fresh=ONE, rng=4_711):
     walk = Of(rng=rng, off_x=0, off_y=0, keep=keep, fresh=fresh)
     found = []
     for _ in range(count):
-        motion.err(Of(normals=TABLE), walk)
+        astray.err(walk, TABLE)
         found.append((walk.off_x / SIGMA, walk.off_y / SIGMA))
     return zip(*found, strict=True)
 
