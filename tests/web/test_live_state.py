@@ -241,6 +241,19 @@ def test_every_network_says_of_who_is_revoked_that_it_was_put_out():
     assert (state.map.links, state.unconnected, state.lacking, state.left) == ([], 1, 0, 1)
 
 
+def test_a_cell_that_is_put_out_has_no_way_whatever_it_believes():
+    told = {0: cell(0, 0, udp((1, 2))), 1: revoked(cell(1, 0, udp((3, 4))))}
+    state = SkinState(SkinMap(told), told)
+    assert (state.map.links, state.unconnected, state.left) == ([], 1, 1)
+    told = skin_of_three()
+    told[1] = revoked(told[1])
+    told[1]["paths"][0] |= {"own": "udp 127.0.0.1:8", "name": "udp 127.0.0.1:9", "heard_s": 0.1}
+    told[1]["parent"] = 0
+    state = SkinState(SkinMap(told), told)
+    assert (state.unconnected, state.fields()["beyond"].tolist()) == (1, [0, 0, 0])
+    assert "believed" not in state.headline().text
+
+
 def test_whoever_is_put_out_and_switched_off_is_silent():
     told = skin_of_three()
     told[1] = revoked(told[1])

@@ -50,7 +50,7 @@ class MeshState(State):
         """Find everybody's way anew: (how many have none, of these are astray, could have one)."""
         self.ways = self._find_ways()
         self.hop, self.depth = self.ways.hop, self.ways.depth
-        self.without = self.ways.without & self.answers
+        self.without = self.ways.without & self.answers | self.out
         found = self.without, self.ways.astray & ~self.out, self.ways.served & ~self.out
         none, astray, could = (int(np.count_nonzero(who)) for who in found)
         return none, astray, could

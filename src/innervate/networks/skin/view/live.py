@@ -42,11 +42,12 @@ class SkinState(State):
             roots | leaves,
         )
         # Of a way that goes on by nodes that do not run here neither port nor length is known.
-        self._beyond = (root != NOWHERE) & leaves[root]
+        self._beyond = (root != NOWHERE) & leaves[root] & ~self.out
         lost = (root == NOWHERE) & self.answers & ~self._is_port()
         self.root, self.depth = (np.where(self._beyond, NOWHERE, one) for one in (root, depth))
         if not where.links:  # cables unknown: what cells say has to do
             lost = np.array([self.word(place, "parent", 0) is None for place in where.places])
+        lost |= self.out & ~self._is_port()  # whatever they believe themselves
         joined = reach(live, roots | self.hears_beyond()) if where.links else ~none
         here = reach(live, roots) if where.links else ~self.hears_beyond()
         self._facts = self._skin_facts(lost, joined, here)
