@@ -165,7 +165,7 @@ def test_an_empty_plot_says_so_one_of_a_thing_is_one_and_nothing_that_runs_is_re
     with beside(path, None) as address:
         page = look(address, script=WRITTEN)
         expect(page.locator("#stage")).to_have_attribute(
-            "aria-label", "Map of two: 2 nodes, 1 link"
+            "aria-label", "Map of a row: 2 nodes, 1 link"
         )
         written = f"({WORDS_OF})('.plot canvas').flat().map(([text]) => text)"
         page.wait_for_function(f"() => {written}.includes('nothing yet')")

@@ -127,7 +127,6 @@ BAD = {
     "an array as a number": "state.x = state.y",
     "a number as an array": "state.x = state.x[1]",
     "two things": "a = state\na = 1",
-    "two assignments": "a = b = 1",
     "a large number": "state.x = 4294967296",
     "in": "if now in state.y:\n    pass",
     "a for over an array": "for i in state.y:\n    pass",

@@ -23,6 +23,7 @@ class MadeUp:
     """
 
     now_us, next_at, size, complete, breaks_us = 0, None, 1, False, None
+    is_before_fault = False
 
     def __init__(self):
         self.calls, self.costs, self.spent, self.short, self.back = [], [], 0.0, 0, []
