@@ -71,6 +71,17 @@ def test_a_full_disk_is_one_line(process):
     assert "Traceback" not in err
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_a_mistake_is_a_mistake_though_no_room_is_left_to_say_so(process):
+    code = (
+        "import os, sys; full = os.open('/dev/full', os.O_WRONLY); os.dup2(full, 2);"
+        "from innervate.cli import main; sys.exit(main(['runn']))"
+    )
+    started = process(code=code)
+    started.communicate(timeout=TIMEOUT_S)
+    assert started.returncode == 2
+
+
 def test_without_the_simulator_it_says_what_to_install(process, tmp_path):
     code = (
         "import sys; sys.modules.update(dict.fromkeys(['numba', 'numpy', 'polars']));"

@@ -144,7 +144,7 @@ def due(do, node, timer, state):
 
 def test_the_first_that_is_due_switches_a_node_on(do):
     assert due(do, 1, 0, OFF) == [("on_start", 1, NOW + 200, COLD)]
-    assert do.world.alive[1] == ALIVE
+    assert (do.world.alive[1], do.world.run[0].handled) == (ALIVE, 1)
 
 
 @pytest.mark.parametrize("timer", range(4))
