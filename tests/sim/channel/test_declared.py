@@ -6,7 +6,7 @@ import pytest
 import innervate
 from innervate.network import NetworkError
 from innervate.plot.lines import summary_lines
-from tests.own import alone, at_once, refused, talk
+from tests.own import alone, at_once, talk
 
 __all__ = ["alone", "talk"]
 
@@ -108,17 +108,6 @@ def test_an_explored_collision_is_heard_as_one(talk):
     (case,) = innervate.explore(talk.folder, graph="pair", budget="restart=0")
     assert case.story.title == "busy is out of its declared range"
     assert case.story.sentences[-1] == "n1 does not hear a frame of n0: busy 0 to 2."
-
-
-@pytest.mark.parametrize(("old", "new", "says"), [
-    ("nodes = 6", "nodes = 3", "talk/talk.toml:21: there is no node 3; they are 0 to 2"),
-    ('action = "kill"', 'action = "cut"', 'action must be join, kill or revive, not "cut"'),
-    ("wait_us = 10_000", "wait_us = 0", "wait_us must be 1 to 1000000 us, not 0"),
-    ("value = 7", "valeu = 7", 'did you mean "value"'),
-])  # fmt: skip
-def test_mistakes_of_a_scenario_are_one_line(talk, capsys, old, new, says):
-    talk.change("talk.toml", old, new)
-    assert says in refused(talk, capsys)
 
 
 @pytest.mark.slow  # compiles a protocol that no other test runs

@@ -232,21 +232,6 @@ def test_its_own_invariants_are_looked_at(flood):
     assert case.is_broken
 
 
-@pytest.mark.parametrize(("old", "new", "says"), [
-    ("nodes = 16", "nodes = 4", "flood/flood.toml:23: there is no node 15; they are 0 to 3"),
-    ('action = "kill"', 'action = "cut"', "flood.toml:26: cut needs the other node; add other"),
-    ('action = "kill"', 'action = "hide"', "action must be kill, revive, cut, restore, jam"),
-    ("hops = 7", "hops = 0", "flood/flood.toml:12: hops must be 1 to 15 hops, not 0"),
-    ("value = 7", "valeu = 7", 'did you mean "value"'),
-    ('layout = "grid"', "positions_m = [[0, 0]]", "positions_m has 1 places for 16 nodes"),
-    ('layout = "grid"', 'link = [{ nodes = [1, 1] }]', "node 1 is named twice"),
-    ("reach_m = 30", "exponent_min = 9", "air.exponent_min is above exponent_max"),
-])  # fmt: skip
-def test_mistakes_of_a_scenario_are_one_line(bare, capsys, old, new, says):
-    bare.change("flood.toml", old, new)
-    assert says in refused(bare, capsys)
-
-
 @pytest.mark.parametrize(
     ("file", "old", "new", "says"),
     [
