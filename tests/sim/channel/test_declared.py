@@ -1,12 +1,11 @@
 """A network of one's own on a channel, by the defaults of its medium."""
 
-import numpy as np
 import pytest
 
 import innervate
 from innervate.network import NetworkError
 from innervate.plot.lines import summary_lines
-from tests.own import alone, at_once, talk
+from tests.own import alone, at_once, run_both_ways, talk
 
 __all__ = ["alone", "talk"]
 
@@ -112,8 +111,4 @@ def test_an_explored_collision_is_heard_as_one(talk):
 
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_compiled_runs_equal_plain_ones(talk):
-    one, other = (innervate.run(talk.scenario, plain=plain).result for plain in (False, True))
-    assert one.fingerprint == other.fingerprint
-    assert one.counts == other.counts
-    for name in ("rows", "deliveries"):
-        assert np.array_equal(one.rows[name], other.rows[name])
+    run_both_ways(talk)

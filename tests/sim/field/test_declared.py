@@ -2,7 +2,6 @@
 
 import re
 
-import numpy as np
 import pytest
 
 import innervate
@@ -12,7 +11,7 @@ from innervate.network import NetworkError, networks
 from innervate.sim.field import listening
 from innervate.sim.field.declared import simulation
 from innervate.web.field_view import FieldView
-from tests.own import alone, at_once, bare, made, plain, refused
+from tests.own import alone, at_once, bare, made, plain, refused, run_both_ways
 
 __all__ = ["alone", "bare", "plain"]
 ENDS = [{"nodes": [0, 1], "quality": 1.0}, {"nodes": [1, 2], "quality": 1.0}]
@@ -336,11 +335,7 @@ def test_its_captures_and_its_graph(bare, plain, tmp_path):
 
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_compiled_runs_equal_plain_ones(flood):
-    one, other = (innervate.run(flood.scenario, plain=plain).result for plain in (False, True))
-    assert one.fingerprint == other.fingerprint
-    assert one.counts == other.counts
-    for name in ("rows", "deliveries"):
-        assert np.array_equal(one.rows[name], other.rows[name])
+    run_both_ways(flood)
 
 
 def test_a_run_goes_on_from_where_it_was(bare):
