@@ -6,8 +6,10 @@ import shutil
 import sys
 from importlib import import_module
 
+import numpy as np
 import pytest
 
+import innervate
 from innervate import folders
 from innervate.cli import main
 from innervate.network import networks
@@ -109,3 +111,12 @@ def refused(network, capsys, command="check"):
     assert main([command, str(network.scenario)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     return line
+
+
+def run_both_ways(network):
+    """Its scenario's run, compiled and plain: they must be the same, row by row."""
+    one, other = (innervate.run(network.scenario, plain=plain).result for plain in (False, True))
+    assert one.fingerprint == other.fingerprint
+    assert one.counts == other.counts
+    for name in ("rows", "deliveries"):
+        assert np.array_equal(one.rows[name], other.rows[name])

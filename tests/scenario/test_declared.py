@@ -6,7 +6,7 @@ from msgspec import to_builtins
 from innervate import scenario as scenarios
 from innervate.network import Network, networks
 from innervate.scenario.errors import ScenarioError
-from tests.own import alone, made
+from tests.own import alone, made, refused
 
 __all__ = ["alone"]
 
@@ -114,3 +114,26 @@ def test_events_of_keys_of_its_own_are_written_by_nobody_else():
     assert Network("mine", "mine", medium="channel").writes_events
     assert not Network("mine", "mine", medium="field", **own).writes_events
     assert Network("mine", "mine", **own, event="scenario:event").writes_events
+
+
+@pytest.mark.parametrize(("medium", "old", "new", "says"), [
+    ("channel", "nodes = 6", "nodes = 3", "own/own.toml:21: there is no node 3; they are 0 to 2"),
+    ("channel", 'action = "kill"', 'action = "cut"',
+     'action must be join, kill or revive, not "cut"'),
+    ("channel", "wait_us = 10_000", "wait_us = 0", "wait_us must be 1 to 1000000 us, not 0"),
+    ("channel", "value = 7", "valeu = 7", 'did you mean "value"'),
+    ("field", "nodes = 16", "nodes = 4", "own/own.toml:23: there is no node 15; they are 0 to 3"),
+    ("field", 'action = "kill"', 'action = "cut"',
+     "own.toml:26: cut needs the other node; add other"),
+    ("field", 'action = "kill"', 'action = "hide"',
+     "action must be kill, revive, cut, restore, jam"),
+    ("field", "hops = 7", "hops = 0", "own/own.toml:12: hops must be 1 to 15 hops, not 0"),
+    ("field", "value = 7", "valeu = 7", 'did you mean "value"'),
+    ("field", 'layout = "grid"', "positions_m = [[0, 0]]", "positions_m has 1 places for 16 nodes"),
+    ("field", 'layout = "grid"', 'link = [{ nodes = [1, 1] }]', "node 1 is named twice"),
+    ("field", "reach_m = 30", "exponent_min = 9", "air.exponent_min is above exponent_max"),
+])  # fmt: skip
+def test_mistakes_are_one_line(alone, capsys, medium, old, new, says):
+    network = made(alone / "own", medium)
+    network.change("own.toml", old, new)
+    assert says in refused(network, capsys)

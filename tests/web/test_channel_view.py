@@ -94,16 +94,17 @@ def test_nodes_that_are_on_are_switched_off_and_others_on(view):
     fault = view.make(7, 3, view.kill(1, False))
     assert (fault.at_us, fault.index, fault.action, fault.node) == (7, 3, KILL, 1)
     assert view.takes(fault)
-    with pytest.raises(Refused, match="this node is on"):
-        view.kill(1, True)
     mended = view.make(8, 4, view.kill(2, True))
     assert (mended.action, mended.node, view.takes(mended)) == (JOIN, 2, False)
-    with pytest.raises(Refused, match="this node is off already"):
-        view.kill(2, False)
-    with pytest.raises(Refused, match="no node 4"):
-        view.kill(4, False)
-    with pytest.raises(Refused, match="have no links"):
-        view.cut(0, False)
+
+
+@pytest.mark.parametrize(("does", "number", "is_mended", "message"), [
+    ("kill", 1, True, "this node is on"), ("kill", 2, False, "this node is off already"),
+    ("kill", 4, False, "no node 4"), ("cut", 0, False, "have no links"),
+])  # fmt: skip
+def test_what_cannot_be_done_is_refused(view, does, number, is_mended, message):
+    with pytest.raises(Refused, match=message):
+        getattr(view, does)(number, is_mended)
 
 
 def test_nodes_lie_in_a_circle_so_far_apart(view):

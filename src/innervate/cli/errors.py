@@ -23,20 +23,19 @@ EXTRA_OF = {
     "topohub": "topohub",
     "rerun": "rerun",
 }  # fmt: skip
-# Errors whose text is one line for the user: module and class, and whose mistake they are.
-_KNOWN = (
-    ("innervate.scenario.errors", "ScenarioError", USERS),
-    ("innervate.running.errors", "RunError", USERS),
-    ("innervate.verify.errors", "VerifyError", USERS),
-    ("innervate.prove.errors", "ProveError", USERS),
-    ("innervate.sweeping.errors", "SweepError", USERS),
-    ("innervate.live.errors", "LiveError", USERS),
-    ("innervate.firmware.errors", "FirmwareError", USERS),
-    ("innervate.network", "NetworkError", USERS),
-    ("innervate.web.errors", "WatchError", USERS),
-    ("innervate.export.errors", "ExportError", USERS),
-    ("cyclopts", "CycloptsError", USERS),
-    ("innervate.sim.driver", "InvariantBroken", OURS),
+# The user's mistakes whose text is one line for him: module and class.
+_MISTAKES = (
+    ("innervate.scenario.errors", "ScenarioError"),
+    ("innervate.running.errors", "RunError"),
+    ("innervate.verify.errors", "VerifyError"),
+    ("innervate.prove.errors", "ProveError"),
+    ("innervate.sweeping.errors", "SweepError"),
+    ("innervate.live.errors", "LiveError"),
+    ("innervate.firmware.errors", "FirmwareError"),
+    ("innervate.network", "NetworkError"),
+    ("innervate.web.errors", "WatchError"),
+    ("innervate.export.errors", "ExportError"),
+    ("cyclopts", "CycloptsError"),
 )
 
 
@@ -83,12 +82,12 @@ def explain(error: BaseException) -> tuple[str, int]:
         words = " ".join(getattr(error, "unused_tokens", None) or ())
         command = " ".join(getattr(error, "command_chain", None) or ())
         return f'"{_one_line(words)}" is too much; see: innervate {command} --help', USERS
-    for module, name, code in _KNOWN:
-        kind: Any = getattr(sys.modules.get(module), name, None)
-        if kind is not None and isinstance(error, kind):
-            ours = code != USERS and not getattr(error, "is_foreseen", False)
-            hint = "; please report it with the scenario" if ours else ""
-            return _one_line(str(error)) + hint, code
+    if any(_is(error, *mistake) for mistake in _MISTAKES):
+        return _one_line(str(error)), USERS
+    if _is(error, "innervate.sim.driver", "InvariantBroken"):
+        is_foreseen = getattr(error, "is_foreseen", False)
+        hint = "" if is_foreseen else "; please report it with the scenario"
+        return _one_line(str(error)) + hint, OURS
     if isinstance(error, MemoryError):
         return "not enough memory; make the scenario smaller or shorter", OURS
     if isinstance(error, OSError) and error.strerror:
@@ -98,6 +97,12 @@ def explain(error: BaseException) -> tuple[str, int]:
         return f"{where}{error.strerror}", OURS
     what = f"{type(error).__name__}: {_one_line(str(error))}"
     return f"internal error, {what} (INNERVATE_TRACEBACK=1 shows where)", OURS
+
+
+def _is(error: BaseException, module: str, name: str) -> bool:
+    """Whether an error is of this class; of a module that is not loaded none is."""
+    kind: Any = getattr(sys.modules.get(module), name, None)
+    return kind is not None and isinstance(error, kind)
 
 
 def say(text: str) -> None:

@@ -16,6 +16,11 @@ def time_left(due, now):
     return 0 if after(now, due) else (due - now) & MASK30
 
 
+def sooner(soonest, wait):
+    """The shorter of two waits, us; the first is -1 where there is none yet."""
+    return wait if soonest < 0 or wait < soonest else soonest
+
+
 def later(a, b):
     """1 if sequence number a is newer than b (RFC 1982, 16 bits); equal numbers are not."""
     ahead = (a - b) & MASK16

@@ -138,6 +138,15 @@ local function ends(self, found)
   return node(found[said.from], here), node(found[said.to], there)
 end
 
+-- A head of one byte, whose first `bits` bits are the version; the others are the type.
+local function head(self, tvb, tree, bits, expected)
+  local version, kind = number(tvb, 0, bits), number(tvb, bits, 8 - bits)
+  tree:add(self.version, tvb(0, 1), version)
+  tree:add(self.kind, tvb(0, 1), kind)
+  if version ~= expected then complain(self, tree, MALFORMED, "Malformed: version") end
+  return kind
+end
+
 -- A type of `bits` bits, its fields, a CRC and nothing else.
 local function usual(self, tvb, tree)
   local size = tvb:len()

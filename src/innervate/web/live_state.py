@@ -8,16 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.headline import (
-    DEGRADED,
-    OK,
-    Headline,
-    every,
-    part_of,
-    put_out,
-    sentence,
-    silent,
-)
+from innervate.analysis import headline as words
+from innervate.analysis.headline import Headline
 from innervate.analysis.ways import NOWHERE, Numbers, reach
 from innervate.web.live_map import Link, Map, Place, Status, is_put_out
 
@@ -161,7 +153,7 @@ class State:
     def headline(self) -> Headline:
         """Is all well, as far as these nodes say."""
         if not self.told:
-            return silent(len({place.node for place in self.map.places}), self.noun)
+            return words.silent(len({place.node for place in self.map.places}), self.noun)
         return self.judge()
 
     def judge(self) -> Headline:
@@ -176,11 +168,13 @@ class State:
         elif apart := int(np.count_nonzero(self.without & ~self.out)):
             said.append(f"no links join {apart:,} of {count:,} {self.noun}s with the others")
         if len(out):
-            said.append(put_out(part_of(len(out), count, self.noun), len(out)))
+            said.append(words.put_out(words.part_of(len(out), count, self.noun), len(out)))
         if said:
-            return Headline(DEGRADED, sentence(said), tuple(sorted({*off, *out.tolist()})))
-        who = every(count, self.noun)
-        return Headline(OK, f"{who[0].upper()}{who[1:]} answer{'s' if count == 1 else ''}.")
+            return Headline(
+                words.DEGRADED, words.sentence(said), tuple(sorted({*off, *out.tolist()}))
+            )
+        who = words.every(count, self.noun)
+        return Headline(words.OK, f"{who[0].upper()}{who[1:]} answer{'s' if count == 1 else ''}.")
 
     def word(self, place: Place, name: str, otherwise: Any) -> Any:
         """What a node says of itself."""

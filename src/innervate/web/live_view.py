@@ -8,9 +8,10 @@ from innervate.network import Network, networks
 from innervate.web.errors import Refused
 from innervate.web.live_map import Map, Place, Status
 from innervate.web.live_scene import Drawn, Spot
-from innervate.web.live_state import State
+from innervate.web.live_state import State, Told
 from innervate.web.messages import Give
 
+Label = Callable[[Place], str]  # how a place is called
 # Asks a node something; None = it did not answer.
 Ask = Callable[[int, dict[str, Any]], dict[str, Any] | None]
 
@@ -68,14 +69,7 @@ class LiveView:
         """Commands that these nodes understand beside those of every network."""
         return ()
 
-    def give(
-        self,
-        command: Give,
-        where: Map,
-        last: Mapping[int, Status],
-        label: Callable[[Place], str],
-        ask: Ask,
-    ) -> str:
+    def give(self, command: Give, where: Map, last: Told, label: Label, ask: Ask) -> str:
         """Give the network a command of its own; what was done, for the log.
 
         Raises:

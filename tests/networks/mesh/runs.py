@@ -4,6 +4,7 @@ from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, MeshRadio, Offer
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.topology.placement import UNHEARD
+from tests.fixtures.scenarios import plan_head
 from tests.networks.mesh import pinger as mesh_pinger
 
 LOUD = -6_000  # 0.01 dBm: received for certain
@@ -59,10 +60,7 @@ def parameters(n, capacity, **more):
 def mesh_plan(n, medium=None, offers=(), duration_s=2.0, seed=1, capacity=32, params=None, **more):
     """A plan; `offers` are (us, node, dest, length), all nodes start at time 0."""
     plan = MeshPlan(
-        scenario=None,
-        kind="mesh",
-        seed=seed,
-        duration_us=round(duration_s * 1e6),
+        **plan_head("mesh", seed, duration_s),
         nodes=n,
         capacity=capacity,
         names=[f"n{i}" for i in range(n)],

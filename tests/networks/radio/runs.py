@@ -3,6 +3,7 @@
 from innervate.networks.radio.scenario.plan import RadioPlan, Rules, parameters
 from innervate.networks.radio.sim.simulate import simulate
 from innervate.sim.tables import uniform
+from tests.fixtures.scenarios import plan_head
 
 START_US = 100_000
 
@@ -31,10 +32,7 @@ def radio_plan(
     params = parameters(packet_slots, ta, **{k: more.pop(k) for k in names if k in more})
     starts = (START_US + uniform(seed, "spread", n, spread + 1)).tolist()
     plan = RadioPlan(
-        scenario=None,
-        kind="radio",
-        seed=seed,
-        duration_us=round(duration_s * 1e6),
+        **plan_head("radio", seed, duration_s),
         protocol=protocol,
         stations=n,
         params=params,

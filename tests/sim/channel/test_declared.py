@@ -1,12 +1,11 @@
 """A network of one's own on a channel, by the defaults of its medium."""
 
-import numpy as np
 import pytest
 
 import innervate
 from innervate.network import NetworkError
 from innervate.plot.lines import summary_lines
-from tests.own import alone, at_once, refused, talk
+from tests.own import alone, at_once, run_both_ways, talk
 
 __all__ = ["alone", "talk"]
 
@@ -110,21 +109,6 @@ def test_an_explored_collision_is_heard_as_one(talk):
     assert case.story.sentences[-1] == "n1 does not hear a frame of n0: busy 0 to 2."
 
 
-@pytest.mark.parametrize(("old", "new", "says"), [
-    ("nodes = 6", "nodes = 3", "talk/talk.toml:21: there is no node 3; they are 0 to 2"),
-    ('action = "kill"', 'action = "cut"', 'action must be join, kill or revive, not "cut"'),
-    ("wait_us = 10_000", "wait_us = 0", "wait_us must be 1 to 1000000 us, not 0"),
-    ("value = 7", "valeu = 7", 'did you mean "value"'),
-])  # fmt: skip
-def test_mistakes_of_a_scenario_are_one_line(talk, capsys, old, new, says):
-    talk.change("talk.toml", old, new)
-    assert says in refused(talk, capsys)
-
-
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_compiled_runs_equal_plain_ones(talk):
-    one, other = (innervate.run(talk.scenario, plain=plain).result for plain in (False, True))
-    assert one.fingerprint == other.fingerprint
-    assert one.counts == other.counts
-    for name in ("rows", "deliveries"):
-        assert np.array_equal(one.rows[name], other.rows[name])
+    run_both_ways(talk)

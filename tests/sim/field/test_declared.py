@@ -2,7 +2,6 @@
 
 import re
 
-import numpy as np
 import pytest
 
 import innervate
@@ -12,7 +11,7 @@ from innervate.network import NetworkError, networks
 from innervate.sim.field import listening
 from innervate.sim.field.declared import simulation
 from innervate.web.field_view import FieldView
-from tests.own import alone, at_once, bare, made, plain, refused
+from tests.own import alone, at_once, bare, made, plain, refused, run_both_ways
 
 __all__ = ["alone", "bare", "plain"]
 ENDS = [{"nodes": [0, 1], "quality": 1.0}, {"nodes": [1, 2], "quality": 1.0}]
@@ -232,21 +231,6 @@ def test_its_own_invariants_are_looked_at(flood):
     assert case.is_broken
 
 
-@pytest.mark.parametrize(("old", "new", "says"), [
-    ("nodes = 16", "nodes = 4", "flood/flood.toml:23: there is no node 15; they are 0 to 3"),
-    ('action = "kill"', 'action = "cut"', "flood.toml:26: cut needs the other node; add other"),
-    ('action = "kill"', 'action = "hide"', "action must be kill, revive, cut, restore, jam"),
-    ("hops = 7", "hops = 0", "flood/flood.toml:12: hops must be 1 to 15 hops, not 0"),
-    ("value = 7", "valeu = 7", 'did you mean "value"'),
-    ('layout = "grid"', "positions_m = [[0, 0]]", "positions_m has 1 places for 16 nodes"),
-    ('layout = "grid"', 'link = [{ nodes = [1, 1] }]', "node 1 is named twice"),
-    ("reach_m = 30", "exponent_min = 9", "air.exponent_min is above exponent_max"),
-])  # fmt: skip
-def test_mistakes_of_a_scenario_are_one_line(bare, capsys, old, new, says):
-    bare.change("flood.toml", old, new)
-    assert says in refused(bare, capsys)
-
-
 @pytest.mark.parametrize(
     ("file", "old", "new", "says"),
     [
@@ -351,11 +335,7 @@ def test_its_captures_and_its_graph(bare, plain, tmp_path):
 
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_compiled_runs_equal_plain_ones(flood):
-    one, other = (innervate.run(flood.scenario, plain=plain).result for plain in (False, True))
-    assert one.fingerprint == other.fingerprint
-    assert one.counts == other.counts
-    for name in ("rows", "deliveries"):
-        assert np.array_equal(one.rows[name], other.rows[name])
+    run_both_ways(flood)
 
 
 def test_a_run_goes_on_from_where_it_was(bare):

@@ -36,61 +36,81 @@ node = "n2"
 
 SQUARE = "[[20, 20], [80, 20], [80, 80], [20, 80]]"
 HOLE = "[[[40, 40], [50, 40], [50, 50]]]"
-MISTAKES = (
-    ("nodes = 12", "nodes = 0", "2: nodes must be 1 to 254, not 0"),
-    ("nodes = 12", "nodes = 255", "2: 255 nodes are too many: an address is one byte"),
-    ("nodes = 12", "nodes = 255", "in the table-free mode (protocol.tables = false) too"),
-    ("nodes = 12", "", " there is no network; add nodes = 30, [[node]]s or an [import]"),
-    ("nodes = 12", 'nodes = 12\nimport.file = "x"', "3: a mesh is made of one of them: nodes or"),
-    ("nodes = 12", "nodes = 12\ngateway = 12", "3: gateway: there is no node 12"),
-    ("nodes = 12", 'nodes = 12\ngateway = "n12"', '3: gateway: there is no node "n12"; did you'),
-    ("nodes = 12", 'nodes = 12\nmonitor = "me"', '3: monitor: there is no node "me"; there are n0'),
-    ("nodes = 12", "nodes = 12\nstandby = [0]", "3: standby.0: n0 is the gateway; name another"),
-    ("nodes = 12", "nodes = 12\nstandby = [4, 4]", "3: standby.1: n4 is a standby already"),
-    ("nodes = 12", 'nodes = 12\nprotocol.failover = "grpah"', 'did you mean "graph"?'),
-    ("mean_degree = 6", "mean_degree = 12", "5: radio.mean_degree = 12, but there are 11 others"),
-    ("mean_degree = 6", "mean_degree = 1", "the network falls into"),
-    ("mean_degree = 6", "tx_dbm = -60", "raise radio.tx_dbm"),
-    ("mean_degree = 6", "reach_m = 1", "raise radio.reach_m"),
-    ("mean_degree = 6", "reach_m = 9\ntx_dbm = 3", "6: radio.reach_m and radio.tx_dbm both set"),
-    ("mean_degree = 6", 'mac = "csma-cd-r"', '5: radio.mac = "csma-cd-r" needs all nodes to hear'),
-    ("mean_degree = 6", 'mac = "csma-cd-d1"', "hears others while it sends, as on a cable; radios"),
-    ("mean_degree = 6", 'mac = "aloha"', '5: radio.mac must be "csma", "none"'),
-    ("mean_degree = 6", 'profile = "ideal"\nmac = "csma"', "6: radio.mac = \"csma\" has nothing"),
-    (SQUARE, "[[20, 20], [80, 80], [80, 20], [20, 80]]", "8: fence.polygon crosses itself: edge 0"),
-    (SQUARE, "[[0, 0], [80, 0], [40, 80], [40, 0], [0, 80]]", "8: fence.polygon touches itself"),
-    (SQUARE, "[[0, 0], [90, 0], [90, 90], [90, 5]]", "8: fence.polygon touches itself: edges"),
-    (SQUARE, "[[20, 20], [20, 20], [80, 80], [20, 80]]", "8: fence.polygon has corner 0 twice in"),
-    (SQUARE, "[[20, 20], [80, 20]]", "8: fence.polygon must have 3 corners or more, not 2"),
-    (SQUARE, "[[20, 20]]", "8: fence.polygon must have 3 corners or more, not 1"),
-    (SQUARE, "[[20, 20, 3]]", "8: fence.polygon.0 must be a point [x, y] in metres"),
-    (SQUARE, "[[0, 0], [30000, 0], [30000, 90], [0, 90]]", "8: the fence and its robots spread"),
-    (SQUARE, f"[{', '.join(f'[{i}, {i * i}]' for i in range(49))}]", "52 corners, more than 48"),
-    (HOLE, "[[[70, 70], [90, 70], [90, 90]]]", "9: fence.holes.0 is not wholly inside"),
-    (HOLE, "[[[20, 30], [30, 30], [30, 40]]]", "9: fence.holes.0 is not wholly inside"),
-    (HOLE, f"[{HOLE[1:-1]}, [[45, 42], [60, 42], [60, 60]]]", "9: fence.holes.0 and 1 overlap"),
-    (HOLE, f"{HOLE}\nunit_cm = 2", "10: fence.unit_cm must be a unit of 1, 10 or 100 cm"),
-    ("node = 3", "node = 12", "12: robot.0.node: there is no node 12; they are numbered 0 to 11"),
-    ("waypoints", "random = true\nwaypoints", "14: robot.0 is random and has waypoints"),
-    ("waypoints", "area = [0, 0, 9, 9]\nwaypoints", "13: robot.0.area goes with random = true"),
-    ("from = 5", "from = 12", "16: flow.0.from: there is no node 12"),
-    ("from = 5", 'from = "monitor"', '16: flow.0.from must be a node, "all", "random"'),
-    ("from = 5", "from = 0", "15: flow.0 goes from n0 to n0; name two nodes"),
-    ("from = 5", "from = 5\npairs = 2", '17: flow.0.pairs goes with from = "random"'),
-    ("from = 5", 'from = "random"\npairs = 12', "but only 11 nodes can be drawn"),
-    ("from = 5", "from = 5\nbytes = 1164", "17: flow.0.bytes must be"),
-    ("from = 5", "from = 5\nevery_s = 1\nrate_hz = 1", "18: flow.0.every_s and rate_hz say the"),
-    ("from = 5", "from = 5\nevery_s = 0.0001\nstart_s = 0", "more than 500,000 messages"),
-    ("at_s = 10.0", "at_s = 60.0", "20: event.0.at_s = 60 is the end of the run, so it would"),
-    ("at_s = 10.0", "at_s = 61.0", "20: event.0.at_s = 61 is outside the run"),
-    ("at_s = 10.0", "at_s = [9, 8]", "20: event.0.at_s must be [from, to], not [9, 8]"),
-    ('"kill"', '"cut"', '22: event.0: "cut" takes link = ["n1", "n2"] or random = 1, not node'),
-    ('node = "n2"', 'node = "n22"', '22: event.0.node: there is no node "n22"'),
-    ('node = "n2"', "random = 10", "22: event.0.random = 10, but there are 9 nodes that are alive"),
-    ('node = "n2"', "", '19: event.0 ("kill") needs one target: node = 3 or random = 1'),
-    ('node = "n2"', "random = 1\nlink = [1, 2]", '"kill") needs one target'),
-    ('node = "n2"', 'node = "n2"\nnoise_dbm = 1', '23: event.0.noise_dbm goes with "jam"'),
-)  # fmt: skip
+MISTAKES = {
+    "nodes = 12": [
+        ("nodes = 0", "2: nodes must be 1 to 254, not 0"),
+        ("nodes = 255", "2: 255 nodes are too many: an address is one byte"),
+        ("nodes = 255", "in the table-free mode (protocol.tables = false) too"),
+        ("", " there is no network; add nodes = 30, [[node]]s or an [import]"),
+        ('nodes = 12\nimport.file = "x"', "3: a mesh is made of one of them: nodes or"),
+        ("nodes = 12\ngateway = 12", "3: gateway: there is no node 12"),
+        ('nodes = 12\ngateway = "n12"', '3: gateway: there is no node "n12"; did you'),
+        ('nodes = 12\nmonitor = "me"', '3: monitor: there is no node "me"; there are n0'),
+        ("nodes = 12\nstandby = [0]", "3: standby.0: n0 is the gateway; name another"),
+        ("nodes = 12\nstandby = [4, 4]", "3: standby.1: n4 is a standby already"),
+        ('nodes = 12\nprotocol.failover = "grpah"', 'did you mean "graph"?'),
+    ],
+    "mean_degree = 6": [
+        ("mean_degree = 12", "5: radio.mean_degree = 12, but there are 11 others"),
+        ("mean_degree = 1", "the network falls into"),
+        ("tx_dbm = -60", "raise radio.tx_dbm"),
+        ("reach_m = 1", "raise radio.reach_m"),
+        ("reach_m = 9\ntx_dbm = 3", "6: radio.reach_m and radio.tx_dbm both set"),
+        ('mac = "csma-cd-r"', '5: radio.mac = "csma-cd-r" needs all nodes to hear'),
+        ('mac = "csma-cd-d1"', "hears others while it sends, as on a cable; radios"),
+        ('mac = "aloha"', '5: radio.mac must be "csma", "none"'),
+        ('profile = "ideal"\nmac = "csma"', "6: radio.mac = \"csma\" has nothing"),
+    ],
+    SQUARE: [
+        ("[[20, 20], [80, 80], [80, 20], [20, 80]]", "8: fence.polygon crosses itself: edge 0"),
+        ("[[0, 0], [80, 0], [40, 80], [40, 0], [0, 80]]", "8: fence.polygon touches itself"),
+        ("[[0, 0], [90, 0], [90, 90], [90, 5]]", "8: fence.polygon touches itself: edges"),
+        ("[[20, 20], [20, 20], [80, 80], [20, 80]]", "8: fence.polygon has corner 0 twice in"),
+        ("[[20, 20], [80, 20]]", "8: fence.polygon must have 3 corners or more, not 2"),
+        ("[[20, 20]]", "8: fence.polygon must have 3 corners or more, not 1"),
+        ("[[20, 20, 3]]", "8: fence.polygon.0 must be a point [x, y] in metres"),
+        ("[[0, 0], [30000, 0], [30000, 90], [0, 90]]", "8: the fence and its robots spread"),
+        (f"[{', '.join(f'[{i}, {i * i}]' for i in range(49))}]", "52 corners, more than 48"),
+    ],
+    HOLE: [
+        ("[[[70, 70], [90, 70], [90, 90]]]", "9: fence.holes.0 is not wholly inside"),
+        ("[[[20, 30], [30, 30], [30, 40]]]", "9: fence.holes.0 is not wholly inside"),
+        (f"[{HOLE[1:-1]}, [[45, 42], [60, 42], [60, 60]]]", "9: fence.holes.0 and 1 overlap"),
+        (f"{HOLE}\nunit_cm = 2", "10: fence.unit_cm must be a unit of 1, 10 or 100 cm"),
+    ],
+    "node = 3": [
+        ("node = 12", "12: robot.0.node: there is no node 12; they are numbered 0 to 11"),
+    ],
+    "waypoints": [
+        ("random = true\nwaypoints", "14: robot.0 is random and has waypoints"),
+        ("area = [0, 0, 9, 9]\nwaypoints", "13: robot.0.area goes with random = true"),
+    ],
+    "from = 5": [
+        ("from = 12", "16: flow.0.from: there is no node 12"),
+        ('from = "monitor"', '16: flow.0.from must be a node, "all", "random"'),
+        ("from = 0", "15: flow.0 goes from n0 to n0; name two nodes"),
+        ("from = 5\npairs = 2", '17: flow.0.pairs goes with from = "random"'),
+        ('from = "random"\npairs = 12', "but only 11 nodes can be drawn"),
+        ("from = 5\nbytes = 1164", "17: flow.0.bytes must be"),
+        ("from = 5\nevery_s = 1\nrate_hz = 1", "18: flow.0.every_s and rate_hz say the"),
+        ("from = 5\nevery_s = 0.0001\nstart_s = 0", "more than 500,000 messages"),
+    ],
+    "at_s = 10.0": [
+        ("at_s = 60.0", "20: event.0.at_s = 60 is the end of the run, so it would"),
+        ("at_s = 61.0", "20: event.0.at_s = 61 is outside the run"),
+        ("at_s = [9, 8]", "20: event.0.at_s must be [from, to], not [9, 8]"),
+    ],
+    '"kill"': [
+        ('"cut"', '22: event.0: "cut" takes link = ["n1", "n2"] or random = 1, not node'),
+    ],
+    'node = "n2"': [
+        ('node = "n22"', '22: event.0.node: there is no node "n22"'),
+        ("random = 10", "22: event.0.random = 10, but there are 9 nodes that are alive"),
+        ("", '19: event.0 ("kill") needs one target: node = 3 or random = 1'),
+        ("random = 1\nlink = [1, 2]", '"kill") needs one target'),
+        ('node = "n2"\nnoise_dbm = 1', '23: event.0.noise_dbm goes with "jam"'),
+    ],
+}  # fmt: skip
 
 
 LINKS = """\
@@ -103,28 +123,41 @@ quality = [0.9, 0.7]
 a = "y"
 b = "z"
 """
-WRONG_LINKS = (
-    ('a = "y"', 'a = "q"', "the network falls into 2 parts: no good links lead to q, z; add the"),
-    ('b = "z"', 'b = "x"', "6: link.1 joins y and x a second time; leave one out"),
-    ('b = "z"', 'b = "y"', "6: link.1 joins y with itself"),
-    ('b = "z"', 'b = "all"', '8: link.1.b must be a node by number or name, not "all"'),
-    ("[0.9, 0.7]", "1.5", "5: link.0.quality must be 0 to 1, not 1.5"),
-    ("[0.9, 0.7]", "[0, 1]", "no good links lead to x; add"),
-    ('kind = "mesh"', 'kind = "mesh"\nnodes = 3',
-     '4: link.0.a: there is no node "x"; there are n0, n1, n2'),
-    ('kind = "mesh"', 'kind = "mesh"\n[[node]]\nname = "x"',
-     '6: link.0.b: there is no node "y"; there are x'),
-    ('kind = "mesh"', 'kind = "mesh"\n[[node]]\nname = "x"\n[[node]]\nname = "x"',
-     '4: there are two nodes "x"; rename one'),
-    ('kind = "mesh"', 'kind = "mesh"\nradio.tx_dbm = 3', "2: radio.tx_dbm has no effect on links"),
-    ('kind = "mesh"', 'kind = "mesh"\n[[robot]]\nnode = "x"\nrandom = true',
-     "2: robot x has no position; give it waypoints, or random = true with an area"),
-)  # fmt: skip
+WRONG_LINKS = {
+    'a = "y"': [
+        ('a = "q"', "the network falls into 2 parts: no good links lead to q, z; add the"),
+    ],
+    'b = "z"': [
+        ('b = "x"', "6: link.1 joins y and x a second time; leave one out"),
+        ('b = "y"', "6: link.1 joins y with itself"),
+        ('b = "all"', '8: link.1.b must be a node by number or name, not "all"'),
+    ],
+    "[0.9, 0.7]": [
+        ("1.5", "5: link.0.quality must be 0 to 1, not 1.5"),
+        ("[0, 1]", "no good links lead to x; add"),
+    ],
+    'kind = "mesh"': [
+        ('kind = "mesh"\nnodes = 3',
+         '4: link.0.a: there is no node "x"; there are n0, n1, n2'),
+        ('kind = "mesh"\n[[node]]\nname = "x"',
+         '6: link.0.b: there is no node "y"; there are x'),
+        ('kind = "mesh"\n[[node]]\nname = "x"\n[[node]]\nname = "x"',
+         '4: there are two nodes "x"; rename one'),
+        ('kind = "mesh"\nradio.tx_dbm = 3', "2: radio.tx_dbm has no effect on links"),
+        ('kind = "mesh"\n[[robot]]\nnode = "x"\nrandom = true',
+         "2: robot x has no position; give it waypoints, or random = true with an area"),
+    ],
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("whole", "old", "new", "message"),
-    [(SMALL, *mistake) for mistake in MISTAKES] + [(LINKS, *mistake) for mistake in WRONG_LINKS],
+    [
+        (whole, old, *mistake)
+        for whole, wrong in ((SMALL, MISTAKES), (LINKS, WRONG_LINKS))
+        for old, mistakes in wrong.items()
+        for mistake in mistakes
+    ],
 )
 def test_mistakes(whole: str, old: str, new: str, message: str) -> None:
     assert old in whole

@@ -56,10 +56,7 @@ local function run(self, tvb, tree)
     complain(self, tree, MALFORMED, "Malformed: too short")
     return "damaged"
   end
-  local kind = number(tvb, 2, 6)
-  tree:add(self.version, tvb(0, 1), number(tvb, 0, 2))
-  tree:add(self.kind, tvb(0, 1), kind)
-  if number(tvb, 0, 2) ~= VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
+  local kind = head(self, tvb, tree, 2, VERSION)
   local last, name, found, info = size - 2, "ack"
   if kind == ACK then
     local behind

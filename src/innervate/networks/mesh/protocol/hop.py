@@ -9,7 +9,7 @@ With `hop_frames` every neighbour has frames under way of its own: one more with
 many after a missing one.
 """
 
-from innervate.dialect.arith import MASK30, after, time_left
+from innervate.dialect.arith import MASK30, after, sooner, time_left
 from innervate.dialect.outbox import set_timer
 from innervate.networks.mesh.protocol.constants import ACK_WAIT, ALARMS, ALL
 from innervate.networks.mesh.protocol.neighbours import place_of
@@ -118,9 +118,7 @@ def await_next(node, now, out):
     soonest = -1
     for i in range(node.places):
         if node.q_state[i] == UNACKED:
-            wait = time_left(node.q_due[i], now)
-            if soonest < 0 or wait < soonest:
-                soonest = wait
+            soonest = sooner(soonest, time_left(node.q_due[i], now))
     if soonest >= 0:
         node.ack_at = (now + soonest) & MASK30
         set_timer(out, ACK_WAIT, node.ack_at)

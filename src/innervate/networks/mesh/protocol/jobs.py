@@ -1,6 +1,6 @@
 """The gateway hands out what it computed: tables to each node, or the graph to all [mesh 4]."""
 
-from innervate.dialect.arith import MASK30, after, time_left
+from innervate.dialect.arith import MASK30, after, sooner, time_left
 from innervate.dialect.outbox import report, set_timer
 from innervate.networks.mesh.protocol.constants import (
     ACTIVATE,
@@ -266,9 +266,7 @@ def wait_for_acks(gate, params, now, out):
     soonest = -1
     for s in range(params.nodes):
         if gate.job[s] == UNDER_WAY:
-            wait = time_left(gate.job_due[s], now)
-            if soonest < 0 or wait < soonest:
-                soonest = wait
+            soonest = sooner(soonest, time_left(gate.job_due[s], now))
     if soonest >= 0:
         set_timer(out, JOBS, (now + soonest) & MASK30)
 

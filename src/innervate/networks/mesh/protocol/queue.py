@@ -1,6 +1,6 @@
 """Frames that wait, and those under way; alarms go before control, control before data."""
 
-from innervate.dialect.arith import MASK16, MASK30, after, time_left
+from innervate.dialect.arith import MASK16, MASK30, after, sooner, time_left
 from innervate.dialect.outbox import URGENT, report, send, set_timer
 from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.backoff import NO_BACKOFF, end_backoff, is_held, note_answer
@@ -199,8 +199,7 @@ def wake(node, params, now, out):
             wait = time_left(node.q_due[i], now)
             if node.pause != NO_BACKOFF and is_held(node, i):
                 wait = max(wait, (node.pause - now) & MASK30)
-            if soonest < 0 or wait < soonest:
-                soonest = wait
+            soonest = sooner(soonest, wait)
     if soonest >= 0:
         set_timer(out, TX, (now + soonest) & MASK30)
 

@@ -1,6 +1,6 @@
 """Messages that are kept until their recipient acknowledges them [mesh RELIABLE]."""
 
-from innervate.dialect.arith import MASK16, MASK30, after, later, time_left
+from innervate.dialect.arith import MASK16, MASK30, after, later, sooner, time_left
 from innervate.dialect.outbox import report, set_timer
 from innervate.networks.mesh.protocol.constants import (
     ALARM,
@@ -111,9 +111,7 @@ def arm_retry(node, now, out):
     soonest = -1
     for w in range(node.kept):
         if node.wait_kind[w] != FREE:
-            wait = time_left(node.wait_due[w], now)
-            if soonest < 0 or wait < soonest:
-                soonest = wait
+            soonest = sooner(soonest, time_left(node.wait_due[w], now))
     if soonest >= 0:
         set_timer(out, RETRY, (now + soonest) & MASK30)
 

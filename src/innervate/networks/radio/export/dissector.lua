@@ -9,10 +9,7 @@ local function run(self, tvb, tree)
     complain(self, tree, MALFORMED, "Malformed: too short")
     return "damaged"
   end
-  local kind = number(tvb, 4, 4)
-  tree:add(self.version, tvb(0, 1), number(tvb, 0, 4))
-  tree:add(self.kind, tvb(0, 1), kind)
-  if number(tvb, 0, 4) ~= VERSION then complain(self, tree, MALFORMED, "Malformed: version") end
+  local kind = head(self, tvb, tree, 4, VERSION)
   local name, behind, found = body(self, tvb, tree, kind, 8, 8 * size - 16)
   if behind and behind / 8 < size - 2 then
     local first = math.floor(behind / 8)

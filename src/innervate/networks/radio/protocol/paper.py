@@ -58,7 +58,7 @@ from innervate.networks.radio.protocol.paper_verify import (
     tail_ends,
     verify,
 )
-from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
+from innervate.networks.radio.protocol.station import carrier_edge, enqueue, hand_up, leave, reset
 
 
 def on_start(station, params, now, cause, out):
@@ -77,14 +77,13 @@ def on_start(station, params, now, cause, out):
 
 def on_input(station, params, now, kind, item, out):
     """PACKET: one more to send. LEAVE: send what is there, then no more."""
-    if kind == PACKET:
-        if enqueue(station, item, out):
-            offered(station, params, now, out)
-    elif kind == FORCE:
-        if enqueue(station, item, out):
-            forced(station, params, now, out)
-    elif kind == LEAVE:
+    if kind == LEAVE:
         leave(station, out)
+    elif (kind == PACKET or kind == FORCE) and enqueue(station, item, out):
+        if kind == FORCE:
+            forced(station, params, now, out)
+        else:
+            offered(station, params, now, out)
 
 
 def on_frame(station, params, now, port, frame, out):
@@ -113,13 +112,11 @@ def on_carrier(station, params, now, cd, voc, out):
         else:
             sent_crr(station, out)
         return
-    came = cd and not station.cd
-    went = station.cd and not cd
-    station.cd = cd
-    if came:
+    edge = carrier_edge(station, cd)
+    if edge > 0:
         burst_begins(station, now, 0)
         carrier_came(station)
-    elif went:
+    elif edge < 0:
         carrier_went(station, params, now, out)
     elif mode == TAIL:
         note_single(station, params, now, voc)

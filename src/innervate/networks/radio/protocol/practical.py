@@ -39,7 +39,7 @@ from innervate.networks.radio.protocol.reporter import (
     opened,
     sent_report,
 )
-from innervate.networks.radio.protocol.station import enqueue, hand_up, leave, reset
+from innervate.networks.radio.protocol.station import carrier_edge, enqueue, hand_up, leave, reset
 from innervate.networks.radio.protocol.times import frame_from, join_after, pass_slots, turn_timeout
 from innervate.networks.radio.protocol.turn import enter_turn, send_turn
 from innervate.networks.radio.protocol.window import hear_report, pass_deadline, use_slot
@@ -90,16 +90,14 @@ def on_carrier(station, params, now, cd, voc, out):
     """The carrier came or went, or our radio listens again after sending."""
     mode = station.mode
     if mode <= modes.CARRIERS:
-        came = cd and not station.cd
-        went = station.cd and not cd
-        station.cd = cd
-        if came:
+        edge = carrier_edge(station, cd)
+        if edge > 0:
             station.rise = now
             station.decoded = 0
             if after(now, station.apart):
                 station.joint = 0
             carrier_came(station, params, now, out)
-        elif went:
+        elif edge < 0:
             if mode == modes.WINDOW and outlasts(station, params, now):
                 lose_opening(station)
             station.fall = now

@@ -32,6 +32,13 @@ def reset(station):
     station.head = station.queued = station.leaving = station.cd = 0
 
 
+def carrier_edge(station, cd):
+    """What became of the carrier: 1 it came, -1 it went, 0 neither."""
+    was = station.cd
+    station.cd = cd
+    return cd - was
+
+
 def enqueue(station, packet, out):
     """Keep a packet until it is delivered; 1 if there was room."""
     if station.queued >= QUEUE:

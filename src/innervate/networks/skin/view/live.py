@@ -9,10 +9,10 @@ from innervate.analysis.headline import Headline, every
 from innervate.analysis.ways import NOWHERE, Numbers, follow, reach
 from innervate.networks.skin.analysis.headline import SkinFacts, skin_headline
 from innervate.web.errors import Refused
-from innervate.web.live_map import Map, Place, Status
+from innervate.web.live_map import Map, Status
 from innervate.web.live_scene import Drawn
-from innervate.web.live_state import State
-from innervate.web.live_view import Ask, LiveView
+from innervate.web.live_state import State, Told
+from innervate.web.live_view import Ask, Label, LiveView
 from innervate.web.messages import Give, number
 
 PC = "pc"  # what `live up` calls it
@@ -173,14 +173,7 @@ class SkinLiveView(LiveView):
         """A PC sends commands down."""
         return ("command",) if _pc(last) is not None else ()
 
-    def give(
-        self,
-        command: Give,
-        where: Map,
-        last: Mapping[int, Status],
-        label: Callable[[Place], str],
-        ask: Ask,
-    ) -> str:
+    def give(self, command: Give, where: Map, last: Told, label: Label, ask: Ask) -> str:
         """Have the PC send a command down."""
         pc, cell, whom = _pc(last), None, "all cells"
         assert pc is not None
