@@ -126,7 +126,9 @@ def _try(rule: str, updates: str, bound: Any) -> str:
         system.SkinModel(graphs.parse("pc-1"), rule, updates, merge=False, keep=True), bound
     )
     way = next(way for way in twin.lay.in_way if way != NONE)
+    begun = bytes(twin.model.first_row(twin.system))
     for fd, route in _refused(rule):
+        twin.put(begun)
         _put(twin, way, fd, route)
         for kind, arg in ((w.DELIVER, way), (w.TICK, 0)):
             bound.step(twin.world, twin.moves.index((kind, arg)), 0, 0)
@@ -147,8 +149,7 @@ def _refused(rule: str) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
 
 
 def _put(twin: Twin, way: int, fd: tuple[int, int], route: tuple[int, int]) -> None:
-    """A cell that lost its route, and a beacon with another on its way to it."""
-    twin.put(bytes(twin.model.first_row(twin.system)))
+    """A cell, just begun, lost its route, and a beacon with another is on its way to it."""
     row, at, queue = twin.world.work, twin.lay.cell_at[0], twin.lay.queue_at[way]
     row[at + w.FLAGS] = skin_row.SQ_KNOWN | skin_row.FD_KNOWN | skin_row.HAS_TICKED
     row[at + w.SQ_OWN], row[at + w.FD_SQ], row[at + w.FD_DIST] = fd[0], *fd
