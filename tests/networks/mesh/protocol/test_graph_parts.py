@@ -1,5 +1,7 @@
 """The whole graph in more parts than a queue has places: all of it comes, and is said once."""
 
+from itertools import pairwise
+
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
@@ -95,5 +97,5 @@ def test_more_parts_than_a_queue_holds_come_no_sooner_than_they_are_passed_on(pa
             first.setdefault(f.seq, at)
     assert (len(first) > QUEUE) == (share == 1)
     times = sorted(first.values())
-    gaps = [later - at for at, later in zip(times, times[1:], strict=False)]
+    gaps = [later - at for at, later in pairwise(times)]
     assert min(gaps) == bench.params.jitter_us // share
