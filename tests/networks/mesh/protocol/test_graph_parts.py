@@ -1,5 +1,7 @@
 """The whole graph in more parts than a queue has places: all of it comes, and is said once."""
 
+from itertools import pairwise
+
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
@@ -82,3 +84,18 @@ def test_what_is_new_begins_with_its_first_part():
     bench.drain(0)
     bench.run(bench.now + 2_000_000)
     assert parts_by(bench, 0) == list(range(QUEUE))
+
+
+@pytest.mark.parametrize(("part", "share"), [(8, 1), (30, 2)])
+def test_more_parts_than_a_queue_holds_come_no_sooner_than_they_are_passed_on(part, share):
+    """Else all of 145 nodes miss one: it finds the channel full of the others (decision 0079)."""
+    bench = bench_of(part)
+    bench.run(SETTLED)
+    first = {}
+    for at, i, f in bench.sent:
+        if i == 0 and f.kind == GRAPH:
+            first.setdefault(f.seq, at)
+    assert (len(first) > QUEUE) == (share == 1)
+    times = sorted(first.values())
+    gaps = [later - at for at, later in pairwise(times)]
+    assert min(gaps) == bench.params.jitter_us // share

@@ -59,24 +59,32 @@ def graph_due(params, now, count, tries):
     return (now + wait) & MASK30
 
 
+def pace_of(params, count):
+    """From part to part, us: more than a queue holds come no sooner than they are passed on."""
+    if count > params.queue:
+        return params.jitter_us
+    return params.jitter_us >> 1
+
+
 def flood_graph(node, gate, params, now, count, out):
     """Queue all parts that somebody misses; those who wait for them are asked no sooner.
 
     Where the queue has no room for all, it goes on with the others when these have left.
     """
     due = now
+    pace = pace_of(params, count)
     for index in range(gate.part, count):
         if is_missed(gate, params, index):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
                 gate.part = index
-                go_on_at(gate, params, (due + (params.jitter_us >> 1)) & MASK30)
+                go_on_at(gate, params, (due + pace) & MASK30)
                 return
             add_hop(node, i)
             fill_graph(node, gate, params, i, index, count)
             node.q_copies[i] = params.copies  # one may find the channel full of the part before
             node.q_due[i] = due & MASK30
-            due = due + (params.jitter_us >> 1)
+            due = due + pace
     gate.part = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
