@@ -188,12 +188,14 @@ def revoked(one):
     return one | {"keys": {"identity": {"serial": 7, "list": 1, "revoked": [7]}}}
 
 
-def test_every_network_says_of_who_is_revoked_that_it_was_put_out():
-    def chain():
-        ends = ((1, 2),), ((2, 1), (3, 4)), ((4, 3),)
-        return {at: {"kind": "own", "counters": {}, "paths": paths(*here)}
-                for at, here in enumerate(ends)}  # fmt: skip
+def chain():
+    """What three nodes in a row say, of a network of one's own."""
+    ends = ((1, 2),), ((2, 1), (3, 4)), ((4, 3),)
+    return {at: {"kind": "own", "counters": {}, "paths": paths(*here)}
+            for at, here in enumerate(ends)}  # fmt: skip
 
+
+def test_every_network_says_of_who_is_revoked_that_it_was_put_out():
     told = chain()
     told[2] = revoked(told[2])
     state = State(Map(told), told)
@@ -241,6 +243,23 @@ def test_every_network_says_of_who_is_revoked_that_it_was_put_out():
     assert (state.map.links, state.unconnected, state.lacking, state.left) == ([], 1, 0, 1)
 
 
+def test_who_is_cut_off_or_silent_was_not_put_out():
+    told = chain()
+    where = Map(told)
+    told[2]["paths"][0]["up"] = False
+    state = State(where, told, {where.places[2]})
+    assert (state.unconnected, state.apart) == (1, 0), "cut off whole"
+    assert state.without_words() == "1 that is cut off"
+    del told[2]
+    state = State(where, told)
+    assert (state.unconnected, state.without_words()) == (0, "")
+    told = {at: revoked(one) for at, one in chain().items() if at}
+    assert State(where, told).headline().text == (
+        "1 of 3 nodes does not answer or is cut off; "
+        "2 of 3 nodes were put out: their identities are revoked."
+    )
+
+
 def test_a_cell_that_is_put_out_has_no_way_whatever_it_believes():
     told = {0: cell(0, 0, udp((1, 2))), 1: revoked(cell(1, 0, udp((3, 4))))}
     state = SkinState(SkinMap(told), told)
@@ -252,6 +271,13 @@ def test_a_cell_that_is_put_out_has_no_way_whatever_it_believes():
     state = SkinState(SkinMap(told), told)
     assert (state.unconnected, state.fields()["beyond"].tolist()) == (1, [0, 0, 0])
     assert "believed" not in state.headline().text
+
+
+def test_no_cell_has_a_way_to_a_pc_that_is_put_out_whatever_it_believes():
+    pc = revoked(cell(0, None, udp((3, 4))) | {"role": "sink"})
+    told = {0: cell(0, 0, udp((1, 2))), 1: pc}
+    found = SkinState(SkinMap(told), told).headline()
+    assert found[:2] == ("down", "The PC was put out: its identity is revoked.")
 
 
 def test_whoever_is_put_out_and_switched_off_is_silent():

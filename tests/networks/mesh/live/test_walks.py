@@ -123,3 +123,33 @@ def test_a_robot_that_errs_is_told_the_wrong_place_as_often_where_it_stands(tmp_
         assert wrong["at_cm"] == [right["at_cm"][0] + dx, right["at_cm"][1] + dy]
         assert wrong["speed_cm_s"] == right["speed_cm_s"], "measured by itself"
     assert len({tuple(one["at_cm"]) for _, one in heard[17:]}) > 5
+
+
+def errors_of(node, seed=1, hold_us=0):
+    return Errors(
+        SimpleNamespace(sample_us=250_000, seed=seed), Walk(node, ((0, 0, 0),), 10**6, hold_us)
+    )
+
+
+def test_every_robot_errs_by_itself_and_from_the_first_sample_on():
+    for hold_us in (0, 3_600_000_000):
+        first = [errors_of(node, seed, hold_us).at(0) for seed in (1, 2) for node in (0, 1)]
+        assert len(set(first)) == 4
+        assert max(abs(x) + abs(y) for x, y in first) > 50, "in cm, of a metre"
+
+
+def test_what_a_seed_has_a_robot_err_by_stays_the_same():
+    errors = errors_of(0, hold_us=3_000_000)
+    assert [errors.at(sample) for sample in range(5)] == [
+        (21, 16), (35, 32), (22, 67), (50, 48), (127, -2),
+    ]  # fmt: skip
+
+
+def test_each_time_it_is_told_the_error_of_that_sample(tmp_path, monkeypatch):
+    plan = SimpleNamespace(sample_us=70_000, origin_cm=(0, 0), seed=1)
+    monkeypatch.setitem(globals(), "PLAN", plan)
+    way = Walk(0, ((0, 0, 0),), 1_000_000)
+    heard, _ = told(tmp_path, 6.0, way=way)
+    errors = Errors(plan, way)
+    expected = [errors.at(sample) for sample in range(86)]
+    assert [tuple(request["at_cm"]) for _, request in heard] == expected

@@ -85,10 +85,15 @@ def test_who_was_put_out_has_no_way_though_nobody_has_noticed_yet():
     told[0]["role"] = "node"
     state = MeshState(MeshMap(told), told)
     assert (state.unconnected, state.lacking, state.left) == (2, 1, 1), "it could not have a way"
+    assert state.apart == 0
     told[0] |= {"role": "gateway", "keys": keys}
     state = MeshState(MeshMap(told), told)
     assert state.unconnected == 2, "a gateway that is put out leads nobody, and has no way either"
     assert state.without_words() == "2 that are put out"
+    assert state.fields()["apart"] == 0
+    where = MeshMap(told)
+    del told[1]
+    assert MeshState(where, told).unconnected == 1, "who is silent does not count"
 
 
 def test_every_alarm_is_told_once_and_old_ones_with_their_age():
