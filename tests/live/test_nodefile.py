@@ -38,32 +38,50 @@ def test_a_node_of_a_file(tmp_path):
 KEYS_1_AND_16 = f'{{1 = "{"a" * 64}", 16 = "{"b" * 64}"}}'
 
 
+# What is replaced in it: by what, and what is said.
+WRONG = {
+    "number = 3": [
+        ("numbr = 3", 'unknown key "numbr"; do you mean "number"'),
+        ("number = 9", "numbers are 0 to nodes - 1"),
+        ("", '"number" is missing'),
+        ('number = 3\nengine = "rust"', "'rust'; it can be python, c, auto"),
+    ],
+    "nodes = 9": [
+        ("", '"nodes" is missing'),
+        ("nodes = 9\nrole = 'sink'", "can be node, gateway, standby"),
+        ("nodes = 9\nprotocol = {ack_ms = 1}", "protocol.ack_ms is unknown"),
+        ("nodes = 9\nprotocol = {ack_us = 0}", "must be 1 to 16777215 us"),
+        ('nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
+        (f"nodes = 9\n[keys]\nuse = 1\nsecret = {KEYS_1_AND_16}",
+         "keys.secret.16: numbers of keys are 0 to 15"),
+    ],
+    '"127.0.0.1:4701"': [
+        ('"127.0.0.1"', "is no address"),
+        ('"127.0.0.1:123456"', "is no address"),
+        ('"localhost:0"', "localhost:0 is no address that a neighbour"),
+        ('"[::1]:4701"', "cannot be reached from bind 127.0.0.1:0"),
+        ('"[fe80::x]:4701"', '"[fe80::x]:4701" is no address of IPv6; write'),
+        ('"[fd00::1]:"', '"[fd00::1]:" is no address of IPv6; write'),
+        ('"[::ffff:10.0.0.2]:4"', "is of IPv4; write 10.0.0.2:4"),
+        ('"[fd00::1%lo]:4"', "is on one interface alone; leave %lo out"),
+        ('"::1:4701"', '"::1:4701" is no address; write'),
+    ],
+    '"127.0.0.1:0"': [
+        ('"[fe80::1]:4"', "is on every interface; say which: [fe80::1%eth0]:4"),
+    ],
+    'kind = "udp"': [
+        ('kind = "upd"', "'upd'; it can be udp, serial, multicast, medium"),
+        ('kind = "udp"\nbindd = ""', 'unknown key "bindd"; see: innervate docs'),
+    ],
+    'kind = "mesh"': [
+        ("kind = mesh", "not valid TOML"),
+        (f"kind = {'[' * 2_000}{']' * 2_000}", "not valid TOML"),
+    ],
+}  # fmt: skip
+
+
 @pytest.mark.parametrize(("old", "new", "says"), [
-    ("number = 3", "numbr = 3", 'unknown key "numbr"; do you mean "number"'),
-    ("number = 3", "number = 9", "numbers are 0 to nodes - 1"),
-    ("nodes = 9", "", '"nodes" is missing'),
-    ("nodes = 9", "nodes = 9\nrole = 'sink'", "can be node, gateway, standby"),
-    ("nodes = 9", "nodes = 9\nprotocol = {ack_ms = 1}", "protocol.ack_ms is unknown"),
-    ("nodes = 9", "nodes = 9\nprotocol = {ack_us = 0}", "must be 1 to 16777215 us"),
-    ('"127.0.0.1:4701"', '"127.0.0.1"', "is no address"),
-    ('"127.0.0.1:4701"', '"127.0.0.1:123456"', "is no address"),
-    ('"127.0.0.1:4701"', '"localhost:0"', "localhost:0 is no address that a neighbour"),
-    ('"127.0.0.1:4701"', '"[::1]:4701"', "cannot be reached from bind 127.0.0.1:0"),
-    ('"127.0.0.1:4701"', '"[fe80::x]:4701"', '"[fe80::x]:4701" is no address of IPv6; write'),
-    ('"127.0.0.1:4701"', '"[fd00::1]:"', '"[fd00::1]:" is no address of IPv6; write'),
-    ('"127.0.0.1:4701"', '"[::ffff:10.0.0.2]:4"', "is of IPv4; write 10.0.0.2:4"),
-    ('"127.0.0.1:4701"', '"[fd00::1%lo]:4"', "is on one interface alone; leave %lo out"),
-    ('"127.0.0.1:0"', '"[fe80::1]:4"', "is on every interface; say which: [fe80::1%eth0]:4"),
-    ('"127.0.0.1:4701"', '"::1:4701"', '"::1:4701" is no address; write'),
-    ('kind = "udp"', 'kind = "upd"', "'upd'; it can be udp, serial, multicast, medium"),
-    ('kind = "udp"', 'kind = "udp"\nbindd = ""', 'unknown key "bindd"; see: innervate docs'),
-    ("number = 3", "", '"number" is missing'),
-    ("number = 3", 'number = 3\nengine = "rust"', "'rust'; it can be python, c, auto"),
-    ("nodes = 9", 'nodes = 9\n[keys]\nuse = 2\nsecret = {1 = "aa"}', "no such secret"),
-    ("nodes = 9", f"nodes = 9\n[keys]\nuse = 1\nsecret = {KEYS_1_AND_16}",
-     "keys.secret.16: numbers of keys are 0 to 15"),
-    ('kind = "mesh"', "kind = mesh", "not valid TOML"),
-    ('kind = "mesh"', f"kind = {'[' * 2_000}{']' * 2_000}", "not valid TOML"),
+    (old, *wrong) for old, some in WRONG.items() for wrong in some
 ])  # fmt: skip
 def test_what_is_wrong_is_said_in_one_line(tmp_path, old, new, says):
     path = write(tmp_path, GOOD.replace(old, new))

@@ -8,70 +8,96 @@ import pytest
 
 from innervate.scenario import ScenarioError, from_dict, load, loads, plan
 
-# what to replace, by what, the message
-WRONG = [
-    ("k = 3", "beacon_hs = 9", '17: [protocol] has no key "beacon_hs"; did you mean "beacon_hz"?'),
-    ("4.0", '"long"', '2: duration_s must be a number of seconds > 0, not "long"'),
-    ("4.0", "0", "2: duration_s must be a number of seconds > 0, not 0"),
-    ("4.0", "nan", "2: duration_s must be a finite number, not nan"),
-    ("4.0", "true", "2: duration_s must be a number of seconds > 0, not true"),
-    ('kind = "skin"', "", ' the scenario has no kind; add kind = "skin" (or radio, mesh, babel, '
-     "flooding, rpl)"),
-    ('kind = "skin"', 'scenario = "demo"',
-     " this is a plan of many runs, no scenario: innervate sweep runs it"),
-    ('"skin"', '"skim"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or "rpl", '
-     'not "skim"'),
-    ("rows = 3\n", "", '4: [[patch]] 0 lacks "rows"; give it a whole number from 1'),
-    ("rows = 3", "rows = 3.5", "6: patch.0.rows must be a whole number from 1, not 3.5"),
-    ("rows = 3", "rows = 9000000", "6: patch.0.rows must be at most 4000000, not 9000000"),
-    ("column = 1", "column = 9", "10: interface.0: there is no column 9; columns are 0 to 3"),
-    ("row = 0", "row = 1", "8: interface.0: p0 r1 c1 has no free port; choose a border cell"),
-    ("row = 0", "row = 0\npatch = 2", "10: interface.0: there is no patch 2; the only patch is 0"),
-    ("column = 1", 'column = 1\nport = "E"', "11: interface.0: port p0 r0 c1 E is already cabled "
-     "to p0 r0 c2 W, so pc.0 cannot be joined to it; free on p0 r0 c1: up"),
-    ("k = 3", "k = 3\nr_f = 0.2", "18: protocol.k and protocol.r_f say the same thing twice; "
-     "leave one out"),
-    ("k = 3", "r_f = 2.2", "17: protocol.r_f must be at most 2.0, not 2.2"),
-    ("k = 3", 'rule = "feasable"', '17: protocol.rule must be "feasible", "strict", "paper", '
-     '"paper-lax" or "static", not "feasable"; did you mean "feasible"?'),
-    ("k = 3", 'balancing = false\nbalance_rule = "paper"', "18: protocol.balance_rule has no "
-     "effect with balancing = false; leave one out"),
-    ("k = 3", "max_depth = 2", "17: p0 r0 c3 is 3 hops from the PC but protocol.max_depth is 2; "
-     "add an interface or raise protocol.max_depth"),
-    ("2.0", "5.0", "20: event.0.at_s = 5 is outside the run; duration_s is 4"),
-    ("2.0", "1e308", "20: event.0.at_s = 1e+308 is outside the run; duration_s is 4"),
-    ('"skin"', f'"{"s" * 300}"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or '
-     f'"rpl", not "{"s" * 45}..."; name the folder of one of your own: --network DIR'),
-    ("2.0", "4.0", "20: event.0.at_s = 4 is the end of the run, so it would never happen; make it "
-     "earlier, or duration_s longer"),
-    ("2.0", "[1.0, 4.0]", "20: event.0.at_s = 4 is the end of the run, so it would never happen; "
-     "make it earlier, or duration_s longer"),
-    ("2.0", "-1", "20: event.0.at_s must be a number of seconds from 0, not -1"),
-    ("2.0", "[3.0, 1.0]", "20: event.0.at_s must be [least, most], not [3, 1]"),
-    ("interface = 1", "interface = 2", "22: event.0: there is no interface 2; they are 0 to 1"),
-    ("interface = 1", "pc = true", '22: event.0: "cut" takes a cable: interface = 0, cell = {...} '
-     'with port = "E", link = [{...}, {...}] or random = "link", not pc'),
-    ("interface = 1", "interface = 1\npc = true", "23: event.0 has 2 targets: interface and pc; "
-     "keep one"),
-    ("interface = 1", "cell = { row = 0, column = 0 }", "22: event.0: p0 r0 c0 has 2 cables; say "
-     "which with port; cabled are E, down"),
-    ("interface = 1", 'cell = { row = 0, column = 0, port = "W" }', "22: event.0: port W of "
-     "p0 r0 c0 has no cable; cabled are E, down"),
-    ("interface = 1", "cell = { row = 0, colum = 0 }", '22: event.0.cell has no key "colum"; did '
-     'you mean "column"?'),
-    ("interface = 1", 'link = ["p0r0c0", { row = 2, column = 0 }]', "22: event.0.link: no cable "
-     "joins p0 r0 c0 and p0 r2 c0 there; name two neighbours"),
-    ("interface = 1", 'node = "n7"', '22: event.0.node: no node is called "n7"; they are p0 r0 c0, '
-     "p0 r0 c1, ..., pc"),
-    ('"cut"', '"loose"', '19: event.0 ("loose") lacks "loss"; give it a fraction, like 0.35'),
-    ('"cut"\ninterface = 1', '"revive"\nrandom = "cell"', "22: event.0: no cell is broken at that "
-     "time to revive"),
-    ('"skin"', '"skin"\nschema = 2', "2: schema = 2 is newer than this version knows (1); "
-     "update innervate"),
-]  # fmt: skip
+# What is replaced: by what, the message.
+WRONG = {
+    "k = 3": [
+        ("beacon_hs = 9", '17: [protocol] has no key "beacon_hs"; did you mean "beacon_hz"?'),
+        ("k = 3\nr_f = 0.2", "18: protocol.k and protocol.r_f say the same thing twice; "
+         "leave one out"),
+        ("r_f = 2.2", "17: protocol.r_f must be at most 2.0, not 2.2"),
+        ('rule = "feasable"', '17: protocol.rule must be "feasible", "strict", "paper", '
+         '"paper-lax" or "static", not "feasable"; did you mean "feasible"?'),
+        ('balancing = false\nbalance_rule = "paper"', "18: protocol.balance_rule has no "
+         "effect with balancing = false; leave one out"),
+        ("max_depth = 2", "17: p0 r0 c3 is 3 hops from the PC but protocol.max_depth is 2; "
+         "add an interface or raise protocol.max_depth"),
+    ],
+    "4.0": [
+        ('"long"', '2: duration_s must be a number of seconds > 0, not "long"'),
+        ("0", "2: duration_s must be a number of seconds > 0, not 0"),
+        ("nan", "2: duration_s must be a finite number, not nan"),
+        ("true", "2: duration_s must be a number of seconds > 0, not true"),
+    ],
+    'kind = "skin"': [
+        ("", ' the scenario has no kind; add kind = "skin" (or radio, mesh, babel, '
+         "flooding, rpl)"),
+        ('scenario = "demo"', " this is a plan of many runs, no scenario: innervate sweep runs it"),
+    ],
+    '"skin"': [
+        ('"skim"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or "rpl", '
+         'not "skim"'),
+        (f'"{"s" * 300}"', '1: kind must be "skin", "radio", "mesh", "babel", "flooding" or '
+         f'"rpl", not "{"s" * 45}..."; name the folder of one of your own: --network DIR'),
+        ('"skin"\nschema = 2', "2: schema = 2 is newer than this version knows (1); "
+         "update innervate"),
+    ],
+    "rows = 3\n": [
+        ("", '4: [[patch]] 0 lacks "rows"; give it a whole number from 1'),
+    ],
+    "rows = 3": [
+        ("rows = 3.5", "6: patch.0.rows must be a whole number from 1, not 3.5"),
+        ("rows = 9000000", "6: patch.0.rows must be at most 4000000, not 9000000"),
+    ],
+    "column = 1": [
+        ("column = 9", "10: interface.0: there is no column 9; columns are 0 to 3"),
+        ('column = 1\nport = "E"', "11: interface.0: port p0 r0 c1 E is already cabled "
+         "to p0 r0 c2 W, so pc.0 cannot be joined to it; free on p0 r0 c1: up"),
+    ],
+    "row = 0": [
+        ("row = 1", "8: interface.0: p0 r1 c1 has no free port; choose a border cell"),
+        ("row = 0\npatch = 2", "10: interface.0: there is no patch 2; the only patch is 0"),
+    ],
+    "2.0": [
+        ("5.0", "20: event.0.at_s = 5 is outside the run; duration_s is 4"),
+        ("1e308", "20: event.0.at_s = 1e+308 is outside the run; duration_s is 4"),
+        ("4.0", "20: event.0.at_s = 4 is the end of the run, so it would never happen; make it "
+         "earlier, or duration_s longer"),
+        ("[1.0, 4.0]", "20: event.0.at_s = 4 is the end of the run, so it would never happen; "
+         "make it earlier, or duration_s longer"),
+        ("-1", "20: event.0.at_s must be a number of seconds from 0, not -1"),
+        ("[3.0, 1.0]", "20: event.0.at_s must be [least, most], not [3, 1]"),
+    ],
+    "interface = 1": [
+        ("interface = 2", "22: event.0: there is no interface 2; they are 0 to 1"),
+        ("pc = true", '22: event.0: "cut" takes a cable: interface = 0, cell = {...} '
+         'with port = "E", link = [{...}, {...}] or random = "link", not pc'),
+        ("interface = 1\npc = true", "23: event.0 has 2 targets: interface and pc; "
+         "keep one"),
+        ("cell = { row = 0, column = 0 }", "22: event.0: p0 r0 c0 has 2 cables; say "
+         "which with port; cabled are E, down"),
+        ('cell = { row = 0, column = 0, port = "W" }', "22: event.0: port W of "
+         "p0 r0 c0 has no cable; cabled are E, down"),
+        ("cell = { row = 0, colum = 0 }", '22: event.0.cell has no key "colum"; did '
+         'you mean "column"?'),
+        ('link = ["p0r0c0", { row = 2, column = 0 }]', "22: event.0.link: no cable "
+         "joins p0 r0 c0 and p0 r2 c0 there; name two neighbours"),
+        ('node = "n7"', '22: event.0.node: no node is called "n7"; they are p0 r0 c0, '
+         "p0 r0 c1, ..., pc"),
+    ],
+    '"cut"': [
+        ('"loose"', '19: event.0 ("loose") lacks "loss"; give it a fraction, like 0.35'),
+    ],
+    '"cut"\ninterface = 1': [
+        ('"revive"\nrandom = "cell"', "22: event.0: no cell is broken at that "
+         "time to revive"),
+    ],
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "message"), WRONG, ids=[w[2][:60] for w in WRONG])
+@pytest.mark.parametrize(("old", "new", "message"), [
+    pytest.param(old, new, message, id=message[:60])
+    for old, wrong in WRONG.items() for new, message in wrong
+])  # fmt: skip
 def test_mistakes_in_a_file(small: str, old: str, new: str, message: str) -> None:
     assert old in small
     with pytest.raises(ScenarioError) as caught:
