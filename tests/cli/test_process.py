@@ -59,27 +59,20 @@ def test_with_standard_error_closed_the_answer_is_the_same(tmp_path):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
-def test_a_full_disk_is_one_line(process):
+@pytest.mark.parametrize(
+    ("stream", "word", "ends", "says"),
+    [(1, "scenarios", 1, "No space left on device"), (2, "runn", 2, "")],
+)
+def test_a_full_disk_is_one_line_and_a_mistake_stays_one(process, stream, word, ends, says):
     code = (
-        "import os, sys; full = os.open('/dev/full', os.O_WRONLY); os.dup2(full, 1);"
-        "from innervate.cli import main; sys.exit(main(['scenarios']))"
+        f"import os, sys; full = os.open('/dev/full', os.O_WRONLY); os.dup2(full, {stream});"
+        f"from innervate.cli import main; sys.exit(main([{word!r}]))"
     )
     started = process(code=code)
     _, err = started.communicate(timeout=TIMEOUT_S)
-    assert started.returncode == 1
-    assert "No space left on device" in err
+    assert started.returncode == ends
+    assert says in err
     assert "Traceback" not in err
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
-def test_a_mistake_is_a_mistake_though_no_room_is_left_to_say_so(process):
-    code = (
-        "import os, sys; full = os.open('/dev/full', os.O_WRONLY); os.dup2(full, 2);"
-        "from innervate.cli import main; sys.exit(main(['runn']))"
-    )
-    started = process(code=code)
-    started.communicate(timeout=TIMEOUT_S)
-    assert started.returncode == 2
 
 
 def test_without_the_simulator_it_says_what_to_install(process, tmp_path):

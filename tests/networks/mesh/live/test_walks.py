@@ -112,17 +112,22 @@ def test_a_robot_errs_as_in_a_simulation_of_the_same_seed(hold_us):
     assert Errors(plan, Walk(0, stands)).at(3) == (0, 0)
 
 
-def test_a_robot_that_errs_is_told_the_wrong_place_as_often_where_it_stands(tmp_path):
+@pytest.mark.parametrize("sample_us", [250_000, 20_000])  # the second is no whole part of a float
+def test_a_robot_that_errs_is_told_the_wrong_place_as_often_where_it_stands(
+    tmp_path, monkeypatch, sample_us
+):
+    monkeypatch.setattr(PLAN, "sample_us", sample_us)
     way = Walk(0, WAY.points, 1_000_000)
-    heard, _ = told(tmp_path, 6.1, way=way)
-    assert [at for at, _ in heard] == [0.25 * k for k in range(25)]
-    exact, _ = told(tmp_path, 6.1, way=Walk(0, (*WAY.points, (7_000_000, 500, 400))))
+    heard, _ = told(tmp_path, 6.01, way=way)
+    samples = range(6_000_000 // sample_us + 1)
+    assert [at for at, _ in heard] == [round(k * sample_us / 1e6, 3) for k in samples]
+    exact, _ = told(tmp_path, 6.01, way=Walk(0, (*WAY.points, (7_000_000, 500, 400))))
     errors = Errors(PLAN, way)
     for k, ((_, wrong), (_, right)) in enumerate(zip(heard, exact, strict=True)):
         dx, dy = errors.at(k)
         assert wrong["at_cm"] == [right["at_cm"][0] + dx, right["at_cm"][1] + dy]
         assert wrong["speed_cm_s"] == right["speed_cm_s"], "measured by itself"
-    assert len({tuple(one["at_cm"]) for _, one in heard[17:]}) > 5
+    assert len({tuple(one["at_cm"]) for _, one in heard[len(samples) * 2 // 3 :]}) > 5
 
 
 def errors_of(node, seed=1, hold_us=0):
