@@ -304,6 +304,15 @@ def test_a_flood_that_was_forgotten_and_comes_again_is_delivered_once():
     assert [i for _, i, _ in bench.delivered] == [2]
 
 
+def test_whoever_passes_a_flood_on_stands_in_its_path_and_lets_it_live_one_hop_less():
+    bench = silent(line(4))
+    bench.send(0, 3)
+    bench.run(SPAN_US)
+    floods = [f for _, _, f in bench.sent if f.kind == DATA]
+    assert [f.ttl - floods[0].ttl for f in floods] == [0, -1, -2]
+    assert [list(f.path[: f.path_len]) for f in floods] == [[0], [0, 1], [0, 1, 2]]
+
+
 class Mixed(Net):
     """A mesh of which only some flood."""
 

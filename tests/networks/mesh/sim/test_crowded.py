@@ -146,6 +146,8 @@ def test_tables_and_their_acks_are_tried_in_full_whoever_was_silent():
     node.suspect[k] = 0
     for kind in (DATA, RESPONSE):
         assert most_tries_of(node, bench.params, k, kind) == 3
+    node.suspect[bench.params.places - 1] = DOUBT
+    assert most_tries_of(node, bench.params, -1, DATA) == 3, "who is in the table no more"
 
 
 def most_tries_of(node, params, k, kind):
