@@ -28,11 +28,11 @@ def pump_graph(node, gate, params, now, out):
     count = part_count(params)
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
-            gate.job[s] = UNDER_WAY if count <= PARTS_MAX else GIVEN_UP
-            gate.job_count[s] = min(count, PARTS_MAX)
-            gate.job_next[s] = 0
-            gate.job_due[s] = graph_due(params, now, count, 0)
-            gate.part = 0
+            gate.job[s] = GIVEN_UP
+            if count <= PARTS_MAX:
+                gate.job[s] = UNDER_WAY
+                gate.job_count[s] = count
+                gate.job_next[s] = gate.part = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
             flood_graph(node, gate, params, now, count, out)
@@ -59,20 +59,16 @@ def graph_due(params, now, count, tries):
     return (now + wait) & MASK30
 
 
-def pace_of(params, count):
-    """From part to part, us: more than a queue holds come no sooner than they are passed on."""
-    if count > params.queue:
-        return params.jitter_us
-    return params.jitter_us >> 1
-
-
 def flood_graph(node, gate, params, now, count, out):
     """Queue all parts that somebody misses; those who wait for them are asked no sooner.
 
-    Where the queue has no room for all, it goes on with the others when these have left.
+    Where the queue has no room for all, it goes on with the others when these have left, and none
+    comes sooner than the one before was passed on.
     """
     due = now
-    pace = pace_of(params, count)
+    pace = params.jitter_us
+    if count <= params.queue:
+        pace = pace >> 1
     for index in range(gate.part, count):
         if is_missed(gate, params, index):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
