@@ -77,13 +77,14 @@ def on_start(station, params, now, cause, out):
 
 def on_input(station, params, now, kind, item, out):
     """PACKET: one more to send. LEAVE: send what is there, then no more."""
-    if kind == LEAVE:
-        leave(station, out)
-    elif (kind == PACKET or kind == FORCE) and enqueue(station, item, out):
-        if kind == FORCE:
-            forced(station, params, now, out)
-        else:
+    if kind == PACKET:
+        if enqueue(station, item, out):
             offered(station, params, now, out)
+    elif kind == FORCE:
+        if enqueue(station, item, out):
+            forced(station, params, now, out)
+    elif kind == LEAVE:
+        leave(station, out)
 
 
 def on_frame(station, params, now, port, frame, out):
