@@ -23,7 +23,7 @@ EXTRA_OF = {
     "topohub": "topohub",
     "rerun": "rerun",
 }  # fmt: skip
-# The user's mistakes whose text is one line for him: module and class.
+# Mistakes of the user, whose text is one line already: module and class.
 _MISTAKES = (
     ("innervate.scenario.errors", "ScenarioError"),
     ("innervate.running.errors", "RunError"),
