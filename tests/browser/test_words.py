@@ -160,6 +160,7 @@ const network = new Network(scene);
 const said = [];
 for (const [t_s, level, text, ...lines] of STEPS) {
   network.apply({ t_s, headline: { level, text, nodes: [] } });
+  if (BETWEEN) showState(network, true);
   for (const [at, mark, line] of lines) network.note({ t_s: at, mark, text: line });
   showState(network, true);
   said.push(boxes["state-spoken"].textContent);
@@ -168,7 +169,9 @@ console.log(JSON.stringify(said));
 """
 
 
-def test_what_is_lost_while_the_level_stays_is_read_out_once():
+@pytest.mark.parametrize("between", [False, True])
+def test_what_is_lost_while_the_level_stays_is_read_out_once(between):
+    """Whether or not the page is drawn between a state and the lines that come behind it."""
     steps = [
         [5.0, "degraded", "A; b."],
         [
@@ -187,7 +190,7 @@ def test_what_is_lost_while_the_level_stays_is_read_out_once():
         [5.8, "degraded", "G."],
         [5.9, "degraded", "G."],
     ]
-    text = READ_OUT.replace("STEPS", json.dumps(steps))
+    text = READ_OUT.replace("STEPS", json.dumps(steps)).replace("BETWEEN", json.dumps(between))
     for name, file in (("NETWORK", "network.js"), ("PANEL", "panel.js")):
         text = text.replace(name, json.dumps((PAGE / file).as_uri()))
     still = "still degraded; n1 switched off: d"
