@@ -147,6 +147,40 @@ def test_a_second_fault_is_read_out_with_what_is_new():
     ]
 
 
+def viewed(views, view, name, value, state, **scene):
+    """A value in JavaScript where `view` is one of a live network of two nodes in this state."""
+    nodes = [{"id": at, "label": f"n{at}", "role": "cell", "x": at, "y": 0} for at in range(2)]
+    scene = {"kind": "own", "source": "live", "nodes": nodes, "links": [], "can": [], "ports": 0,
+             "series": [], **scene}  # fmt: skip
+    network = json.dumps((views / "network.js").as_uri())
+    colours = json.dumps((views / "colours.js").as_uri())
+    return found(view, f"""await (async () => {{
+      const {{ colours }} = await import({colours});
+      Object.assign(colours, {{ panel: "panel", d: ["d0", "", "", "", "", "", "", "d7"], h: ["h0"] }});
+      const {{ Network }} = await import({network});
+      const view = new it.{name}(new Network({json.dumps(scene)}));
+      view.network.apply({json.dumps(state)});
+      return {value};
+    }})()""", views)  # fmt: skip
+
+
+@pytest.mark.parametrize("colour", ["depth", "port"])
+def test_a_cell_that_sends_by_others_elsewhere_looks_as_no_other_does(views, colour):
+    state = {"beyond": [1, 0], "parent": [-1, 0], "port": [-1, 7], "depth": [-1, 8]}
+    value = f'(view.colour = "{colour}", view.deepest = 8, [0, 1].map((i) => view.kindOf(i)))'
+    kinds = viewed(views, "skin.js", "SkinView", value, state)
+    assert kinds == ["beyond", {"depth": "d7", "port": "p7"}[colour]]
+
+
+def test_a_node_of_which_no_field_is_known_is_filled_as_its_legend_says(views):
+    value = "[view.filled(null), view.legend().map(([, words]) => words)]"
+    fill, words = viewed(views, "plain.js", "PlainView", value, {}, fields=[])
+    assert (fill, words[0]) == ("d7", "node")
+    heat = [{"name": "heat", "unit": "K"}]
+    fill, words = viewed(views, "plain.js", "PlainView", value, {}, fields=heat)
+    assert (fill, words[:3]) == ("panel", ["heat: least", "most", "not known"])
+
+
 # What a page shows: elements by their names, and what each state made of what is read out.
 READ_OUT = """
 globalThis.matchMedia = () => ({ addEventListener() {} });

@@ -14,13 +14,14 @@ const LINK_PX = 6; // a click is at most so far from the middle of a cable that 
 const FEW = 0.1; // up to this share of cells is painted over one by one
 const BRICKS_PX = 5; // below this pitch hexagons are squares
 const PORT_PX = 10; // half of a port's box
+const HATCH_PX = 5; // from line to line
 const WORDS_PX = 22; // from this pitch on cells bear a number
 
 /** Draws a skin on a stage. */
 export class SkinView {
   constructor(network) {
     this.network = network;
-    this.scaleMax = 60;
+    this.scaleMax = 140; // px a cell
     this.margin = [18, 18];
     const { ports } = network.scene;
     this.colour = ports >= 2 && ports <= PORT_COLOURS ? "port" : "depth";
@@ -81,7 +82,7 @@ export class SkinView {
     if (this.colour === "touch") return `h${shade(now.touch[i], 256)}`;
     if (!this.#isRouted(i)) return "none";
     if (this.colour === "load") return `h${shade(now.load[i], 1)}`;
-    if (now.beyond[i]) return "d7";
+    if (now.beyond[i]) return "beyond";
     if (this.colour === "depth") return `d${shade(now.depth[i] - 1, this.deepest)}`;
     return `p${now.port[i] % PORT_COLOURS}`;
   }
@@ -127,7 +128,7 @@ export class SkinView {
       found.push(flightSample("beacon", "beacon"), flightSample("data", "sample to the PC"));
       if (this.network.can.has("command")) found.push(flightSample("command", "command down"));
     } else if (this.colour === "port" || this.colour === "depth") {
-      found.push([cell("d7"), "by nodes that do not run here"]);
+      found.push([cell("beyond"), "by nodes that do not run here"]);
     }
     found.push(cutSample);
     return found;
@@ -178,7 +179,8 @@ export class SkinView {
 
   #shapes(context, paths) {
     for (const [kind, path] of paths) {
-      if (kind === "none" || kind === "off") {
+      if (kind === "beyond") hatched(context, path);
+      else if (kind === "none" || kind === "off") {
         context.fillStyle = kind === "off" ? colours.faint : colours.ground;
         context.fill(path);
         stroke(context, colours.soft, 1, path, kind === "none" ? [2, 2] : []);
@@ -285,6 +287,23 @@ export class SkinView {
     stage.clear(context);
     flights(context, this.network, stage, Math.max(1.5, Math.min(4, 0.1 * stage.scale)));
   }
+}
+
+/** Fill cells with slanting lines: no colour is left that means nothing else. */
+function hatched(context, path) {
+  const [wide, high] = [context.canvas.width, context.canvas.height];
+  const lines = new Path2D();
+  for (let x = -high; x < wide; x += HATCH_PX) {
+    lines.moveTo(x, high);
+    lines.lineTo(x + high, 0);
+  }
+  context.fillStyle = colours.ground;
+  context.fill(path);
+  context.save();
+  context.clip(path);
+  stroke(context, colours.soft, 1.2, lines);
+  context.restore();
+  stroke(context, colours.soft, 1, path);
 }
 
 /** One cell for the legend. */
