@@ -156,7 +156,8 @@ def viewed(views, view, name, value, state, **scene):
     colours = json.dumps((views / "colours.js").as_uri())
     return found(view, f"""await (async () => {{
       const {{ colours }} = await import({colours});
-      Object.assign(colours, {{ panel: "panel", d: ["d0", "", "", "", "", "", "", "d7"], h: ["h0"] }});
+      const d = Array.from({{ length: 8 }}, (_, i) => `d${{i}}`);
+      Object.assign(colours, {{ panel: "panel", d, h: ["h0"] }});
       const {{ Network }} = await import({network});
       const view = new it.{name}(new Network({json.dumps(scene)}));
       view.network.apply({json.dumps(state)});

@@ -3,8 +3,8 @@ import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hexagon,
-  middle, stroke, word,
+  affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hatched,
+  hexagon, middle, stroke, word,
 } from "./shapes.js";
 import { PUT_OUT, off, offWord, plural } from "./words.js";
 
@@ -14,7 +14,6 @@ const LINK_PX = 6; // a click is at most so far from the middle of a cable that 
 const FEW = 0.1; // up to this share of cells is painted over one by one
 const BRICKS_PX = 5; // below this pitch hexagons are squares
 const PORT_PX = 10; // half of a port's box
-const HATCH_PX = 5; // from line to line
 const WORDS_PX = 22; // from this pitch on cells bear a number
 
 /** Draws a skin on a stage. */
@@ -111,11 +110,10 @@ export class SkinView {
   legend() {
     const cell = (kind) => (context) => {
       this.#shapes(context, new Map([[kind, whole(13, 8)]]));
-      const sign = new Path2D();
+      const [sign, dead] = [new Path2D(), new Path2D()];
       if (kind === "none") cross(sign, 13, 8, 2.5);
-      stroke(context, colours.ink, 1.2, sign);
-      const dead = new Path2D();
       if (kind === "off") cross(dead, 13, 8, 4);
+      stroke(context, colours.ink, 1.2, sign);
       stroke(context, colours.alarm, 2.2, dead);
     };
     const line = (colour, width, dash) => (context) => {
@@ -287,23 +285,6 @@ export class SkinView {
     stage.clear(context);
     flights(context, this.network, stage, Math.max(1.5, Math.min(4, 0.1 * stage.scale)));
   }
-}
-
-/** Fill cells with slanting lines: no colour is left that means nothing else. */
-function hatched(context, path) {
-  const [wide, high] = [context.canvas.width, context.canvas.height];
-  const lines = new Path2D();
-  for (let x = -high; x < wide; x += HATCH_PX) {
-    lines.moveTo(x, high);
-    lines.lineTo(x + high, 0);
-  }
-  context.fillStyle = colours.ground;
-  context.fill(path);
-  context.save();
-  context.clip(path);
-  stroke(context, colours.soft, 1.2, lines);
-  context.restore();
-  stroke(context, colours.soft, 1, path);
 }
 
 /** One cell for the legend. */
