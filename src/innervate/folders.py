@@ -17,10 +17,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from innervate.dialect import clocks, counted, sends
+from innervate.dialect import bounded, clocks, counted, sends
 from innervate.dialect import folder as checks
 from innervate.dialect.checker import functions_of
-from innervate.dialect.source import numbers_of
+from innervate.dialect.source import numbers_of, reached
 
 NETWORK_FILE = "network.py"
 MEDIA_ON_AIR = ("channel", "field")
@@ -28,6 +28,7 @@ MEDIA_ON_AIR = ("channel", "field")
 CHANNEL_OWN = ("slot_us", "ta_us", "oracle", "full_duplex", "period_us", "per_turn")
 CHANNEL_STATE = ("queued",)
 TABLES = ("STATE", "FRAME", "PARAMS")
+LOOPING = ("protocol", "invariants")  # parts whose loops have to end
 
 _in_plain: ContextVar[bool] = ContextVar("_in_plain", default=False)
 _stamps: dict[str, tuple[tuple[str, int, int], ...]] = {}  # of the files of what is loaded, by name
@@ -163,8 +164,9 @@ def blamed(error: BaseException, folder: Path) -> str:
     if not places:
         return ""
     last = places[-1]
-    where = f", in {last.name}" if last.name != "<module>" else ""
-    return f"{shown(Path(last.filename))}:{last.lineno}: {_words(error)}{where}"
+    words, where = _words(error), f"in {last.name}"
+    told = "" if last.name == "<module>" or where in words else f", {where}"
+    return f"{shown(Path(last.filename))}:{last.lineno}: {words}{told}"
 
 
 def line_of(folder: Path, text: str) -> str:
@@ -294,6 +296,13 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
 def _name_of(source: Path, folder: Path, network: Any) -> str:
     inside = source.relative_to(folder).with_suffix("").parts
     return ".".join([network.package, *inside])
+
+
+def bound_loops(entry: ModuleType, folder: Path) -> None:
+    """Have loops of a folder's module, and of those of its own that it calls, stop at a bound."""
+    for module in reached(entry.__name__):
+        if Path(module.__file__ or "").is_relative_to(folder):
+            bounded.bound(module)
 
 
 def _dialects() -> set[str]:

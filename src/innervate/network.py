@@ -89,6 +89,8 @@ class Network:
             if self.folder is None:
                 raise
             raise self._missing(part, error) from None
+        if part in folders.LOOPING and self.folder is not None:
+            folders.bound_loops(found, self.folder)
         if part in MADE and callable(found):
             found = found(self)
         self.__dict__[part] = found

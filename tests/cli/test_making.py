@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from innervate.cli import main
+from innervate.cli import main, making
 from innervate.folders import CHANNEL_OWN
 from innervate.network import NetworkError, networks
 from innervate.running import run
@@ -41,6 +41,40 @@ def test_what_no_test_reaches_is_named(own, capsys):
     assert reason in said
     assert "values and frames fit" not in said
     assert "but: its tests fail (see above)" in said.splitlines()[-1]
+    assert "reach" not in said  # a test that fails may have been about to
+
+
+LATE = """\
+    left = node.value
+    while left != 0:
+        left -= 2
+"""
+
+
+def test_a_loop_that_does_not_end_is_told_by_whatever_comes_to_it(own, capsys):
+    own.change("protocol.py", "    node.value = item.value\n", f"    node.value = item.value\n{LATE}")
+    (own.folder / "test_gossip.py").write_text(
+        '"""Tests."""\n\nfrom types import SimpleNamespace as made\n\n'
+        "from gossip import protocol\n\n\ndef test_an_input():\n"
+        "    node = made(version=0)\n    item = made(value=3, made_at=1)\n"
+        "    protocol.on_input(node, None, 0, 1, item, None)\n"
+    )
+    at = f"gossip/protocol.py:{own.line('protocol.py', 'while')}: EndlessLoop: a loop of more than "
+    says = at + "1,000,000 rounds in on_input; see that it ends"
+    code, said = checked(capsys)
+    assert code == 1
+    assert f"So: a handler cannot go on: {says}" in said
+    assert "test_an_input - innervate.dialect.bounded.EndlessLoop: a loop of" in said
+    assert "the first 1 state explored" in said
+    assert main(["run", "gossip/gossip.toml", "--plain"]) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == f"innervate: {says}"
+
+
+def test_tests_that_take_too_long_are_told(own, capsys, monkeypatch):
+    monkeypatch.setattr(making, "TEST_S", 0.01)
+    assert main(["check-protocol", "gossip"]) == 2
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert line.startswith("innervate: the tests of gossip take more than 0.01 s; try: python -m")
 
 
 def test_an_outbox_that_is_too_small_and_loops_that_are_not_counted(own, capsys):

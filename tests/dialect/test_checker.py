@@ -28,29 +28,6 @@ def test_a_rule_is_told_with_its_line(body):
     assert str(one) == f"{line}: {one.what}"
 
 
-@pytest.mark.parametrize("body", [
-    "while n > 0:\n        n -= 1", "while cell.n > 0:\n        cell.n -= 1",
-    "while cell.path[n] > 0:\n        cell.path[0] = 0", "while cell.n > 0:\n        g(cell)",
-    "while g(cell) > 0:\n        cell.n = 1",
-    "while cell.n:\n        if cell.m:\n            break",
-    "while n:\n        return 1", "while cell.n > 0:\n        cell = 0",
-])  # fmt: skip
-def test_a_loop_whose_condition_changes_may_end(body):
-    text = f'"""Doc."""\n\n\ndef f(cell, n):\n    """Doc."""\n    {body}\n'
-    assert broken_rules(text, {"g"}) == []
-
-
-@pytest.mark.parametrize("body", [
-    "while cell.n > 0:\n        cell.m -= 1", "while n > 0:\n        g(n)",
-    "while n > 0:\n        m = n", "while g(cell) > 0:\n        n = 1",
-    "while cell.path[0]:\n        n = cell.path[0]",
-])  # fmt: skip
-def test_a_loop_whose_condition_stays_does_not_end(body):
-    text = f'"""Doc."""\n\n\ndef f(cell, n):\n    """Doc."""\n    {body}\n'
-    (one,) = broken_rules(text, {"g"})
-    assert one.what.startswith("a loop without bound: nothing that its condition looks at")
-
-
 def test_functions_that_call_each_other_in_a_ring_are_told_each():
     calls = {"a": "b", "b": "c", "c": "a", "d": "a"}
     text = '"""Doc."""\n'

@@ -16,6 +16,8 @@ ABOUT = {
     "copies.py",
     "source.py",
     "checker.py",
+    "bounded.py",
+    "loops.py",
     "clocks.py",
     "folder.py",
     "sends.py",

@@ -15,6 +15,7 @@ from typing import Any
 from innervate import folders
 from innervate.cli.errors import UserError
 from innervate.cli.options import Json
+from innervate.kernel.words import number_of
 from innervate.network import Network, accesses, networks, read
 from innervate.parts import MEDIA
 
@@ -148,9 +149,8 @@ def _look_further(
     lines += case.lines
     if with_tests:
         said.update(_tested(folder, network))
-        lines += [f"{place}: no test reaches {what}" for what, place in said["unreached"].items()]
-        if said["tests_failed"]:
-            lines.append(said["tests_failed"])
+        unreached = [f"{at}: no test reaches {what}" for what, at in said["unreached"].items()]
+        lines += [said["tests_failed"]] if said["tests_failed"] else unreached
     lines.append(f"{network.name}: {_conclusion(said, room, case)}")
 
 
@@ -159,13 +159,14 @@ def _conclusion(said: dict[str, Any], room: int, case: Any) -> str:
     counts = said["outbox"].values()
     most = max((n for n in counts if n is not None), default=0)
     seen = " where that is seen" if None in counts else ""
-    states = f"{'all' if case.is_complete else 'the first'} {case.record['states']:,} states"
+    states = number_of(case.record["states"], "state")
+    states = f"{'all' if case.is_complete else 'the first'} {states}"
     shown = {"the outbox is too small": most > room,
              "some order of events breaks it": said["broken"],
              "its tests fail": said.get("tests_failed")}  # fmt: skip
     said["faults"] = [fault for fault, is_there in shown.items() if is_there]
     reached = ""
-    if "reached" in said:
+    if "reached" in said and not said["tests_failed"]:
         reached = f", {said['reached']} of {said['functions']} functions reached by tests"
     fits = "values and frames fit,"
     if said["faults"]:
@@ -185,9 +186,13 @@ def _tested(folder: Path, network: Network) -> dict[str, Any]:
                    *names]  # fmt: skip
         # pytest cuts the reason of a failure where its line ends
         wide = os.environ | {"COLUMNS": "1000"}
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=TEST_S, check=False, env=wide
-        )
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=TEST_S, check=False, env=wide
+            )
+        except subprocess.TimeoutExpired:
+            raise UserError(f"the tests of {folder} take more than {TEST_S} s; try: "
+                            f"python -m pytest -x {folder}") from None  # fmt: skip
         if not out.is_file():
             last = (done.stderr or done.stdout).strip().splitlines()[-1:]
             raise UserError(f"the tests of {folder} could not be run: {' '.join(last)}")

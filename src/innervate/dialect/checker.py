@@ -5,6 +5,8 @@ CONTRIBUTING.md has the dialect. A source is read, not run.
 
 import ast
 
+from innervate.dialect import loops
+
 PACKAGE = "innervate.dialect"
 BUILTINS = {"abs", "max", "min", "range"}
 DEBUGGING = {"breakpoint", "print"}  # may be called in plain runs
@@ -326,14 +328,8 @@ class Checker:
         """A while goes on only as long as what it looks at changes."""
         if node.orelse:
             self.complain(node, "a while with an else; write it after the loop")
-        inside = [part for statement in node.body for part in ast.walk(statement)]
-        if any(isinstance(part, (ast.Break, ast.Return)) for part in inside):
-            return
-        names, records = _looked_at(node.test)
-        assigned, touched = _changed(inside)
-        if not (names & assigned or any(_overlap(a, b) for a in records for b in touched)):
-            self.complain(node, "a loop without bound: nothing that its condition looks at changes "
-                                "in it; write for i in range(...)")  # fmt: skip
+        if wrong := loops.endless(node):
+            self.complain(node, f"a loop without bound: {wrong}")
 
     def check_recursion(self):
         """No function calls itself, directly or by others."""
@@ -354,43 +350,3 @@ class Checker:
             if name in reached:
                 self.complain(function, f"a loop without bound: {name} calls itself; "
                                         "write for i in range(...)")  # fmt: skip
-
-
-def _overlap(one, other):
-    """True if two of "node" and "node.seq" are, or can be, the same field."""
-    return one == other or other == one.partition(".")[0] or one == other.partition(".")[0]
-
-
-def _field(part):
-    """A number or record, or with it a field of a record: "node.seq"; None of others."""
-    while isinstance(part, (ast.Attribute, ast.Subscript)):
-        if isinstance(part, ast.Attribute) and isinstance(part.value, ast.Name):
-            return f"{part.value.id}.{part.attr}"
-        part = part.value
-    return part.id if isinstance(part, ast.Name) else None
-
-
-def _looked_at(test):
-    """Names of numbers, and of records or their fields, that a condition looks at."""
-    inner = {id(part.value) for part in ast.walk(test)
-             if isinstance(part, (ast.Attribute, ast.Subscript))}  # fmt: skip
-    calls = [part for part in ast.walk(test) if isinstance(part, ast.Call)]
-    handed = {id(one) for part in calls for one in part.args}
-    called = {id(part.func) for part in calls}
-    names = [part for part in ast.walk(test) if isinstance(part, ast.Name)]
-    numbers = {one.id for one in names if id(one) not in inner | called}
-    inside = (ast.Attribute, ast.Subscript)
-    looked = [one for one in ast.walk(test) if isinstance(one, inside) or id(one) in handed]
-    return numbers, set(map(_field, looked)) - {None}
-
-
-def _changed(nodes):
-    """Names that are assigned to; those and fields that are, or that are handed to a function."""
-    assigned, touched = set(), set()
-    for node in nodes:
-        targets = node.targets if isinstance(node, ast.Assign) else []
-        targets = [node.target] if isinstance(node, ast.AugAssign) else targets
-        assigned |= {target.id for target in targets if isinstance(target, ast.Name)}
-        handed = node.args if isinstance(node, ast.Call) else []
-        touched |= {_field(target) for target in [*targets, *handed]} - {None}
-    return assigned, assigned | touched
