@@ -282,11 +282,13 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
         found += checks.of_taken(place, fields.STATE, CHANNEL_STATE, "STATE")
     tables = [*fields.STATE, *fields.FRAME, *fields.PARAMS]
     declared = {field[0] for field in tables}
+    others = {one[0] for one in [*fields.STATE, *fields.FRAME]}
+    params = {one[0] for one in fields.PARAMS} - others
     arrays = declared - {field[0] for field in tables if not field[1]}
     rules = [_file_of(folder, network, "invariants")] if network.has("invariants") else []
     for source in [*files, *rules]:
         found += checks.of_uses(source, declared, network.protocol.TIMERS, arrays)
-        found += clocks.of_clocks(source, tables)
+        found += clocks.of_clocks(source, tables, params)
         found += checks.of_numbers(
             source, numbers_of(import_module(_name_of(source, folder, network)))
         )

@@ -18,7 +18,7 @@ def said(tmp_path, line, arguments="node, params, now, port, frame, out"):
     """Line and text of what is wrong with a function of one line."""
     path = tmp_path / "protocol.py"
     path.write_text(f'"""Doc."""\n\n\ndef on_frame({arguments}):\n    """Doc."""\n    {line}\n')
-    return [(one.line, one.text) for one in of_clocks(path, TABLES)]
+    return [(one.line, one.text) for one in of_clocks(path, TABLES, {"wait_us"})]
 
 
 @pytest.mark.parametrize("line", [
@@ -70,3 +70,30 @@ def test_a_number_of_ones_own_may_be_called_now(tmp_path):
     assert said(tmp_path, "return now < 0", arguments="now_cm, before") == []
     now = "now = node.seq\n    return now < 3"
     assert said(tmp_path, now, arguments="node") == []
+
+
+@pytest.mark.parametrize(("line", "wait"), [
+    ("set_timer(out, BEAT, params.wait_us)", "params.wait_us"),
+    ("set_timer(out, BEAT, 5000 & MASK30)", "5000 & MASK30"),
+    ("outbox.set_timer(out, BEAT, params.wait_us // 2)", "params.wait_us // 2"),
+    ("set_timer(out, BEAT, min(params.wait_us, draw(node, 8)))",
+     "min(params.wait_us, draw(node, 8))"),
+    ("wait = params.wait_us\n    wait += sizes.MORE\n    set_timer(out, BEAT, wait)", "wait"),
+    ("set_timer(out, BEAT, time_left(node.due, now))", "time_left(node.due, now)"),
+])  # fmt: skip
+def test_a_timer_is_not_set_to_how_long_it_runs(tmp_path, line, wait):
+    ((at, text),) = said(tmp_path, line)
+    assert at == 6 + line.count("\n")
+    assert text == (f"set_timer takes when, a reading of the clock, and {wait} is how long; "
+                    f"write (now + {wait}) & MASK30")  # fmt: skip
+
+
+@pytest.mark.parametrize("line", [
+    "set_timer(out, BEAT, (now + params.wait_us) & MASK30)", "set_timer(out, BEAT, now)",
+    "set_timer(out, BEAT, node.due)", "set_timer(out, BEAT, port)",
+    "at = params.wait_us\n    at += now\n    set_timer(out, BEAT, at)",
+    "at = params.wait_us\n    at = at + node.due\n    set_timer(out, BEAT, at)",
+    "set_timer(out, BEAT, soon(params.wait_us))", "set_timer(out, BEAT, max(now, 5))",
+])  # fmt: skip
+def test_a_timer_is_set_to_a_reading(tmp_path, line):
+    assert said(tmp_path, line) == []
