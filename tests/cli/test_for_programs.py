@@ -13,6 +13,9 @@ import pytest
 
 from innervate import scenario
 from innervate.cli import main
+from tests.own import alone, made
+
+__all__ = ["alone"]
 
 
 def said(capsys, *words, code=0):
@@ -69,6 +72,12 @@ def test_sweep(capsys, tmp_path, monkeypatch):
     assert found["points"][2]["figures"]["cut_off.most"]["mean"] is None
     every = said(capsys, *words[:-4], "--out", "out", "--json")["points"][0]["figures"]
     assert {"recoveries.routed_ms", "balance_factor"} <= every.keys()
+
+
+def test_the_schema_has_the_keys_of_an_own_networks_medium(alone, capsys):
+    made(alone / "talk", "channel")
+    assert "ChannelScenario" not in said(capsys, "schema")["$defs"]
+    assert "ChannelScenario" in said(capsys, "schema", "talk")["$defs"]
 
 
 @pytest.fixture(scope="module")

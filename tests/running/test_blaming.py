@@ -52,6 +52,32 @@ def test_an_outbox_that_overflows(own):
         innervate.run(own.scenario)
 
 
+def test_a_timer_that_is_always_due_at_once_is_told_with_its_line(own):
+    own.change("protocol.py", "        tell(node, p, out)\n    set_timer(out, BEAT, "
+               "(now + params.beat_us) & MASK30)", "        tell(node, p, out)\n"
+               "    set_timer(out, BEAT, now)")  # fmt: skip
+    at = own.line("protocol.py", "BEAT, now)")
+    says = f"protocol.py:{at}: on_timer sets a timer that is due at once, again and again: time "
+    with pytest.raises(NetworkError, match=says):
+        innervate.run(own.scenario, plain=True)
+
+
+def test_timers_for_now_are_few_at_one_time_and_as_many_as_they_want_at_others(own):
+    own.change("protocol.py", "    set_timer(out, BEAT, (now + params.beat_us) & MASK30)\n\n\n"
+               "def on_frame", "    node.left = 900\n    set_timer(out, BEAT, now)\n\n\n"
+               "def on_frame")  # fmt: skip
+    own.change("protocol.py", "    for p in range(PORTS):\n        tell(node, p, out)\n"
+               "    set_timer(", "    if node.left:\n        node.left -= 1\n"
+               "        set_timer(out, BEAT, (now - 3) & MASK30)\n        return\n"
+               "    node.left = 1\n    set_timer(")  # fmt: skip
+    own.change("fields.py", 'STATE = (', 'STATE = (\n    ("left", 0, 0, 900, "calls", "at once"),')
+    (case,) = innervate.explore(own.folder, graph="pair", states=300)
+    assert case.record["past"] == [["on_timer", 0, 3]]
+    assert "; on_timer sets timer 0 up to 3 us in the past, it is due at once" in case.lines[0]
+    run = innervate.run(own.scenario, plain=True)
+    assert [node.left for node in run.nodes] == [1] * 6
+
+
 def test_an_index_below_0_is_found_before_it_is_compiled(own):
     own.change("fields.py", '("value", 0, 0, 255, "raw", "what it says"),',
                '("value", 0, 0, 255, "raw", "what it says"),\n'

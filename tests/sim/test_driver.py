@@ -107,6 +107,22 @@ def test_a_run_goes_slice_by_slice_to_the_end_of_its_plan(small, monkeypatch):
     assert small.grown == [BUDGET] * 3 + [DONE]
 
 
+@pytest.mark.parametrize("moments", [15, 35])
+def test_a_run_whose_time_stands_still_ends_with_words(small, monkeypatch, moments):
+    """Ten slices of two events each at one time are too many; nine are not."""
+    monkeypatch.setitem(globals(), "TIMES", (5,) * moments + TIMES)
+    monkeypatch.setattr(small, "slice_events", 2)
+    for name in ("rows", "taps", "tapped"):
+        tables = Tables(isinstance(small.world.run, list))
+        names = {"rows": ("time", "node"), "taps": TAP, "tapped": ("seq",)}[name]
+        small.world = small.world._replace(**{name: tables.records(names, 50)})
+    if moments < 20:
+        assert small.finish().ended_us == DURATION
+        return
+    with pytest.raises(InvariantBroken, match=r"time stands still at 0\.000005 s: 20 events"):
+        small.finish()
+
+
 def test_what_ends_before_its_time_ended_when_its_last_event_was(small):
     small.complete = True
     ended = small.finish()

@@ -34,7 +34,7 @@ def test_all_states_of_two_that_do_not_meet():
     expected = {
         "states": pairs, "expanded": pairs, "generated": 2 * pairs, "left_out": 0,
         "depth": 2 * (RING - 1), "ended": "complete", "broken": None, "story": None,
-        "draws": {"every": [], "some": [], "left_out": 0}, "readings": [],
+        "draws": {"every": [], "some": [], "left_out": 0}, "readings": [], "past": [],
     }  # fmt: skip
     assert case.record == {"graph": case.record["graph"], **expected}
     assert case.is_complete

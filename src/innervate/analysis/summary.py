@@ -131,7 +131,7 @@ def _measures(result: Any) -> Reports:
     network = networks()[result.plan.kind]
     if not network.has("measures"):
         return {}
-    states, off = states_of(result.world), set(result.counts.off)
+    states, off = nodes_of(result), set(result.counts.off)
     on = [node for node in range(result.counts.nodes) if node not in off]
     nodes = [states[node] for node in on] if isinstance(states, list) else states[on]
     rows, deliveries = (result.rows.get(name, ()) for name in ("rows", "deliveries"))
@@ -149,6 +149,11 @@ def states_of(world: Any) -> Any:
     """The nodes' states of a simulation, their fields as attributes, compiled or plain."""
     states = world.cells if hasattr(world, "cells") else world.stations
     return states if isinstance(states, list) else states.view(np.recarray)
+
+
+def nodes_of(result: Any) -> Any:
+    """The states of a simulation's nodes, whatever its medium, by their numbers from 0."""
+    return states_of(result.world)[: result.counts.nodes]
 
 
 def _plain(value: Any) -> float | None:

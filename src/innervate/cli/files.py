@@ -15,7 +15,7 @@ from innervate import scenario
 from innervate.cli.errors import UserError
 from innervate.cli.options import Json, MeasuredOptions, OwnOptions, Seed, Sets
 from innervate.export import files
-from innervate.network import networks
+from innervate.network import networks, use
 
 
 def scenarios(*, as_json: Json = False) -> int:
@@ -161,12 +161,15 @@ def _held(loaded: scenario.Scenario, said: str) -> dict[str, Any]:
     }
 
 
-def schema(*, out: Path | None = None) -> int:
+def schema(network: Path | None = None, /, *, out: Path | None = None) -> int:
     """Print or write the JSON Schema of scenario files.
 
     Args:
+        network: Folder of a network of your own, whose scenarios it is to be of, too.
         out: File to write it to.
     """
+    if network is not None and str(network) not in networks():
+        use(network)
     text = json.dumps(scenario.json_schema(), indent=2, ensure_ascii=False) + "\n"
     if out is None:
         print(text, end="")

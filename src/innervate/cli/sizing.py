@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from innervate import folders
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.cli.options import SizeOptions
@@ -15,7 +16,20 @@ from innervate.cli.sweeping import failed_lines
 from innervate.network import networks
 
 
-def size(robot: str, /, *, options: Annotated[SizeOptions, Parameter(name="*")]) -> int:
+def _check_robot(_kind: Any, robot: Any) -> None:
+    """Networks and their scenarios have no robot's body: say so before options are asked for."""
+    path = Path(robot)
+    if robot in networks() or folders.is_one(path) or path.suffix == ".toml":
+        raise errors.UserError(
+            "size is of skins: it lays cells on a robot's body, and takes a URDF file, not "
+            f"{robot[:60]}; of other networks innervate sweep compares sizes: --vary nodes=4,8"
+        )
+
+
+Robot = Annotated[str, Parameter(validator=_check_robot)]
+
+
+def size(robot: Robot, /, *, options: Annotated[SizeOptions, Parameter(name="*")]) -> int:
     """Answer how many ports a robot needs, with a table and a picture; 1 if none is enough.
 
     Args:

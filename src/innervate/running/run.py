@@ -92,6 +92,19 @@ class Run(Summaries):
             for table in room.tables_of(self.result)
         }
 
+    @property
+    def nodes(self) -> Any:
+        """The nodes' states at the end, from node 0 on: their fields are attributes.
+
+        Raises:
+            RunError: a network of the toolkit's own that keeps them otherwise: see `result.world`.
+        """
+        if not hasattr(self.result, "counts"):
+            raise RunError(f"a run of {self.plan.kind} has no nodes; see run.result.world")
+        from innervate.analysis.summary import nodes_of  # who runs nothing needs no NumPy
+
+        return nodes_of(self.result)
+
     def numpy(self, table: str) -> dict[str, Any]:
         """A table as NumPy arrays by the names of its columns.
 

@@ -4,13 +4,15 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from innervate.dialect import outbox
 from innervate.dialect.folder import MEASURED
-from innervate.dialect.outbox import DELIVER, SEND
+from innervate.dialect.outbox import DELIVER, SEND, SET_TIMER
 from innervate.folders import NetworkError, shown
 from innervate.network import Network
+from innervate.running.timers import Timers
 from innervate.sim.sent import FRAME_BROKEN, KIND_BROKEN
 from innervate.verify.frames import frames_of
 
@@ -52,7 +54,7 @@ class Sent:
 
     def __init__(self, world: Any, network: Network, here: Here) -> None:
         self.words, self.here, self.out = "", here, world.out
-        self.frames = frames_of(network)
+        self.frames, self.timers = frames_of(network), Timers()
         self.put_at: dict[int, tuple[str, int, str]] = {}  # by action: file, line, handler
         # By frame and field, of this call: where a value was set that cannot be.
         self.set_at: dict[tuple[int, str], tuple[str, int] | None] = {}
@@ -82,7 +84,11 @@ class Sent:
     def _count_set(self, _place: int, value: int) -> None:
         """How many actions there are."""
         if value:
-            self.put_at[value - 1] = _putter()
+            path, line, handler = _putter()
+            self.put_at[value - 1] = path, line, handler.f_code.co_name
+            act = self.out.action[value - 1]
+            if act.kind == SET_TIMER:
+                self.timers.look(handler, f"{shown(Path(path))}:{line}", act.b)
         elif self.count[0]:
             self.drained(self.count[0])
 
@@ -131,12 +137,12 @@ class Sent:
         return f"{path}:{line}: {name} of a frame that {handler} {does} {what}"
 
 
-def _putter() -> tuple[str, int, str]:
-    """File and line that put an action into the outbox, and the handler that it belongs to."""
+def _putter() -> tuple[str, int, FrameType]:
+    """File and line that put an action into the outbox, and the handler's call that it is of."""
     frame: Any = sys._getframe(3)
     while frame.f_code.co_filename == outbox.__file__:
         frame = frame.f_back
     place = frame.f_code.co_filename, frame.f_lineno
     while frame.f_back is not None and not frame.f_code.co_name.startswith("on_"):
         frame = frame.f_back
-    return (*place, frame.f_code.co_name)
+    return (*place, frame)

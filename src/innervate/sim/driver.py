@@ -17,8 +17,10 @@ from innervate.kernel.clock import wall_s
 from innervate.kernel.stop import Stop
 from innervate.sim import taps
 from innervate.sim.counts import Counts
-from innervate.sim.status import BROKEN, DONE
+from innervate.sim.status import BROKEN, BUDGET, DONE
 from innervate.sim.tables import WIDE, Names, get, hand_over, move_rows, put, row_dtype
+
+STILL_SLICES = 10  # of events at one moment: more than any network has
 
 Advance = Callable[[Any, int, int], None]
 Progress = Callable[[int, int], None]
@@ -132,12 +134,15 @@ class Simulation(ABC):
             tap: is handed copies of all frames as they leave and come in (see taps.py).
         """
         self.prepare()
-        duration_us, status = self.plan.duration_us, -1
+        duration_us, status, still = self.plan.duration_us, -1, 0
         started = wall_s()
         with Stop() as stop:
             while status != DONE and not stop.asked:
-                status = self.advance(duration_us, self.slice_events)
+                before, status = self.clock_us(), self.advance(duration_us, self.slice_events)
                 now = self.clock_us()
+                still = still + (status == BUDGET) if now == before else 0
+                if still >= STILL_SLICES:
+                    raise self.standing_still(now)
                 hand_over(self.world, tap, duration_us if status == DONE else now)
                 if progress is not None:
                     progress(now, duration_us)
@@ -208,6 +213,11 @@ class Simulation(ABC):
     @abstractmethod
     def schedule(self, fault: Any) -> None:
         """Something is to be done to the network at `fault.at_us`, which has not come yet."""
+
+    def standing_still(self, now: int) -> InvariantBroken:
+        """What is to be raised about events that follow each other without end at one time, us."""
+        many = f"{STILL_SLICES * self.slice_events:,} events, and it is not over"
+        return InvariantBroken(f"time stands still at {now / 1e6:.6f} s: {many}")
 
     def broken(self) -> InvariantBroken:
         """What is to be raised about the broken invariant."""

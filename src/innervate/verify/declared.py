@@ -28,7 +28,7 @@ from innervate.verify.readings import Readings
 from innervate.verify.scripts import STUCK, scenario_of
 from innervate.verify.states import Budget, State, is_still, most_frames
 from innervate.verify.tally import Tally
-from innervate.verify.telling import story_of
+from innervate.verify.telling import past_words, story_of
 
 IN_FLIGHT = 3  # most frames on a cable per direction; states with more are left out, and counted
 STATES = 20_000
@@ -128,15 +128,15 @@ def _explore(network: Network, options: Any, graph: Graph, budget: Budget, tell:
 
     def how_far() -> str:
         more = f" but {number_of(tally.left_out, 'successor')} with too many frames in flight"
-        return (
-            extent(tally) + (more if tally.left_out else "") + net.draws.words() + readings.words()
-        )
+        said = extent(tally) + (more if tally.left_out else "")
+        return said + net.draws.words() + readings.words() + past_words(net.past)
 
     names = ("states", "expanded", "generated", "left_out", "depth", "ended")
     return Case(
         lines=lines_of(f"{head} {tally.wall_s:7.1f} s", told, how_far),
         record={"graph": cables, **{name: getattr(tally, name) for name in names},
                 "draws": net.draws.as_dict(), "readings": sorted(readings.apart),
+                "past": [[*setter, us] for setter, us in net.past.items()],
                 "broken": story.title or None, "story": story.sentences or None},
         is_broken=told is not None,
         is_complete=tally.ended == "complete" and not (

@@ -70,6 +70,7 @@ class Net:
         self.clocks = {name for name, _, _, high, unit, _ in fields.STATE
                        if unit == "us" and high == MASK30 and name != TIMED}  # fmt: skip
         self.readings: Readings | None = None  # where calls are looked at by it
+        self.past: dict[tuple[str, int], int] = {}  # us that a handler set a timer in the past
 
     def begins(self, budget: Budget) -> Iterator[Step]:
         """All ways in which the network can begin, by what its nodes draw."""
@@ -274,6 +275,9 @@ class Net:
             broken = self.frames.wrong(frame, act.kind, handler.__name__, broken)
             if act.kind == SET_TIMER:
                 timers[act.a] = ahead(act.b)
+                if ahead(act.b - now) < 0:
+                    setter = handler.__name__, act.a
+                    self.past[setter] = max(self.past.get(setter, 0), -ahead(act.b - now))
                 broken = broken or ("" if 0 <= act.a < self.do.TIMERS else "there is no such timer")
             elif act.kind == SEND:
                 if not 0 <= act.a < PORTS:

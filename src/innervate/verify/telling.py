@@ -53,6 +53,12 @@ def _changes(net: Any, was: tuple[Any, ...], now: tuple[Any, ...]) -> Iterator[s
                 yield f"{name}{f'[{place}]' if length else ''} {before} to {after}"
 
 
+def past_words(past: Mapping[tuple[str, int], int]) -> str:
+    """Timers that were set for what is past, behind what was explored; "" none."""
+    return "".join(f"; {handler} sets timer {timer} up to {us:,} us in the past, it is due at once"
+                   for (handler, timer), us in past.items())  # fmt: skip
+
+
 def where(error: BaseException) -> str:
     """An error in a protocol or an invariant: its file and line, and what is wrong."""
     places = traceback.extract_tb(error.__traceback__)
