@@ -52,7 +52,9 @@ LATE = """\
 
 
 def test_a_loop_that_does_not_end_is_told_by_whatever_comes_to_it(own, capsys):
-    own.change("protocol.py", "    node.value = item.value\n", f"    node.value = item.value\n{LATE}")
+    own.change(
+        "protocol.py", "    node.value = item.value\n", f"    node.value = item.value\n{LATE}"
+    )
     (own.folder / "test_gossip.py").write_text(
         '"""Tests."""\n\nfrom types import SimpleNamespace as made\n\n'
         "from gossip import protocol\n\n\ndef test_an_input():\n"

@@ -22,7 +22,7 @@ def told_of(body):
     "while n:\n        return 1", "while cell.n > 0:\n        cell = 0",
     "while n < 4:\n        if cell.path[n] > 2:\n            cell.m += 1\n        n += 1",
     "while 1:\n        if g(cell) == 3:\n            break",
-    "while cell.n:\n        for i in range(n):\n            if i == cell.m:\n                return",
+    "while n:\n        for i in range(4):\n            if i == cell.m:\n                return",
     "while n > 0:\n        if n == 3:\n            n = 1\n            continue\n        n -= 1",
 ])  # fmt: skip
 def test_a_loop_whose_condition_changes_may_end(body):

@@ -70,7 +70,7 @@ def test_timers_for_now_are_few_at_one_time_and_as_many_as_they_want_at_others(o
                "    set_timer(", "    if node.left:\n        node.left -= 1\n"
                "        set_timer(out, BEAT, (now - 3) & MASK30)\n        return\n"
                "    node.left = 1\n    set_timer(")  # fmt: skip
-    own.change("fields.py", 'STATE = (', 'STATE = (\n    ("left", 0, 0, 900, "calls", "at once"),')
+    own.change("fields.py", "STATE = (", 'STATE = (\n    ("left", 0, 0, 900, "calls", "at once"),')
     (case,) = innervate.explore(own.folder, graph="pair", states=300)
     assert case.record["past"] == [["on_timer", 0, 3]]
     assert "; on_timer sets timer 0 up to 3 us in the past, it is due at once" in case.lines[0]
