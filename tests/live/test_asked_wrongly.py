@@ -10,6 +10,7 @@ from collections import Counter
 
 import pytest
 
+from innervate.dialect.bounded import EndlessLoop
 from innervate.live import status
 from innervate.live.errors import LiveError
 from tests.live.net import until
@@ -96,13 +97,17 @@ def test_a_key_that_is_missing_in_the_node_itself_is_not_said_to_be_the_requests
             said.append(answer)
 
     async def handle(request, writer):
+        if request["do"] == "loop":
+            raise EndlessLoop("a loop of more")
         {}[request["do"]]
 
-    with pytest.raises(KeyError):
-        asyncio.run(status.answer(b'{"do": "x"}', handle, Kept()))
+    for do, error in (("x", KeyError), ("loop", EndlessLoop)):
+        with pytest.raises(error):
+            asyncio.run(status.answer(json.dumps({"do": do}).encode(), handle, Kept()))
     asyncio.run(status.answer(b"{}", handle, Kept()))
     assert said == [
         {"error": "this node cannot answer, by a mistake of its own: KeyError('x')"},
+        {"error": "this node cannot answer, by a mistake of its own: EndlessLoop('a loop of more')"},
         {"error": 'this request needs "do"'},
     ]
 

@@ -266,7 +266,7 @@ async def answer(line: bytes, handle: Handler, writer: Writer) -> None:
         await handle(Request(request), writer)
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
         await writer.line({"error": str(error)})
-    except LookupError as error:
+    except (ArithmeticError, LookupError) as error:
         why = f"this node cannot answer, by a mistake of its own: {error!r}"
         await writer.line({"error": why})
         raise
