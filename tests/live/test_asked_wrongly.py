@@ -98,7 +98,7 @@ def test_a_key_that_is_missing_in_the_node_itself_is_not_said_to_be_the_requests
 
     async def handle(request, writer):
         if request["do"] == "loop":
-            raise EndlessLoop("a loop of more")
+            raise EndlessLoop("too long")
         {}[request["do"]]
 
     for do, error in (("x", KeyError), ("loop", EndlessLoop)):
@@ -107,7 +107,7 @@ def test_a_key_that_is_missing_in_the_node_itself_is_not_said_to_be_the_requests
     asyncio.run(status.answer(b"{}", handle, Kept()))
     assert said == [
         {"error": "this node cannot answer, by a mistake of its own: KeyError('x')"},
-        {"error": "this node cannot answer, by a mistake of its own: EndlessLoop('a loop of more')"},
+        {"error": "this node cannot answer, by a mistake of its own: EndlessLoop('too long')"},
         {"error": 'this request needs "do"'},
     ]
 
