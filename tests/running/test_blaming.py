@@ -64,13 +64,13 @@ def test_a_timer_that_is_always_due_at_once_is_told_with_its_line(own):
 
 def test_timers_for_now_are_few_at_one_time_and_as_many_as_they_want_at_others(own):
     own.change("protocol.py", "    set_timer(out, BEAT, (now + params.beat_us) & MASK30)\n\n\n"
-               "def on_frame", "    node.left = 900\n    set_timer(out, BEAT, now)\n\n\n"
+               "def on_frame", "    node.left = 980\n    set_timer(out, BEAT, now)\n\n\n"
                "def on_frame")  # fmt: skip
     own.change("protocol.py", "    for p in range(PORTS):\n        tell(node, p, out)\n"
                "    set_timer(", "    if node.left:\n        node.left -= 1\n"
                "        set_timer(out, BEAT, (now - 3) & MASK30)\n        return\n"
                "    node.left = 1\n    set_timer(")  # fmt: skip
-    own.change("fields.py", "STATE = (", 'STATE = (\n    ("left", 0, 0, 900, "calls", "at once"),')
+    own.change("fields.py", "STATE = (", 'STATE = (\n    ("left", 0, 0, 980, "calls", "at once"),')
     (case,) = innervate.explore(own.folder, graph="pair", states=300)
     assert case.record["past"] == [["on_timer", 0, 3]]
     assert "; on_timer sets timer 0 up to 3 us in the past, it is due at once" in case.lines[0]
