@@ -146,14 +146,14 @@ export class SkinView {
     const { network } = this;
     this.deepest = network.now.depth.reduce((most, hops) => Math.max(most, hops), 1);
     const kinds = network.nodes.map((_, i) => (this.isCell[i] ? this.kindOf(i) : ""));
-    const same = this.drawnAt === stage.transform && this.area === stage.width * stage.height;
+    const same = this.drawnAt === stage.transform;
     const numbered = stage.scale >= WORDS_PX;
     let cells = kinds.flatMap((kind, i) => (kind && kind !== this.kinds[i] ? [i] : []));
     if (!same || numbered || cells.length > FEW * kinds.length) {
       stage.clear(context);
       cells = kinds.flatMap((kind, i) => (kind ? [i] : []));
     }
-    Object.assign(this, { kinds, drawnAt: stage.transform, area: stage.width * stage.height });
+    Object.assign(this, { kinds, drawnAt: stage.transform });
     this.#cells(context, stage, cells);
     if (numbered) for (const i of cells) this.#number(context, stage, i);
   }
