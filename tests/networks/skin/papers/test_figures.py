@@ -31,7 +31,7 @@ def test_bars_end_below_the_top_of_their_panels():
 def test_every_name_of_a_loops_legend_has_its_sample(cured, words):
     values = results.of("loop", printed=3, lax=2, cured=cured)
     with style.house():
-        figure, ax = style.panels(2, 2)
+        _figure, ax = style.panels(2, 2)
         loop._bars(ax[0], Measured(values, True))
     handles, names = ax[0].get_legend_handles_labels()
     named = dict(zip(names, handles, strict=True))
