@@ -75,6 +75,8 @@ def test_a_mesh(look, tmp_path):
         page = look(address, colours="dark")
         expect(page.locator("#unconnected .more")).to_have_text("of 3 nodes")
         expect(page.locator("#unconnected output")).to_have_text("0")
+        for name in ("since the last cut", "recovery", "without a way"):
+            expect(page.get_by_role("status", name=name, exact=True)).to_be_visible()
         click(page, "far", has="switched off")
         click(page, "far")
         expect(facts(page)).not_to_contain_text("switched off")
