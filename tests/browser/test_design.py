@@ -142,6 +142,71 @@ def test_a_phone_has_the_map_at_once_and_the_play_bar_always(look, skin):
     assert last["y"] + last["height"] <= box(page, "#dock")["y"]  # nothing ends behind the bar
 
 
+@pytest.mark.parametrize("size", [(844, 390), (667, 375)])
+def test_a_phone_on_its_side_has_map_and_play_bar_in_sight_all_the_time(look, skin, size):
+    width, height = size
+    page = look(skin, {"width": width, "height": height}, has_touch=True, is_mobile=True)
+    expect(page.locator("#state")).to_be_visible()
+    page.locator("#tool").select_option("look")
+    for down in (0, 10_000):
+        page.evaluate("(y) => scrollTo(0, y)", down)
+        stage, bar = box(page, "#stage"), box(page, "#transport")
+        assert stage["y"] >= 0
+        assert 0.75 * height < stage["y"] + stage["height"] <= bar["y"]
+        assert stage["height"] > 0.75 * height
+        assert bar["y"] + bar["height"] <= height
+        assert bar["height"] < 70
+        for control in ("#go", "#step", "#seek", "#speed", "#clock"):
+            assert box(page, control)["x"] + box(page, control)["width"] <= width
+    last = box(page, "#events")
+    assert last["x"] >= stage["x"] + stage["width"]
+    assert last["y"] + last["height"] <= bar["y"]
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    page.touchscreen.tap(*place(page, CELL))
+    card = box(page, "#selection")
+    assert stage["x"] + stage["width"] <= card["x"]
+    assert card["y"] + card["height"] <= bar["y"]
+
+
+CELLS = """() => {
+  const one = document.querySelector("#stage canvas");
+  const { data } = one.getContext("2d").getImageData(0, 0, one.width, one.height);
+  return data.filter((value, i) => i % 4 === 3 && value).length;
+}"""
+
+
+def test_a_map_that_is_measured_anew_at_the_same_size_has_all_its_cells(look):
+    with beside("setup-8", 0, held=True) as address:
+        page = look(address, PHONE)
+        page.wait_for_function(f"() => ({CELLS})() > 10_000")
+        page.evaluate("document.querySelector('#stage').style.marginRight = '0.3px'")
+        page.evaluate(DRAWN)
+        assert page.evaluate(CELLS) > 10_000
+
+
+# How many shapes the largest path had that was filled: time grows faster than they do.
+FILLED = """
+window.most = 0;
+const close = Path2D.prototype.closePath;
+Path2D.prototype.closePath = function () {
+  this.shapes = (this.shapes ?? 0) + 1;
+  return close.call(this);
+};
+const fill = CanvasRenderingContext2D.prototype.fill;
+CanvasRenderingContext2D.prototype.fill = function (path) {
+  window.most = Math.max(window.most, path?.shapes ?? 0);
+  return fill.apply(this, arguments);
+};
+"""
+
+
+def test_cells_are_filled_in_paths_of_a_few(look):
+    with beside("setup-8", 0, held=True) as address:
+        page = look(address, PHONE, script=FILLED)
+        page.wait_for_function(f"() => ({CELLS})() > 10_000")
+        assert 1 < page.evaluate("window.most") <= 20
+
+
 def test_a_phone_shows_what_is_selected_above_the_play_bar(look, skin):
     page = look(skin, PHONE, has_touch=True, is_mobile=True)
     page.locator("#tool").select_option("look")

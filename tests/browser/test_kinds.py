@@ -75,6 +75,8 @@ def test_a_mesh(look, tmp_path):
         page = look(address, colours="dark")
         expect(page.locator("#unconnected .more")).to_have_text("of 3 nodes")
         expect(page.locator("#unconnected output")).to_have_text("0")
+        for name in ("since the last cut", "recovery", "without a way"):
+            expect(page.get_by_role("status", name=name, exact=True)).to_be_visible()
         click(page, "far", has="switched off")
         click(page, "far")
         expect(facts(page)).not_to_contain_text("switched off")
@@ -98,6 +100,41 @@ def test_who_leads_a_mesh_now_is_its_gateway_on_the_map(look, tmp_path):
         hold(page, 19.0)
         assert {"home", "middle gateway", "far"} <= written(page)
         click(page, "middle", "gateway")
+
+
+GRID = """
+kind = "flooding"
+nodes = 30
+layout = "grid"
+spacing_m = 20
+duration_s = 1
+[air]
+reach_m = 30
+"""
+
+
+def test_names_on_a_crowded_map_are_nearer_to_their_node_than_to_another(look, tmp_path):
+    path = tmp_path / "grid.toml"
+    path.write_text(GRID)
+    with beside(path, 0, held=True) as address:
+        page = look(address, PHONE, script=WRITTEN)
+        page.evaluate(DRAWN)
+        stage = page.locator("#stage").bounding_box()
+        places = {}
+        for i in range(30):
+            x, y = place(page, f"node {i}")
+            places[f"node {i}"] = (x - stage["x"], y - stage["y"])
+        words = [one for canvas in page.evaluate(WORDS_OF, "#stage canvas") for one in canvas]
+        assert len(words) >= 12
+        for text, left, top, right, low in words:
+            away = {
+                name: max(left - x, x - right, 0) ** 2 + max(top - y, y - low, 0) ** 2
+                for name, (x, y) in places.items()
+            }
+            assert min(away, key=away.get) == text.partition(":")[0]
+        expect(page.locator("#log ol")).to_be_empty()
+        said = "getComputedStyle(document.querySelector('#log ol'), '::before').content"
+        assert page.evaluate(said) == '"nothing yet"'
 
 
 ROUNDS = """window.rounds = [];

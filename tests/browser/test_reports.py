@@ -2,7 +2,8 @@
 
 import innervate
 from innervate import Mesh
-from tests.browser.servers import PHONE
+from innervate.papers import output
+from tests.browser.servers import PHONE, WIDE
 
 PLACES = [(0, 0), (20, 0), (20, 20), (0, 20)]
 
@@ -17,3 +18,14 @@ def test_a_phone_has_the_whole_map_of_a_mesh(browser, tmp_path):
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= PHONE["width"]
     assert box["width"] > 0.8 * PHONE["width"]
+
+
+def test_both_columns_of_a_papers_contents_begin_at_the_same_height(browser):
+    entries = "".join(f"<li>figure {i}</li>" for i in range(8))
+    page = browser.new_page(viewport=WIDE)
+    page.set_content(f'{output._LAYOUT}<ul class="contents">{entries}</ul>')
+    boxes = [entry.bounding_box() for entry in page.locator("li").all()]
+    page.close()
+    columns = {box["x"] for box in boxes}
+    tops = {min(box["y"] for box in boxes if box["x"] == x) for x in columns}
+    assert (len(columns), len(tops)) == (2, 1)

@@ -66,6 +66,14 @@ def test_a_capture_that_still_grows_is_read_up_to_its_last_whole_block(tmp_path)
     assert capture.cut_short
 
 
+def test_another_version_is_not_read_as_if_it_were_known(tmp_path):
+    blocks, _interfaces, _packets = sample()
+    data = bytearray(b"".join(blocks))
+    data[12:14] = b"\2\0"
+    said = read_all(written(tmp_path, data))
+    assert "is pcapng of version 2; only version 1 is known" in said
+
+
 def read_all(path):
     """Packets read, or the error's one line."""
     said = ""

@@ -173,3 +173,12 @@ def test_a_capture_of_others_is_no_skins_also_if_nothing_was_sent(tmp_path):
             recoveries(path)
     path.write_bytes(pcapng.section() + pcapng.interface(147, "pc.0", "pc port 0"))
     assert recoveries(path) == []
+
+
+def test_what_ends_in_the_middle_of_a_block_says_so(tmp_path, capsys):
+    path = tmp_path / "cut.pcapng"
+    blocks = pcapng.section() + pcapng.interface(147, "pc.0", "pc port 0")
+    for more in (b"", blocks[:7]):
+        path.write_bytes(blocks + more)
+        assert app.main(["live", "recovery", str(path)]) == 0
+        assert ("ends in the middle of a block" in capsys.readouterr().err) == bool(more)

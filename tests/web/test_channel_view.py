@@ -51,8 +51,8 @@ def view():
     made = object.__new__(ChannelView)
     made.plan = SimpleNamespace(nodes=4, absent=[0, 0, 1, 0], kind="x")
     made.shown, made.own = [{"name": "value"}], {}
-    states = np.zeros(4, [("value", np.int64)])
     # Of more than there are nodes.
+    states = np.zeros(6, [("value", np.int64)])
     radios = np.zeros(6, [("alive", np.int64), ("leaving", np.int64)])
     world = SimpleNamespace(run={"handled": [0]}, radios=radios, stations=states,
                             params=np.zeros(1, [("a", np.int64)]))  # fmt: skip
@@ -67,7 +67,7 @@ def test_who_is_on_is_who_was_there_at_first_and_then_who_was_switched_on(view):
     view.engine.world.run["handled"] = [1]
     assert view.arrays(False)["unconnected"] == 4
     view.engine.world.radios["alive"][[0, 2, 5]] = 1
-    view.engine.world.stations["value"] = [5, 6, 7, 8]
+    view.engine.world.stations["value"] = [5, 6, 7, 8, 0, 9]
     told = view.arrays(True)
     assert (told["node_up"].tolist(), told["unconnected"], told["apart"]) == ([1, 0, 1, 0], 2, 0)
     assert (told["link_up"].tolist(), told["flights"]) == ([], [])

@@ -1,6 +1,7 @@
 """`innervate live recovery`: how a network healed, from a capture."""
 
 import json
+import sys
 from dataclasses import asdict
 from pathlib import Path
 
@@ -8,6 +9,8 @@ from innervate.cli.options import Json
 from innervate.export import links
 from innervate.export.reading import Capture
 from innervate.network import networks
+
+CUT_SHORT = "ends in the middle of a block: what came later is not looked at"
 
 
 def show(capture: Path, /, *, as_json: Json = False) -> int:
@@ -20,7 +23,10 @@ def show(capture: Path, /, *, as_json: Json = False) -> int:
     able = [network for network in networks().values() if network.has("recovery")]
     kinds = _kinds(capture)
     recovery = next((one for one in able if one.name in kinds), able[0]).recovery
-    found = recovery.recoveries(capture)
+    whole = Capture(capture)
+    found = recovery.watched(whole)
+    if whole.cut_short:
+        print(f"innervate: {capture} {CUT_SHORT}", file=sys.stderr)
     if as_json:
         print(json.dumps([asdict(one) for one in found]))
         return 0

@@ -94,6 +94,9 @@ class Capture:
 
     def _block(self, kind: int, body: bytes) -> Packet | None:
         if kind == pcapng.SECTION:
+            (version,) = struct.unpack_from(f"{self._order}H", body, 4)
+            if version != 1:
+                raise self._wrong(f"is pcapng of version {version}; only version 1 is known")
             self.comment = (
                 self._options(body[16:]).get(pcapng.COMMENT, b"").decode(errors="replace")
             )

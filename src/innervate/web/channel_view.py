@@ -40,7 +40,8 @@ class ChannelView(Declared):
 
     def arrays(self, flights: bool) -> dict[str, Any]:
         """The state's fields for nodes."""
-        on, away, states = self._on(), self._away(), self.engine.world.stations
+        on, away = self._on(), self._away()
+        states = self.engine.world.stations[: self.plan.nodes]
         return {
             "node_up": on.astype(np.int64),
             "absent": away.astype(np.int64),

@@ -12,6 +12,13 @@ export class Labels {
     this.taken = new Map();
     this.names = new Map(); // those of it that are names
     this.lines = new Map(); // where names would rather not be
+    this.nodes = new Map(); // their places
+  }
+
+  /** Keep names away from a node, and nearer to their own than to it. */
+  node(x, y, radius) {
+    this.block(x - radius, y - radius, x + radius, y + radius);
+    keep(this.nodes, [x, y, x, y]);
   }
 
   /** Keep names away from a box. */
@@ -42,7 +49,8 @@ export class Labels {
       return [left, top, left + wide, top + high];
     });
     const taken = above ? this.names : this.taken;
-    const free = boxes.filter((box) => this.#isInside(box) && isFree(taken, box));
+    const free = boxes.filter((box) => this.#isInside(box) && isFree(taken, box)
+      && (above || this.#isNearest(box, x, y)));
     const box = free.find((one) => isFree(this.lines, one)) ?? free[0];
     if (!box) return null;
     this.block(...box);
@@ -57,9 +65,26 @@ export class Labels {
     return true;
   }
 
+  /** Whether no node is nearer to a name than the one at a place. */
+  #isNearest(box, x, y) {
+    const away = distance(box, x, y);
+    const [x0, y0, x1, y1] = box;
+    for (const key of cells(x0 - away, y0 - away, x1 + away, y1 + away)) {
+      for (const [px, py] of this.nodes.get(key) ?? []) {
+        if (distance(box, px, py) < away) return false;
+      }
+    }
+    return true;
+  }
+
   #isInside([x0, y0, x1, y1]) {
     return x0 >= 2 && y0 >= 2 && x1 <= this.width - 2 && y1 <= this.height - 2;
   }
+}
+
+/** How far a place is from a box. */
+function distance([x0, y0, x1, y1], x, y) {
+  return Math.hypot(Math.max(x0 - x, 0, x - x1), Math.max(y0 - y, 0, y - y1));
 }
 
 function keep(taken, box) {

@@ -200,7 +200,7 @@ export class MeshView {
     for (const i of this.#firstTold().reverse()) { // who has a part to play lies above the others
       const [x, y] = [stage.x[i], stage.y[i]];
       symbol(context, x, y, dot, network.role(i), now.node_up[i]);
-      names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
+      names.node(x, y, dot + 2);
       if (now.alarm[i]) this.#ring(context, x, y, dot + 6, [], 3);
       else if (now.outside[i]) this.#ring(context, x, y, dot + 6, [4, 3], 2);
     }

@@ -85,7 +85,7 @@ export class PlainView extends MeshView {
     nodes.forEach((_, i) => {
       const [x, y, value] = [stage.x[i], stage.y[i], values[i] ?? null];
       this.#disc(context, x, y, dot, this.filled(value, least, most), now.node_up[i]);
-      names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
+      names.node(x, y, dot + 2);
     });
     affected(context, network, stage, dot + 5);
     nodes.forEach(({ label }, i) => {

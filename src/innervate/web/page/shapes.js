@@ -3,6 +3,7 @@ import { colours } from "./colours.js";
 
 const HEAD_PX = 6; // of an arrow
 const HATCH_PX = 5; // from line to line
+const PIECE = 16; // shapes in a path
 const RATIO_MAX = 2; // pixels per px of the page that drawing is worth
 const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -84,21 +85,37 @@ export function arrow(path, x0, y0, x1, y1, gap) {
   path.lineTo(tx - head * (ux - 0.6 * uy), ty - head * (uy + 0.6 * ux));
 }
 
-/** Fill a path with slanting lines: no colour is left that means nothing else. */
-export function hatched(context, path) {
-  const [wide, high] = [context.canvas.width, context.canvas.height];
-  const lines = new Path2D();
-  for (let x = -high; x < wide; x += HATCH_PX) {
-    lines.moveTo(x, high);
-    lines.lineTo(x + high, 0);
+/** Many shapes in paths of a few: to fill one of thousands takes fifteen times as long. */
+export class Pieces {
+  constructor() {
+    this.paths = [];
+    this.count = 0;
   }
-  context.fillStyle = colours.ground;
-  context.fill(path);
-  context.save();
-  context.clip(path);
-  stroke(context, colours.soft, 1.2, lines);
-  context.restore();
-  stroke(context, colours.soft, 1, path);
+
+  /** The path that the next shape belongs to. */
+  next() {
+    if (this.count++ % PIECE === 0) this.paths.push(new Path2D());
+    return this.paths.at(-1);
+  }
+}
+
+/** Slanting lines to fill with: no colour is left that means nothing else. */
+export function slanting(context) {
+  const ratio = context.getTransform().a;
+  const size = Math.round(HATCH_PX * ratio);
+  const tile = new OffscreenCanvas(size, size);
+  const pen = tile.getContext("2d");
+  pen.fillStyle = colours.ground;
+  pen.fillRect(0, 0, size, size);
+  const lines = new Path2D();
+  for (const x of [-size, 0, size]) {
+    lines.moveTo(x - 2, size + 2);
+    lines.lineTo(x + size + 2, -2);
+  }
+  stroke(pen, colours.soft, 1.2 * ratio, lines);
+  const pattern = context.createPattern(tile, "repeat");
+  pattern.setTransform(new DOMMatrix([1 / ratio, 0, 0, 1 / ratio, 0, 0]));
+  return pattern;
 }
 
 /** Draw a path of lines. */

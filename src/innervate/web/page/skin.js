@@ -3,8 +3,8 @@ import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hatched,
-  hexagon, middle, stroke, word,
+  Pieces, affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights,
+  hexagon, middle, slanting, stroke, word,
 } from "./shapes.js";
 import { PUT_OUT, off, offWord, plural } from "./words.js";
 
@@ -109,7 +109,7 @@ export class SkinView {
 
   legend() {
     const cell = (kind) => (context) => {
-      this.#shapes(context, new Map([[kind, whole(13, 8)]]));
+      this.#shapes(context, kind, [whole(13, 8)]);
       const [sign, dead] = [new Path2D(), new Path2D()];
       if (kind === "none") cross(sign, 13, 8, 2.5);
       if (kind === "off") cross(dead, 13, 8, 4);
@@ -146,48 +146,43 @@ export class SkinView {
     const { network } = this;
     this.deepest = network.now.depth.reduce((most, hops) => Math.max(most, hops), 1);
     const kinds = network.nodes.map((_, i) => (this.isCell[i] ? this.kindOf(i) : ""));
-    const same = this.drawnAt === stage.transform && this.area === stage.width * stage.height;
+    const same = this.drawnAt === stage.transform;
     const numbered = stage.scale >= WORDS_PX;
     let cells = kinds.flatMap((kind, i) => (kind && kind !== this.kinds[i] ? [i] : []));
     if (!same || numbered || cells.length > FEW * kinds.length) {
       stage.clear(context);
       cells = kinds.flatMap((kind, i) => (kind ? [i] : []));
     }
-    Object.assign(this, { kinds, drawnAt: stage.transform, area: stage.width * stage.height });
+    Object.assign(this, { kinds, drawnAt: stage.transform });
     this.#cells(context, stage, cells);
     if (numbered) for (const i of cells) this.#number(context, stage, i);
   }
 
   #cells(context, stage, cells) {
-    const paths = new Map();
-    const under = new Path2D();
+    const pieces = new Map();
+    const under = new Pieces();
     const shape = stage.scale < BRICKS_PX ? brick : hexagon;
     for (const i of cells) {
       const [x, y] = [stage.x[i], stage.y[i]];
       if (x < -99 || y < -99 || x > stage.width + 99 || y > stage.height + 99) continue;
-      let path = paths.get(this.kinds[i]);
-      if (!path) paths.set(this.kinds[i], (path = new Path2D()));
-      shape(path, x, y, stage.scale);
-      shape(under, x, y, stage.scale * 1.02);
+      if (!pieces.has(this.kinds[i])) pieces.set(this.kinds[i], new Pieces());
+      shape(pieces.get(this.kinds[i]).next(), x, y, stage.scale);
+      shape(under.next(), x, y, stage.scale * 1.02);
     }
     context.fillStyle = colours.ground;
-    context.fill(under);
-    this.#shapes(context, paths);
+    for (const path of under.paths) context.fill(path);
+    for (const [kind, { paths }] of pieces) this.#shapes(context, kind, paths);
   }
 
-  #shapes(context, paths) {
-    for (const [kind, path] of paths) {
-      if (kind === "beyond") hatched(context, path);
-      else if (kind === "none" || kind === "off") {
-        context.fillStyle = kind === "off" ? colours.faint : colours.ground;
-        context.fill(path);
-        stroke(context, colours.soft, 1, path, kind === "none" ? [2, 2] : []);
-      } else {
-        context.fillStyle = colours[kind[0]][Number(kind.slice(1))];
-        context.fill(path);
-        if (kind[0] !== "p") stroke(context, colours.faint, 0.8, path); // pale shades end somewhere
-      }
-    }
+  #shapes(context, kind, paths) {
+    const grey = {
+      beyond: () => slanting(context), none: () => colours.ground, off: () => colours.faint,
+    }[kind];
+    const [colour, width] = grey ? [colours.soft, 1] : [colours.faint, 0.8];
+    context.fillStyle = grey ? grey() : colours[kind[0]][Number(kind.slice(1))];
+    for (const path of paths) context.fill(path);
+    if (kind[0] === "p") return; // pale shades end somewhere
+    for (const path of paths) stroke(context, colour, width, path, kind === "none" ? [2, 2] : []);
   }
 
   /** What the colour stands for, as a number in the cell. */

@@ -56,6 +56,7 @@ export class Stage {
     }
     this.zoom.translateExtent([[-width / 2, -height / 2], [1.5 * width, 1.5 * height]]);
     this.#measure();
+    this.view?.repaint?.(); // even of the same size a canvas is empty now
     this.moved();
   }
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from innervate.networks.mesh import papers as mesh
-from innervate.networks.mesh.papers import FIGURES, alarms, gateway, scale, stretch
+from innervate.networks.mesh.papers import FIGURES, alarms, bars, gateway, scale, stretch
 from innervate.networks.mesh.papers.bars import wire_bytes
 from innervate.networks.mesh.papers.testbed import GATEWAY, MeshTestbed, dying, kill, send_rounds
 from innervate.papers import main
@@ -187,6 +187,14 @@ def test_what_never_came_is_slowest():
     got = Measured({one.key: crossings, other.key: taken}, True)
     assert alarms.told(got, alarms.BOTH, 8)["ms"].tolist() == [3.0, np.inf, 1.0]
     assert gateway.takeovers(got, gateway.ONE) == [26.0, np.inf]
+
+
+def test_where_nothing_of_what_is_allowed_was_used_the_figure_says_so():
+    got = Measured(results("bars"), True)
+    unused = [row for row, bar in enumerate(bars.bars(got)) if bar.used == 0]
+    (ax,) = bars.draw(got).axes
+    assert [text.get_position()[1] for text in ax.texts if text.get_text() == "none"] == unused
+    assert 0 < len(unused) < len(ax.patches)
 
 
 @pytest.mark.slow

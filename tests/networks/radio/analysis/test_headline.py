@@ -105,7 +105,7 @@ def test_what_is_done_at_the_very_beginning_is_done(action, text):
         ({"delivered": 9, "pending": 1, "overdue": 1, "waiting": (2,)},
          {"delivered": 9, "pending": 1}, DEGRADED,
          "1 packet was not delivered in time; 9 of 10 packets were delivered.", (2,)),
-        ({"partial": 1}, {}, DEGRADED, "1 packet did not reach every robot; all 10", ()),
+        ({"partial": 1}, {}, DEGRADED, "1 delivered packet did not reach every robot;", ()),
         ({"hidden": ((0, 3),)}, {}, DEGRADED,
          "1 pair of robots does not hear each other; all 10", (0, 3)),
         ({"bounds": {}, "stations_wrong": (1,)}, {}, DEGRADED,

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from innervate.networks.skin.papers import eq3, experiment
+from innervate.networks.skin.papers import eq3, experiment, loop
 from innervate.papers.experiment import HOLDS, Measured, reading
 from innervate.plot import style
 from tests.fixtures.papers import CHEAP
@@ -16,6 +16,28 @@ def test_bars_and_lines_lie_within_their_panels(name):
     with style.house():
         figure = experiment(name).draw(Measured(results.of(name), True))
     assert [found for ax in figure.axes for found in beyond(ax)] == []
+
+
+def test_bars_end_below_the_top_of_their_panels():
+    with style.house():
+        figure = experiment("fig8a").draw(Measured(results.of("fig8a", off=90), True))
+    for ax in figure.axes[1:]:
+        top = max(float(y) for line in ax.lines for y in line.get_ydata())
+        assert top == pytest.approx(90)
+        assert (ax.transData + ax.transAxes.inverted()).transform((0, top))[1] < 0.95
+
+
+@pytest.mark.parametrize(("cured", "words"), [(0, "none"), (1, "10")])
+def test_every_name_of_a_loops_legend_has_its_sample(cured, words):
+    values = results.of("loop", printed=3, lax=2, cured=cured)
+    with style.house():
+        _figure, ax = style.panels(2, 2)
+        loop._bars(ax[0], Measured(values, True))
+    handles, names = ax[0].get_legend_handles_labels()
+    named = dict(zip(names, handles, strict=True))
+    sample = named[f"strict, feasible: {words}"]
+    assert sample.get_marker() == "o"
+    assert sample.get_ydata().tolist() == [2 * cured] * 5
 
 
 @pytest.mark.parametrize("moved", [(True, False), (True,), (False,), ()])

@@ -128,7 +128,7 @@ def _degraded(
         news.append(f"{pairs} not hear each other")
         nodes |= {station for pair in facts.hidden for station in pair}
     if facts.partial:
-        missed = number_of(facts.partial, "packet")
+        missed = number_of(facts.partial, "delivered packet")
         news.append(f"{missed} did not reach every robot")
     return news, tuple(nodes)
 

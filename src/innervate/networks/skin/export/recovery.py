@@ -257,11 +257,15 @@ def recoveries(path: Path) -> list[Healing]:
     Raises:
         ExportError: it is none, is damaged, or says too little.
     """
-    capture = Capture(path)
+    return watched(Capture(path))
+
+
+def watched(capture: Capture) -> list[Healing]:
+    """The same of a capture that nobody has read, and which says then whether it was whole."""
     watcher = Watcher(capture)
     packets = sorted(capture.packets(), key=lambda packet: packet.time_ns)
     if {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
-        raise ExportError(f"{path} is no capture of a skin; only skins have parents")
+        raise ExportError(f"{capture.path} is no capture of a skin; only skins have parents")
     for packet in packets:
         watcher.take(packet)
     return watcher.end()

@@ -80,7 +80,7 @@ def draw(got: Measured) -> Figure:
             ax.tick_params(labelleft=False)
     top = max(float(np.nanmax(_pooled(got, rule))) for rule in RULES)
     axes[0].set_yscale("symlog", linthresh=3)
-    axes[0].set_ylim(-6, max(10, 1.2 * top))
+    axes[0].set_ylim(-6, max(10, 2 * top))
     axes[0].set_yticks([-3, 0, 3, 10, 30, 90], ["-3", "0", "3", "10", "30", "90"])
     axes[0].set_ylabel("convergence $-$ Eq. 4 (periods)")
     return figure

@@ -151,7 +151,10 @@ def _bars(ax: Axes, got: Measured) -> None:
     ax.set(xlabel="recovery (seed)", ylabel="forwarding loops")
     ax.set(xticks=[1, *range(5, len(counts) + 1, 5)], ylim=(0, 1.4 * most))
     ax.grid(axis="x", visible=False)
-    ax.plot([], [], " ", label="strict, feasible: none")
+    cured = np.sum([got[loops(rule, got.quick)]["episodes"] for rule in CURED], axis=0)
+    words = f"strict, feasible: {cured.sum() or 'none'}"
+    ax.plot(np.arange(1, len(counts) + 1), cured, "o", color=style.GREEN, ms=2.5, label=words,
+            clip_on=False)  # fmt: skip
     ax.legend(loc="upper left")
     ax.set_title("c  loops in each recovery")
 
