@@ -25,6 +25,13 @@ def test_fields_lie_one_behind_the_other_in_as_much_room_as_asked_for(word, size
     assert kind["mode"].shape == ()
 
 
+def test_one_record_is_for_all_that_ask():
+    """Each of its own had its hash taken anew before every run, by what knows loops by it."""
+    assert records.dtype(FIELDS) is records.dtype(FIELDS)
+    assert records.zeros(FIELDS, 3).dtype is records.zeros(FIELDS, 2).dtype
+    assert records.dtype(FIELDS) != records.dtype(FIELDS, 64)
+
+
 def test_records_begin_on_a_cache_line_with_values_in_range():
     kept = [records.zeros(FIELDS, count) for count in range(1, 40)]
     assert {one.ctypes.data % records.CACHE_LINE for one in kept} == {0}

@@ -18,10 +18,12 @@ NOTHING: Declaration = (("nothing", 0, 0, 0, "", "not used"),)
 Test = Callable[[Any], bool]
 
 
+@cache
 def dtype(declaration: Declaration, itemsize: int = 0, word: Any = np.int32) -> np.dtype[Any]:
     """The NumPy record of a declaration: `word` throughout, padded to `itemsize` bytes if given.
 
-    One without fields has a word that nobody reads.
+    One without fields has a word that nobody reads. The same for all that ask: NumPy keeps the hash
+    of a record that it knows, and Numba looks records up by it, before every run.
     """
     names: list[str] = []
     formats: list[Any] = []
