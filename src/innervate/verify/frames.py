@@ -41,8 +41,11 @@ class Frames:
         does = "sends" if action == SEND else "delivers"
         kind = getattr(frame, "kind", None)
         wanted = self.wanted(kind, action)
+        dropped = self.dropped.get(kind, ()) if action == SEND else ()
         for name, length, low, high, *_ in self.declared:
             given = getattr(frame, name)
+            if not length and given is not None and low <= given <= high and name not in dropped:
+                continue
             each = given if length else [given]
             if None in each and name in wanted and not found:
                 found = f"{name} of a frame that {handler} {does} is not set"
@@ -51,7 +54,7 @@ class Frames:
             if out and name not in MEASURED and not found:
                 found = (f"{name} of a frame that {handler} {does} is {out[0]}, "
                          f"declared {low} to {high}")  # fmt: skip
-            if action == SEND and name in self.dropped.get(kind, ()):
+            if name in dropped:
                 each = [0] * len(each)
             setattr(frame, name, each if length else each[0])
         if action == SEND and self.laid and kind not in self.laid and not found:

@@ -332,6 +332,10 @@ class Net:
             return "an outbox overflowed"
         for name, length, low, high, *_ in self.fields.STATE:
             value = getattr(self.node, name)
-            if not all(low <= one <= high for one in (value if length else [value])):
+            if length:
+                fits = all(low <= one <= high for one in value)
+            else:
+                fits = low <= value <= high
+            if not fits:
                 return f"{name} is out of its declared range"
         return first_broken(self.own, self.node, self.params, now)

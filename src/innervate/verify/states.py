@@ -78,6 +78,6 @@ def is_still(state: State) -> bool:
 def most_frames(state: State) -> int:
     """How many frames are where most are: on a cable one way, held back in a node, or its own."""
     down = (len(node.down) for node in state.nodes)
-    late = (count for node in state.nodes
+    late = (count for node in state.nodes if node.late
             for count in Counter(port for _, port, _ in node.late).values())  # fmt: skip
     return max(*map(len, state.ways), *down, *late, *(node.airing for node in state.nodes))
