@@ -53,7 +53,7 @@ def test_a_packet_of_an_earlier_life_is_not_taken_for_a_new_one(seed):
 
 
 def test_who_is_switched_on_again_and_again_for_a_minute_is_heard_by_all():
-    found = runs.run(900_883, "mesh", storms=1, storm_s=60)
+    found = runs.run(900_883, "mesh", nodes=6, storms=1, storm_s=60)
     assert found.broken == []
     assert found.told["lives"] > 30
     assert found.told["delivered"] > 300
