@@ -44,12 +44,21 @@ def is_unasked(gate, s):
     return gate.job[s] == UNDER_WAY and gate.job_next[s] == 0
 
 
-def is_missed(gate, params, index):
-    """1 if a node waits for this part of the graph."""
+def is_missed(gate, params, index, count):
+    """1 if a node is known to miss this part; behind the last one: if nobody knows what it has."""
     for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and gate.job_parts[s] >> index & 1 == 0:
+        parts = gate.job_parts[s]
+        if is_unasked(gate, s) and parts >> index & 1 == 0 and (parts == 0) == (index == count):
             return 1
     return 0
+
+
+def name_silent(node, gate, params, i):
+    """Who has told nothing since the last flood is asked by name, as far as there is room."""
+    for s in range(params.nodes):
+        if is_unasked(gate, s) and gate.job_parts[s] == 0:
+            if node.q_length[i] < part_bytes(params):
+                add8(node, i, s)
 
 
 def graph_due(params, now, count, tries):
@@ -69,8 +78,8 @@ def flood_graph(node, gate, params, now, count, out):
     pace = params.jitter_us
     if count <= params.queue:
         pace = pace >> 1
-    for index in range(gate.part, count):
-        if is_missed(gate, params, index):
+    for index in range(gate.part, count + 1):
+        if is_missed(gate, params, index, count):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
                 gate.part = index
@@ -78,6 +87,8 @@ def flood_graph(node, gate, params, now, count, out):
                 return
             add_hop(node, i)
             fill_graph(node, gate, params, i, index, count)
+            if index == count:
+                name_silent(node, gate, params, i)
             node.q_copies[i] = params.copies  # one may find the channel full of the part before
             node.q_due[i] = due & MASK30
             due = due + pace
@@ -85,6 +96,7 @@ def flood_graph(node, gate, params, now, count, out):
     for s in range(params.nodes):
         if is_unasked(gate, s):
             gate.job_next[s] = 1
+            gate.job_parts[s] = 0
             gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
 
 

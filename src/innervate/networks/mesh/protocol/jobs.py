@@ -38,6 +38,7 @@ from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
 IN_A_ROW = 3  # tries of a table, each with more patience, before it is the others' turn
+TOLD = 32768  # among the parts that somebody has: it has told which those are
 PLACES_RESERVED = 3  # of the queue, for what others send through us
 
 
@@ -78,7 +79,7 @@ def hold_off(params):
 
 def note_lost_table(gate, s):
     """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
-    gate.mark_a[s] = 0
+    gate.mark_a[s] = gate.job_a[s] = 0
     if gate.job[s] == CURRENT:
         gate.job[s] = GIVEN_UP
 
@@ -95,11 +96,11 @@ def give_job(gate, params, s):
     if a == gate.mark_a[s] and b == gate.mark_b[s]:
         gate.job[s] = CURRENT
         return
+    gate.job_parts[s] = 0 if a == gate.job_a[s] else TOLD
     gate.job_a[s] = a
     gate.job_b[s] = b
     gate.job[s] = TO_SEND
     gate.job_tries[s] = 0
-    gate.job_parts[s] = 0
 
 
 def next_job(node, gate, params):
@@ -231,12 +232,12 @@ def on_ack(node, gate, params, now, frame, out):
         return
     if get16(frame, 1) != gate.version or gate.job[s] == CURRENT:
         return
-    gate.job_parts[s] = gate.job_parts[s] | get16(frame, 3)
+    gate.job_parts[s] = gate.job_parts[s] | get16(frame, 3) | TOLD
     whole = all_parts(gate.job_count[s])
     if whole and gate.job_parts[s] & whole == whole:
         gate.job[s] = CURRENT
         gate.mark_a[s] = gate.job_a[s]
-    elif gate.job[s] == UNDER_WAY:
+    elif gate.job[s] == UNDER_WAY and params.mode == TABLES:
         gate.job_next[s] = 0
     pump(node, gate, params, now, out)
 
