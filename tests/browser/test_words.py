@@ -147,6 +147,41 @@ def test_a_second_fault_is_read_out_with_what_is_new():
     ]
 
 
+def viewed(views, view, name, value, state, **scene):
+    """A value in JavaScript where `view` is one of a live network of two nodes in this state."""
+    nodes = [{"id": at, "label": f"n{at}", "role": "cell", "x": at, "y": 0} for at in range(2)]
+    scene = {"kind": "own", "source": "live", "nodes": nodes, "links": [], "can": [], "ports": 0,
+             "series": [], **scene}  # fmt: skip
+    network = json.dumps((views / "network.js").as_uri())
+    colours = json.dumps((views / "colours.js").as_uri())
+    return found(view, f"""await (async () => {{
+      const {{ colours }} = await import({colours});
+      const d = Array.from({{ length: 8 }}, (_, i) => `d${{i}}`);
+      Object.assign(colours, {{ panel: "panel", d, h: ["h0"] }});
+      const {{ Network }} = await import({network});
+      const view = new it.{name}(new Network({json.dumps(scene)}));
+      view.network.apply({json.dumps(state)});
+      return {value};
+    }})()""", views)  # fmt: skip
+
+
+@pytest.mark.parametrize("colour", ["depth", "port"])
+def test_a_cell_that_sends_by_others_elsewhere_looks_as_no_other_does(views, colour):
+    state = {"beyond": [1, 0], "parent": [-1, 0], "port": [-1, 7], "depth": [-1, 8]}
+    value = f'(view.colour = "{colour}", view.deepest = 8, [0, 1].map((i) => view.kindOf(i)))'
+    kinds = viewed(views, "skin.js", "SkinView", value, state)
+    assert kinds == ["beyond", {"depth": "d7", "port": "p7"}[colour]]
+
+
+def test_a_node_of_which_no_field_is_known_is_filled_as_its_legend_says(views):
+    value = "[view.filled(null), view.legend().map(([, words]) => words)]"
+    fill, words = viewed(views, "plain.js", "PlainView", value, {}, fields=[])
+    assert (fill, words[0]) == ("d7", "node")
+    heat = [{"name": "heat", "unit": "K"}]
+    fill, words = viewed(views, "plain.js", "PlainView", value, {}, fields=heat)
+    assert (fill, words[:3]) == ("panel", ["heat: least", "most", "not known"])
+
+
 # What a page shows: elements by their names, and what each state made of what is read out.
 READ_OUT = """
 globalThis.matchMedia = () => ({ addEventListener() {} });
@@ -160,6 +195,7 @@ const network = new Network(scene);
 const said = [];
 for (const [t_s, level, text, ...lines] of STEPS) {
   network.apply({ t_s, headline: { level, text, nodes: [] } });
+  if (BETWEEN) showState(network, true);
   for (const [at, mark, line] of lines) network.note({ t_s: at, mark, text: line });
   showState(network, true);
   said.push(boxes["state-spoken"].textContent);
@@ -168,7 +204,9 @@ console.log(JSON.stringify(said));
 """
 
 
-def test_what_is_lost_while_the_level_stays_is_read_out_once():
+@pytest.mark.parametrize("between", [False, True])
+def test_what_is_lost_while_the_level_stays_is_read_out_once(between):
+    """Whether or not the page is drawn between a state and the lines that come behind it."""
     steps = [
         [5.0, "degraded", "A; b."],
         [
@@ -187,7 +225,7 @@ def test_what_is_lost_while_the_level_stays_is_read_out_once():
         [5.8, "degraded", "G."],
         [5.9, "degraded", "G."],
     ]
-    text = READ_OUT.replace("STEPS", json.dumps(steps))
+    text = READ_OUT.replace("STEPS", json.dumps(steps)).replace("BETWEEN", json.dumps(between))
     for name, file in (("NETWORK", "network.js"), ("PANEL", "panel.js")):
         text = text.replace(name, json.dumps((PAGE / file).as_uri()))
     still = "still degraded; n1 switched off: d"

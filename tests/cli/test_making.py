@@ -33,10 +33,12 @@ def test_what_no_test_reaches_is_named(own, capsys):
         told["unreached"]["on_frame"] == f"gossip/protocol.py:{own.line('protocol.py', 'on_frame')}"
     )
     assert told["outbox"] == {"on_start": 1, "on_frame": 5, "on_timer": 5, "on_input": 4}
-    test.write_text('"""Tests."""\n\n\ndef test_nothing():\n    assert False\n')
+    reason = f"a gossip that {'nobody ' * 20}heard"
+    test.write_text(f'"""Tests."""\n\n\ndef test_nothing():\n    raise ValueError("{reason}")\n')
     code, said = checked(capsys)
     assert code == 1
     assert "gossip: FAILED" in said
+    assert reason in said
     assert "values and frames fit" not in said
     assert "but: its tests fail (see above)" in said.splitlines()[-1]
 

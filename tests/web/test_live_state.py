@@ -260,6 +260,17 @@ def test_who_is_cut_off_or_silent_was_not_put_out():
     )
 
 
+def test_a_network_of_which_all_who_answer_are_put_out_is_down():
+    told = {at: revoked(one) for at, one in chain().items()}
+    where = Map(told)
+    out = "All 3 nodes were put out: their identities are revoked."
+    assert State(where, told).headline() == ("down", out, (0, 1, 2))
+    del told[0]
+    assert State(where, told).headline().level == "down", "the other is silent"
+    told[0] = chain()[0]
+    assert State(where, told).headline().level == "degraded"
+
+
 def test_a_cell_that_is_put_out_has_no_way_whatever_it_believes():
     told = {0: cell(0, 0, udp((1, 2))), 1: revoked(cell(1, 0, udp((3, 4))))}
     state = SkinState(SkinMap(told), told)

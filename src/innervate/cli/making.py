@@ -1,6 +1,7 @@
 """`innervate new network` and `check-protocol`: a network of one's own."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -182,7 +183,11 @@ def _tested(folder: Path, network: Network) -> dict[str, Any]:
         names = [str(path) for path in folders.sources(folder.resolve(), network)]
         command = [sys.executable, "-m", "innervate.cli.reaching", str(out), str(folder.resolve()),
                    *names]  # fmt: skip
-        done = subprocess.run(command, capture_output=True, text=True, timeout=TEST_S, check=False)
+        # pytest cuts the reason of a failure where its line ends
+        wide = os.environ | {"COLUMNS": "1000"}
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=TEST_S, check=False, env=wide
+        )
         if not out.is_file():
             last = (done.stderr or done.stdout).strip().splitlines()[-1:]
             raise UserError(f"the tests of {folder} could not be run: {' '.join(last)}")

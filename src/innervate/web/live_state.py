@@ -170,9 +170,8 @@ class State:
         if len(out):
             said.append(words.put_out(words.part_of(len(out), count, self.noun), len(out)))
         if said:
-            return Headline(
-                words.DEGRADED, words.sentence(said), tuple(sorted({*off, *out.tolist()}))
-            )
+            level = words.DOWN if len(out) and self.out[self.answers].all() else words.DEGRADED
+            return Headline(level, words.sentence(said), tuple(sorted({*off, *out.tolist()})))
         who = words.every(count, self.noun)
         return Headline(words.OK, f"{who[0].upper()}{who[1:]} answer{'s' if count == 1 else ''}.")
 

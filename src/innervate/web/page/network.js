@@ -40,6 +40,8 @@ export class Network {
     this.marks = { loss: [], return: [] }; // when something was taken away, or given back, s
     this.since = null; // losses before it happened before anybody looked, s
     this.lost = []; // what was taken away and has not been read out
+    this.lostFrom = null; // the headline before that
+    this.before = null; // of the newest state, the headline that it took the place of
   }
 
   /** Take in a state message. Returns the names of what it changed, `back_s` if time went back. */
@@ -47,6 +49,7 @@ export class Network {
     if (state.back_s !== undefined) this.#forgetAfter(state.back_s);
     this.since ??= state.t_s;
     const { type, back_s, timeline, series, position, radio, ...plain } = state;
+    this.before = state.headline ? this.now.headline : null;
     Object.assign(this.now, plain);
     if (position) this.place = position;
     if (radio) Object.assign(this.radio, radio);
@@ -63,14 +66,23 @@ export class Network {
     if (!this.marks[mark]) return;
     this.marks[mark].push(t_s);
     if (this.marks[mark].length > MARKS) this.marks[mark].shift();
-    if (mark === "loss" && this.since !== null && t_s >= this.since) this.lost.push(text);
+    if (mark !== "loss" || this.since === null || t_s < this.since || this.#isTold()) return;
+    if (!this.lost.length) this.lostFrom = this.before?.text ?? null;
+    this.lost.push(text);
   }
 
-  /** What was taken away since this was asked last. */
+  /** What was taken away since this was asked last, and the headline before it where that is
+   * another: lines come behind the state that they belong to, which may be on the screen by then.
+   */
   takeLost() {
-    const { lost } = this;
-    this.lost = [];
-    return lost;
+    const { lost, lostFrom: before } = this;
+    [this.lost, this.lostFrom] = [[], null];
+    return { lost, before };
+  }
+
+  /** Whether the newest state has another level, which is read out in any case. */
+  #isTold() {
+    return this.before !== null && this.before.level !== this.now.headline.level;
   }
 
   /** The node that stands for an id of `parent`, as an index, or -1. */

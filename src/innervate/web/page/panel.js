@@ -28,15 +28,15 @@ export function showState(network, connected) {
   if ($("connection").textContent !== link) $("connection").textContent = link;
   $("connection").classList.toggle("lost", !connected || isSilent);
   const word = `${LEVELS[level] ?? ""} ${level}`;
-  const lost = network.takeLost();
-  const before = $("headline").textContent;
+  const { lost, before } = network.takeLost();
+  const shown = $("headline").textContent;
   if ($("level").textContent !== word) { // said when it changes: the sentence counts messages
     $("level").textContent = word;
     $("state-spoken").textContent = `${level}: ${text}`;
   } else if (lost.length && connected && level !== "ok") {
-    $("state-spoken").textContent = still(level, lost, text, before);
+    $("state-spoken").textContent = still(level, lost, text, before ?? shown);
   }
-  if (before !== text) $("headline").textContent = text;
+  if (shown !== text) $("headline").textContent = text;
 }
 
 /** Something more was lost, and the level is the same: what it was, and what is new of the state.

@@ -44,11 +44,20 @@ export class PlainView extends MeshView {
 
   legend() {
     const disc = (fill, up = 1) => (context) => this.#disc(context, 13, 8, 5, fill, up);
-    const found = this.colour === "" ? [[disc(colours.d[5]), "node"]]
+    const found = this.colour === "" ? [[disc(this.filled(null)), "node"]]
       : [[disc(colours.h[0]), `${this.colour}: least`], [disc(colours.h[7]), "most"]];
+    if (this.colour !== "" && this.network.scene.source === "live") {
+      found.push([disc(this.filled(null)), "not known"]);
+    }
     found.push([disc(colours.faint, 0), offWords(this.network)], affectedSample);
     if (this.network.links.length) found.push(cutSample);
     return found;
+  }
+
+  /** What a node of this value is filled with; null: it has none. */
+  filled(value, least = 0, most = 0) {
+    if (value !== null) return colours.h[shade(value - least, most - least)];
+    return this.colour === "" ? colours.d[7] : colours.panel;
   }
 
   #nodes(context, stage) {
@@ -75,8 +84,7 @@ export class PlainView extends MeshView {
     }
     nodes.forEach((_, i) => {
       const [x, y, value] = [stage.x[i], stage.y[i], values[i] ?? null];
-      const fill = value === null ? colours.panel : colours.h[shade(value - least, most - least)];
-      this.#disc(context, x, y, dot, fill, now.node_up[i]);
+      this.#disc(context, x, y, dot, this.filled(value, least, most), now.node_up[i]);
       names.block(x - dot - 2, y - dot - 2, x + dot + 2, y + dot + 2);
     });
     affected(context, network, stage, dot + 5);

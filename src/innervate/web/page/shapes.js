@@ -2,6 +2,7 @@
 import { colours } from "./colours.js";
 
 const HEAD_PX = 6; // of an arrow
+const HATCH_PX = 5; // from line to line
 const RATIO_MAX = 2; // pixels per px of the page that drawing is worth
 const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -81,6 +82,23 @@ export function arrow(path, x0, y0, x1, y1, gap) {
   path.moveTo(tx - head * (ux + 0.6 * uy), ty - head * (uy - 0.6 * ux));
   path.lineTo(tx, ty);
   path.lineTo(tx - head * (ux - 0.6 * uy), ty - head * (uy + 0.6 * ux));
+}
+
+/** Fill a path with slanting lines: no colour is left that means nothing else. */
+export function hatched(context, path) {
+  const [wide, high] = [context.canvas.width, context.canvas.height];
+  const lines = new Path2D();
+  for (let x = -high; x < wide; x += HATCH_PX) {
+    lines.moveTo(x, high);
+    lines.lineTo(x + high, 0);
+  }
+  context.fillStyle = colours.ground;
+  context.fill(path);
+  context.save();
+  context.clip(path);
+  stroke(context, colours.soft, 1.2, lines);
+  context.restore();
+  stroke(context, colours.soft, 1, path);
 }
 
 /** Draw a path of lines. */

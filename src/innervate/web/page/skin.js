@@ -3,8 +3,8 @@ import { colours, shade } from "./colours.js";
 import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
-  affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hexagon,
-  middle, stroke, word,
+  affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights, hatched,
+  hexagon, middle, stroke, word,
 } from "./shapes.js";
 import { PUT_OUT, off, offWord, plural } from "./words.js";
 
@@ -20,7 +20,7 @@ const WORDS_PX = 22; // from this pitch on cells bear a number
 export class SkinView {
   constructor(network) {
     this.network = network;
-    this.scaleMax = 60;
+    this.scaleMax = 140; // px a cell
     this.margin = [18, 18];
     const { ports } = network.scene;
     this.colour = ports >= 2 && ports <= PORT_COLOURS ? "port" : "depth";
@@ -81,7 +81,7 @@ export class SkinView {
     if (this.colour === "touch") return `h${shade(now.touch[i], 256)}`;
     if (!this.#isRouted(i)) return "none";
     if (this.colour === "load") return `h${shade(now.load[i], 1)}`;
-    if (now.beyond[i]) return "d7";
+    if (now.beyond[i]) return "beyond";
     if (this.colour === "depth") return `d${shade(now.depth[i] - 1, this.deepest)}`;
     return `p${now.port[i] % PORT_COLOURS}`;
   }
@@ -110,11 +110,10 @@ export class SkinView {
   legend() {
     const cell = (kind) => (context) => {
       this.#shapes(context, new Map([[kind, whole(13, 8)]]));
-      const sign = new Path2D();
+      const [sign, dead] = [new Path2D(), new Path2D()];
       if (kind === "none") cross(sign, 13, 8, 2.5);
-      stroke(context, colours.ink, 1.2, sign);
-      const dead = new Path2D();
       if (kind === "off") cross(dead, 13, 8, 4);
+      stroke(context, colours.ink, 1.2, sign);
       stroke(context, colours.alarm, 2.2, dead);
     };
     const line = (colour, width, dash) => (context) => {
@@ -127,7 +126,7 @@ export class SkinView {
       found.push(flightSample("beacon", "beacon"), flightSample("data", "sample to the PC"));
       if (this.network.can.has("command")) found.push(flightSample("command", "command down"));
     } else if (this.colour === "port" || this.colour === "depth") {
-      found.push([cell("d7"), "by nodes that do not run here"]);
+      found.push([cell("beyond"), "by nodes that do not run here"]);
     }
     found.push(cutSample);
     return found;
@@ -178,7 +177,8 @@ export class SkinView {
 
   #shapes(context, paths) {
     for (const [kind, path] of paths) {
-      if (kind === "none" || kind === "off") {
+      if (kind === "beyond") hatched(context, path);
+      else if (kind === "none" || kind === "off") {
         context.fillStyle = kind === "off" ? colours.faint : colours.ground;
         context.fill(path);
         stroke(context, colours.soft, 1, path, kind === "none" ? [2, 2] : []);
