@@ -15,6 +15,7 @@ from innervate.networks.mesh.protocol.paths import is_known
 from innervate.networks.mesh.protocol.queue import compose
 from innervate.networks.mesh.protocol.table import (
     CROWD,
+    all_parts,
     ends_of,
     graph_bytes,
     part_bytes,
@@ -44,11 +45,15 @@ def is_unasked(gate, s):
     return gate.job[s] == UNDER_WAY and gate.job_next[s] == 0
 
 
-def is_missed(gate, params, index, count):
-    """1 if a node is known to miss this part; behind the last one: if nobody knows what it has."""
+def lacks(gate, s, bit):
+    """1 if node s is to be sent this part; bit ASKED: if it is to be asked which it has."""
+    return is_unasked(gate, s) and gate.job_parts[s] >> bit & 1 == 0
+
+
+def is_missed(gate, params, bit):
+    """1 if some node lacks this."""
     for s in range(params.nodes):
-        parts = gate.job_parts[s]
-        if is_unasked(gate, s) and parts >> index & 1 == 0 and (parts == 0) == (index == count):
+        if lacks(gate, s, bit):
             return 1
     return 0
 
@@ -56,9 +61,8 @@ def is_missed(gate, params, index, count):
 def name_silent(node, gate, params, i):
     """Who has told nothing since the last flood is asked by name, as far as there is room."""
     for s in range(params.nodes):
-        if is_unasked(gate, s) and gate.job_parts[s] == 0:
-            if node.q_length[i] < part_bytes(params):
-                add8(node, i, s)
+        if lacks(gate, s, PARTS_MAX) and node.q_length[i] < part_bytes(params):
+            add8(node, i, s)
 
 
 def graph_due(params, now, count, tries):
@@ -79,7 +83,7 @@ def flood_graph(node, gate, params, now, count, out):
     if count <= params.queue:
         pace = pace >> 1
     for index in range(gate.part, count + 1):
-        if is_missed(gate, params, index, count):
+        if is_missed(gate, params, index if index < count else PARTS_MAX):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
                 gate.part = index
@@ -96,7 +100,7 @@ def flood_graph(node, gate, params, now, count, out):
     for s in range(params.nodes):
         if is_unasked(gate, s):
             gate.job_next[s] = 1
-            gate.job_parts[s] = 0
+            gate.job_parts[s] = all_parts(PARTS_MAX)
             gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
 
 

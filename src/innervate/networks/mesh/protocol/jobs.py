@@ -96,7 +96,8 @@ def give_job(gate, params, s):
     if a == gate.mark_a[s] and b == gate.mark_b[s]:
         gate.job[s] = CURRENT
         return
-    gate.job_parts[s] = 0 if a == gate.job_a[s] else TOLD
+    if params.mode == TABLES or a != gate.job_a[s]:
+        gate.job_parts[s] = TOLD
     gate.job_a[s] = a
     gate.job_b[s] = b
     gate.job[s] = TO_SEND
@@ -232,9 +233,10 @@ def on_ack(node, gate, params, now, frame, out):
         return
     if get16(frame, 1) != gate.version or gate.job[s] == CURRENT:
         return
-    gate.job_parts[s] = gate.job_parts[s] | get16(frame, 3) | TOLD
+    told = get16(frame, 3)
     whole = all_parts(gate.job_count[s])
-    if whole and gate.job_parts[s] & whole == whole:
+    gate.job_parts[s] = told | TOLD
+    if whole and told & whole == whole:
         gate.job[s] = CURRENT
         gate.mark_a[s] = gate.job_a[s]
     elif gate.job[s] == UNDER_WAY and params.mode == TABLES:

@@ -202,7 +202,7 @@ def on_graph(node, params, now, frame, out):
     count = frame.body[3] & 15
     if epoch != node.epoch or record_flood(node, frame.origin, frame.seq, GRAPH, 0):
         return
-    whole = all_parts(count)
+    parts = all_parts(count)
     tells = index >= count and is_named(frame, PART_HEAD, node.number)
     if not is_current(node, epoch, version):
         expect(node, epoch, version, count)
@@ -210,14 +210,13 @@ def on_graph(node, params, now, frame, out):
             read_edges(node, params, frame, index)
             node.parts = node.parts | 1 << index
             tells = index == count - 1
-            if node.parts == whole:
+            if node.parts == parts:
                 tells = 1
                 put_in_force(node, params, epoch, version, out)
+        parts = node.parts
     if tells:  # but not when all others do
-        if not is_current(node, epoch, version):
-            whole = node.parts
         wait = draw(node, spread_of_answers(params) + 1)
-        tell_parts(node, params, now, epoch, version, whole, wait, out)
+        tell_parts(node, params, now, epoch, version, parts, wait, out)
     spread(node, params, now, frame, out)
 
 
