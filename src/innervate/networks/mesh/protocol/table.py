@@ -19,7 +19,7 @@ from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
 from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_named, is_route
 from innervate.networks.mesh.protocol.queue import compose, take_over
 from innervate.networks.mesh.protocol.search import set_edge
-from innervate.networks.mesh.protocol.send import enter, pass_on, send_on, send_up
+from innervate.networks.mesh.protocol.send import enter, pass_on, send_on, send_up, spread
 
 NONE = 255
 GROUP_BYTES = 3
@@ -164,16 +164,7 @@ def on_activate(node, params, now, frame, out):
     """Flooded: put the new tables into force."""
     activate(node, params, frame.body[0], get16(frame, 1), out)
     if not record_flood(node, frame.origin, frame.seq, ACTIVATE, 0):
-        spread(node, params, now, frame, out)
-
-
-def spread(node, params, now, frame, out):
-    """Pass a flooded packet on once; its path stays short, so that it always fits."""
-    i = take_over(node, now, CONTROL, frame, out)
-    if i >= 0:
-        node.q_link_dst[i] = ALL
-        node.q_copies[i] = params.copies
-        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+        spread(node, params, now, CONTROL, frame, out)
 
 
 def part_bytes(params):
@@ -217,7 +208,7 @@ def on_graph(node, params, now, frame, out):
     if tells:  # but not when all others do
         wait = draw(node, spread_of_answers(params) + 1)
         tell_parts(node, params, now, epoch, version, parts, wait, out)
-    spread(node, params, now, frame, out)
+    spread(node, params, now, CONTROL, frame, out)
 
 
 def spread_of_answers(params):

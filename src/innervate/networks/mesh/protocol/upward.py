@@ -36,6 +36,13 @@ def is_uplink(node, k):
     return node.round_depth[k] < node.depth
 
 
+def is_untried(node, i, who):
+    """1 if the packet in place i was not at `who`, nor failed there, whatever we suspect."""
+    if who == NOBODY or was_at(node, i, who):
+        return 0
+    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
+
+
 def uplink(node, params, i):
     """The best uplink for the packet in place i that neither had it nor failed, or NOBODY.
 
@@ -45,9 +52,7 @@ def uplink(node, params, i):
     for k in range(params.places):
         if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
             who = node.neighbour[k]
-            if not was_at(node, i, who) and not is_skipped(
-                node, node.q_origin[i], node.q_seq[i], who
-            ):
+            if is_untried(node, i, who):
                 if params.faint <= params.min_rssi and who == node.parent:
                     return who
                 if best < 0 or is_better(node, params, k, best):
