@@ -13,15 +13,17 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
 from innervate.networks.mesh.protocol.paths import is_known
 from innervate.networks.mesh.protocol.queue import compose
+from innervate.networks.mesh.protocol.route import room_of
 from innervate.networks.mesh.protocol.table import (
     CROWD,
-    all_parts,
     ends_of,
     graph_bytes,
     part_bytes,
     part_count,
     spread_of_answers,
 )
+
+TOLD = 1 << PARTS_MAX  # in job_parts, behind the bits of parts: the node has told which it has
 
 
 def pump_graph(node, gate, params, now, out):
@@ -46,12 +48,12 @@ def is_unasked(gate, s):
 
 
 def lacks(gate, s, bit):
-    """1 if node s is to be sent this part; bit ASKED: if it is to be asked which it has."""
+    """1 if node s lacks this part; bit PARTS_MAX: if it has not told which it has."""
     return is_unasked(gate, s) and gate.job_parts[s] >> bit & 1 == 0
 
 
 def is_missed(gate, params, bit):
-    """1 if some node lacks this."""
+    """1 if some node lacks this part, or has not told."""
     for s in range(params.nodes):
         if lacks(gate, s, bit):
             return 1
@@ -61,7 +63,7 @@ def is_missed(gate, params, bit):
 def name_silent(node, gate, params, i):
     """Who has told nothing since the last flood is asked by name, as far as there is room."""
     for s in range(params.nodes):
-        if lacks(gate, s, PARTS_MAX) and node.q_length[i] < part_bytes(params):
+        if lacks(gate, s, PARTS_MAX) and node.q_length[i] < room_of(node, params, i):
             add8(node, i, s)
 
 
@@ -100,7 +102,7 @@ def flood_graph(node, gate, params, now, count, out):
     for s in range(params.nodes):
         if is_unasked(gate, s):
             gate.job_next[s] = 1
-            gate.job_parts[s] = all_parts(PARTS_MAX)
+            gate.job_parts[s] = TOLD - 1  # all, for all we know
             gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
 
 

@@ -19,7 +19,7 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
-from innervate.networks.mesh.protocol.graph_jobs import is_unasked, pump_graph
+from innervate.networks.mesh.protocol.graph_jobs import TOLD, is_unasked, pump_graph
 from innervate.networks.mesh.protocol.neighbours import is_suspect
 from innervate.networks.mesh.protocol.pack import depth_of, pack, room_at
 from innervate.networks.mesh.protocol.paths import (
@@ -38,7 +38,6 @@ from innervate.networks.mesh.protocol.send import pass_on
 from innervate.networks.mesh.protocol.table import GROUP_BYTES, all_parts, put_in_force
 
 IN_A_ROW = 3  # tries of a table, each with more patience, before it is the others' turn
-TOLD = 32768  # among the parts that somebody has: it has told which those are
 PLACES_RESERVED = 3  # of the queue, for what others send through us
 
 
@@ -79,9 +78,11 @@ def hold_off(params):
 
 def note_lost_table(gate, s):
     """Node s says that it has no table: should it have acknowledged one, it has lost it since."""
-    gate.mark_a[s] = gate.job_a[s] = 0
+    gate.mark_a[s] = 0
     if gate.job[s] == CURRENT:
         gate.job[s] = GIVEN_UP
+    if gate.job[s] == GIVEN_UP:
+        gate.job_a[s] = 0  # it has no part of it, either
 
 
 def give_job(gate, params, s):
