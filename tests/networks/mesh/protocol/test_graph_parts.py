@@ -165,15 +165,21 @@ def settled():
     return bench, bench.gates[0]
 
 
+def flooded_by(bench, gate):
+    """Parts that the gateway floods now, and whom it asks."""
+    pump_graph(bench.nodes[0], gate, bench.params, bench.now, bench.out)
+    kick(bench.nodes[0], bench.params, bench.now, bench.out)
+    bench.drain(0)
+    bench.run(bench.now + 1_000_000)
+    return parts_by(bench, 0), names_in(bench)
+
+
 @pytest.mark.parametrize(("kept", "sent"), [(TOLD | WHOLE & ~2, [1]), (TOLD - 1, [COUNT])])
 def test_what_is_known_of_a_node_stays_known_when_it_has_its_turn_again(kept, sent):
     bench, gate = settled()
     gate.job[2], gate.job_parts[2], gate.mark_a[2] = GIVEN_UP, kept, 0
     give_jobs(bench.nodes[0], gate, bench.params, 0, bench.out)
-    pump_graph(bench.nodes[0], gate, bench.params, bench.now, bench.out)
-    bench.drain(0)
-    bench.run(bench.now + 1_000_000)
-    assert parts_by(bench, 0) == sent
+    assert flooded_by(bench, gate)[0] == sent
 
 
 def test_of_a_table_nothing_is_known_when_it_is_sent_anew():
@@ -214,13 +220,41 @@ def test_a_question_names_as_many_as_there_is_room_for():
     bench, gate = settled()
     for s in range(1, 32):
         gate.job[s], gate.job_parts[s], gate.job_next[s] = UNDER_WAY, TOLD - 1, 0
-    pump_graph(bench.nodes[0], gate, bench.params, bench.now, bench.out)
-    kick(bench.nodes[0], bench.params, bench.now, bench.out)
-    bench.drain(0)
-    bench.run(bench.now + 1_000_000)
-    assert names_in(bench) == [list(range(1, 9))], "as long as a part"
+    assert flooded_by(bench, gate)[1] == [list(range(1, 9))], "as long as a part"
     assert {f.length + 1 + HEADER_BYTES + CRC_BYTES for _, i, f in bench.sent
             if i == 0 and f.kind == GRAPH} == {bench.params.mtu}  # fmt: skip
+
+
+def test_who_told_what_it_has_is_not_asked_beside_who_did_not():
+    bench, gate = settled()
+    gate.job[1:3], gate.job_next[1:3] = [UNDER_WAY] * 2, [0] * 2
+    gate.job_parts[1:3] = [TOLD | WHOLE & ~2, TOLD - 1]
+    assert flooded_by(bench, gate) == ([1, COUNT], [[2]])
+
+
+def test_who_has_been_asked_is_not_asked_again_for_another():
+    bench, gate = settled()
+    gate.job[1:3], gate.job_next[1:3] = [UNDER_WAY] * 2, [0, 1]
+    gate.job_parts[1:3] = [TOLD | WHOLE & ~2, TOLD - 1]
+    gate.job_due[2] = bench.now + SETTLED
+    assert flooded_by(bench, gate) == ([1], [])
+
+
+def test_a_graph_of_another_epoch_is_nobody_s():
+    bench, gate = settled()
+    bench.nodes[0].epoch ^= 1
+    gate.job[1], gate.job_next[1], gate.job_parts[1] = UNDER_WAY, 0, TOLD - 1
+    assert flooded_by(bench, gate) == ([COUNT], [[1]])
+    assert parts_by(bench, 1) == []
+    assert told_by(bench, 1) == []
+
+
+def test_not_all_say_at_once_that_they_have_the_graph():
+    bench = Bench(6, [(0, k) for k in range(1, 6)], mode=WHOLE_GRAPH)
+    bench.run(SETTLED)
+    last = max(at for at, i, f in bench.sent if i == 0 and f.kind == GRAPH)
+    said = [at for at, i, f in bench.sent if f.kind == TABLE_ACK and f.origin == i]
+    assert max(said) - last > bench.params.spread_us // 2
 
 
 def test_the_gateway_sends_each_part_as_often_as_all_others_do():

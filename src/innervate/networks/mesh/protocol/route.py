@@ -31,9 +31,8 @@ from innervate.networks.mesh.protocol.neighbours import (
     random_neighbour,
 )
 from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge, measure_distances
-from innervate.networks.mesh.protocol.upward import is_untried, uplink
+from innervate.networks.mesh.protocol.upward import NONE, is_untried, uplink
 
-NONE = 255
 CALLS = 2  # a message is flooded in so many of its tries, the parities of which differ
 
 

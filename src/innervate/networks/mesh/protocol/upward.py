@@ -5,6 +5,7 @@ from innervate.networks.mesh.protocol.duplicates import is_skipped
 from innervate.networks.mesh.protocol.frames import was_at
 from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT, UNHEARD
 
+NONE = 255
 FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
 
 
@@ -38,7 +39,7 @@ def is_uplink(node, k):
 
 def is_untried(node, i, who):
     """1 if the packet in place i was not at `who`, nor failed there, whatever we suspect."""
-    if who == NOBODY or was_at(node, i, who):
+    if who == NONE or was_at(node, i, who):
         return 0
     return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
 
