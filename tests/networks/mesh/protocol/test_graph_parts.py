@@ -5,6 +5,7 @@ from itertools import pairwise
 import pytest
 
 from innervate.networks.mesh.protocol.constants import (
+    ALL,
     CRC_BYTES,
     CURRENT,
     GIVEN_UP,
@@ -261,9 +262,11 @@ def test_the_gateway_sends_each_part_as_often_as_all_others_do():
     """One that finds the channel full of the part before would be missed by all (decision 0073)."""
     bench = bench_of(30)
     bench.run(SETTLED)
-    sent = [f.seq for _, i, f in bench.sent if i == 0 and f.kind == GRAPH]
-    assert sent
-    assert {sent.count(seq) for seq in sent} == {bench.params.copies}
+    for node in range(3):
+        sent = [(f.seq, f.link_dst) for _, i, f in bench.sent if i == node and f.kind == GRAPH]
+        assert sent
+        assert {sent.count(one) for one in sent} == {bench.params.copies}
+        assert {to for _, to in sent} == {ALL}
 
 
 def test_what_is_new_begins_with_its_first_part():

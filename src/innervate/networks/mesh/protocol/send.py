@@ -7,7 +7,6 @@ from innervate.networks.mesh.protocol.backoff import note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
-    ALL,
     ALTERNATE,
     DATA,
     END_TO_END,
@@ -57,7 +56,6 @@ def spread(node, params, now, rank, frame, out):
     """Pass a flooded packet on once; its path stays short, so that it always fits."""
     i = take_over(node, now, rank, frame, out)
     if i >= 0:
-        node.q_link_dst[i] = ALL
         node.q_copies[i] = params.copies
         node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
     return i
