@@ -197,8 +197,8 @@ def test_of_a_table_nothing_is_known_when_it_is_sent_anew():
 def test_what_a_node_has_is_what_it_says_now():
     """Who was started anew has no longer what it had told before."""
     bench, gate = settled()
-    gate.job[2], gate.job_parts[2], gate.job_next[2] = UNDER_WAY, TOLD | 6, 1
-    gate.job_due[2] = bench.now + SETTLED
+    gate.job[1:3], gate.job_parts[1:3] = [UNDER_WAY] * 2, [TOLD - 1, TOLD | 6]
+    gate.job_next[1:3], gate.job_due[1:3] = [1] * 2, [bench.now + SETTLED] * 2
     frame = Frame()
     frame.kind, frame.origin, frame.length = TABLE_ACK, 2, 5
     frame.body[:5] = [bench.nodes[0].epoch, gate.version >> 8, gate.version & 255, 0, 9]
@@ -206,6 +206,17 @@ def test_what_a_node_has_is_what_it_says_now():
     assert gate.job_parts[2] == TOLD | 9
     assert gate.job_next[2] == 1, "a flood does not begin before all have told"
     assert gate.job[2] == UNDER_WAY
+    assert not any(bench.nodes[0].q_state)
+
+
+def test_as_soon_as_all_have_told_what_is_missing_comes():
+    bench = bench_of(8, period=60)
+    bench.lost = missing(3, COUNT - 1)
+    bench.run(GIVES_UP)
+    told = next(at for at, i, f in bench.sent if f.kind == TABLE_ACK and i == 1 and f.origin == 2)
+    again = max(at for at, i, f in bench.sent if i == 0 and f.kind == GRAPH and f.body[3] >> 4 == 3)
+    copies = bench.params.copies * (bench.params.jitter_us + 10_000)
+    assert 0 < again - told < copies
 
 
 @pytest.mark.parametrize("state", [TO_SEND, UNDER_WAY])

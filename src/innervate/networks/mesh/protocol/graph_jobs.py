@@ -29,6 +29,7 @@ TOLD = 1 << PARTS_MAX  # in job_parts, behind the bits of parts: the node has to
 def pump_graph(node, gate, params, now, out):
     """Flood the parts of the graph, and once more those that some node misses."""
     count = part_count(params)
+    silent = 0  # whether anybody has not told what it has
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
             gate.job[s] = GIVEN_UP
@@ -36,6 +37,11 @@ def pump_graph(node, gate, params, now, out):
                 gate.job[s] = UNDER_WAY
                 gate.job_count[s] = count
                 gate.job_next[s] = gate.part = 0
+        if gate.job[s] == UNDER_WAY and gate.job_parts[s] < TOLD:
+            silent = 1
+    for s in range(params.nodes):
+        if not silent:
+            gate.job_next[s] = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
             flood_graph(node, gate, params, now, count, out)
@@ -84,13 +90,13 @@ def flood_graph(node, gate, params, now, count, out):
     pace = params.jitter_us
     if count <= params.queue:
         pace = pace >> 1
+    i = 0
     for index in range(gate.part, count + 1):
         if is_missed(gate, params, index if index < count else PARTS_MAX):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
                 gate.part = index
-                go_on_at(gate, params, (due + pace) & MASK30)
-                return
+                break
             add_hop(node, i)
             fill_graph(node, gate, params, i, index, count)
             if index == count:
@@ -98,19 +104,16 @@ def flood_graph(node, gate, params, now, count, out):
             node.q_copies[i] = params.copies  # one may find the channel full of the part before
             node.q_due[i] = due & MASK30
             due = due + pace
-    gate.part = 0
+    if i >= 0:
+        gate.part = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
-            gate.job_next[s] = 1
-            gate.job_parts[s] = TOLD - 1  # all, for all we know
-            gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
-
-
-def go_on_at(gate, params, time):
-    """The flood under way goes on at that time."""
-    for s in range(params.nodes):
-        if is_unasked(gate, s):
-            gate.job_due[s] = time
+            if i < 0:
+                gate.job_due[s] = (due + pace) & MASK30
+            else:
+                gate.job_next[s] = 1
+                gate.job_parts[s] = TOLD - 1  # all, for all we know
+                gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
 
 
 def fill_graph(node, gate, params, i, index, count):
