@@ -102,6 +102,18 @@ def test_who_told_nothing_is_asked_by_name_and_no_part_comes_again():
     assert bench.gates[0].job[2] == GIVEN_UP
 
 
+def test_the_few_that_are_asked_answer_sooner_than_all():
+    bench = bench_of(8, period=60, job_tries=8)
+    bench.lost = lambda frame, to: frame.kind == TABLE_ACK and frame.origin == 2
+    bench.run(2 * GIVES_UP)
+    asked = {f.seq: at for at, i, f in bench.sent if i == 1 and f.kind == GRAPH
+             and f.body[3] >> 4 == COUNT}  # fmt: skip
+    said = [at for at, i, f in bench.sent if i == 2 and f.kind == TABLE_ACK and f.origin == 2]
+    waits = [min(at - when for at in said if at > when) for when in asked.values()]
+    assert len(waits) == 8
+    assert max(waits) < bench.params.spread_us + 10_000
+
+
 def test_the_missing_parts_alone_come_again():
     """Who hears the last part says which it has, and once more when it has all."""
     bench = bench_of(8, period=60)

@@ -75,7 +75,8 @@ def name_silent(node, gate, params, i):
 
 def graph_due(params, now, count, tries):
     """When a flood of the graph is over at the latest, and its acks are in."""
-    answers = (params.job_us >> 1) * (params.nodes // CROWD) + spread_of_answers(params)
+    answers = spread_of_answers(params, params.nodes)
+    answers = answers + (params.job_us >> 1) * (params.nodes // CROWD)
     wait = params.job_us * (1 + tries) + params.jitter_us * (count + 4) + answers
     return (now + wait) & MASK30
 

@@ -194,7 +194,11 @@ def on_graph(node, params, now, frame, out):
     if epoch != node.epoch or record_flood(node, frame.origin, frame.seq, GRAPH, 0):
         return
     parts = all_parts(count)
-    tells = index >= count and is_named(frame, PART_HEAD, node.number)
+    asked = params.nodes
+    tells = 0
+    if index >= count:
+        asked = frame.length - PART_HEAD
+        tells = is_named(frame, PART_HEAD, node.number)
     if not is_current(node, epoch, version):
         expect(node, epoch, version, count)
         if index < count:
@@ -206,14 +210,14 @@ def on_graph(node, params, now, frame, out):
                 put_in_force(node, params, epoch, version, out)
         parts = node.parts
     if tells:  # but not when all others do
-        wait = draw(node, spread_of_answers(params) + 1)
+        wait = draw(node, spread_of_answers(params, asked) + 1)
         tell_parts(node, params, now, epoch, version, parts, wait, out)
     spread(node, params, now, CONTROL, frame, out)
 
 
-def spread_of_answers(params):
-    """Within what time all say that they have the graph: their acks meet near the gateway."""
-    return params.spread_us * (1 + params.nodes // CROWD)
+def spread_of_answers(params, count):
+    """Within what time so many say which parts they have: their acks meet near the gateway."""
+    return params.spread_us * (1 + count // CROWD)
 
 
 def ends_of(params, pair):
