@@ -110,7 +110,7 @@ def test_the_few_that_are_asked_answer_sooner_than_all():
              and f.body[3] >> 4 == COUNT}  # fmt: skip
     said = [at for at, i, f in bench.sent if i == 2 and f.kind == TABLE_ACK and f.origin == 2]
     waits = [min(at - when for at in said if at > when) for when in asked.values()]
-    assert len(waits) == 8
+    assert len(waits) >= 8
     assert max(waits) < bench.params.spread_us + 10_000
 
 
