@@ -105,7 +105,7 @@ lost may be made good by what is heard later: `drop_overheard`, which also ends 
 | `ACTIVATE`                             | all              | `on_activate`: the table that is     |
 |                                        |                  | `ready` is in force; `spread`        |
 | `GRAPH`                                | all              | `on_graph`: `read_edges`; `spread`;  |
-|                                        |                  | whole: `answer_graph`                |
+|                                        |                  | whole, last or asked: `tell_parts`   |
 | `GRAPH`, to one                        | a hop            | `relay`; ours: `on_guard`: a standby |
 |                                        |                  | asks, or with `TABLES` takes a part: |
 |                                        |                  | `read_edges`                         |
@@ -250,8 +250,8 @@ Frames
 | `ALARM = 10`    | routed and flooded           | `ALARM_BYTES = 16`                              |
 | `POSITION = 11` | one hop; with `watch` routed | `POSITION_BYTES = 8`; `SAID_OUT = 1`,           |
 |                 |                              | `SAID_HEARD = 2`                                |
-| `GRAPH = 12`    | flooded; a standby's routed  | epoch, version, part; links as bits; nothing    |
-|                 |                              | more: a question, or an answer to it            |
+| `GRAPH = 12`    | flooded; a standby's routed  | epoch, version, part; links as bits, or who is  |
+|                 |                              | asked; routed, nothing: a question or an answer |
 | `ACK = 16`      | to the hop before            | no common header: `ACK_BYTES = 9`               |
 
 Flags: `ACK_WANTED = 1`, `END_TO_END = 2`, `FLOOD = 4`, to one recipient `ORDERED = 4`,
@@ -315,7 +315,7 @@ Constants and settings
 | `SEARCH = 3`, `recent`, `RSSI_SPAN = 1024`     | by last heard time, then RSSI (decision 0071)   |
 | `on_demand`, `CALLS = 2`, `AT_EASE = 6`        | decision 0071: floods; places free to take part |
 | `PARTS_MAX = 15`, `PART_HEAD = 4`,             | tables and graphs on the wire                   |
-| `GROUP_BYTES = 3`                              |                                                 |
+| `GROUP_BYTES = 3`, `TOLD = 32768`              | of a node is known which parts it has (0081)    |
 | `ROUNDS_VALID = 3`, `LOW_BITS = 85`            | rounds for which a report of a link counts, two |
 |                                                | bits a link; the lower ones of a byte           |
 | `SLACK = 2`                                    | ticks: nodes count them from different moments  |

@@ -2,7 +2,6 @@
 
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.outbox import deliver, report
-from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
@@ -20,11 +19,16 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import FLOODED, record_flood
 from innervate.networks.mesh.protocol.fence import OUTSIDE, judge, margin
-from innervate.networks.mesh.protocol.frames import add8, add_hop, put16
+from innervate.networks.mesh.protocol.frames import add_hop, put16
 from innervate.networks.mesh.protocol.messages import first_flag, head_own, resolve, take
-from innervate.networks.mesh.protocol.queue import FREE, WAITS, compose, kick, take_over
-from innervate.networks.mesh.protocol.retransmission import arm_retry, buffer_sent, free_buffer
-from innervate.networks.mesh.protocol.send import send_on
+from innervate.networks.mesh.protocol.queue import FREE, WAITS, compose, kick
+from innervate.networks.mesh.protocol.retransmission import (
+    arm_retry,
+    buffer_sent,
+    compose_kept,
+    free_buffer,
+)
+from innervate.networks.mesh.protocol.send import send_on, spread
 
 ALARM_BYTES = 16
 RAISED_OUT = 2
@@ -129,16 +133,12 @@ def alarm_buffer(node, out):
 
 def flood(node, params, now, w, instance, out):
     """Flood the kept alarm w: with the same number, so that the monitor takes one of all copies."""
-    flags = node.wait_flags[w] | FLOOD
-    i = compose(node, now, ALARMS, ALARM, node.wait_dest[w], flags, out)
+    i = compose_kept(node, now, ALARMS, w, out)
     if i < 0:
         return
-    node.seq = (node.seq - 1) & 65_535
-    node.q_seq[i] = node.wait_seq[w]
+    node.q_flags[i] = node.q_flags[i] | FLOOD
     node.q_ttl[i] = instance
     node.q_copies[i] = 2
-    for k in range(node.wait_length[w]):
-        add8(node, i, node.wait_body[w * node.wait_room + k])
     add_hop(node, i)
     record_flood(node, node.number, node.wait_seq[w], FLOODED, instance)
 
@@ -170,14 +170,11 @@ def on_flood(node, params, now, frame, k, out):
         take_alarm(node, params, now, frame, out)
         return
     crowded = yield_routed(node, params, now)
-    i = take_over(node, now, ALARMS, frame, out)
+    i = spread(node, params, now, ALARMS, frame, out)
     if i >= 0:
-        wait = draw(node, params.flood_us + 1)
         if ahead and crowded:
-            wait = params.flood_us + wait
-        node.q_link_dst[i] = ALL
+            node.q_due[i] = (node.q_due[i] + params.flood_us) & MASK30
         node.q_copies[i] = 2
-        node.q_due[i] = (now + wait) & MASK30
         if not add_hop(node, i):
             node.q_state[i] = FREE
 

@@ -318,7 +318,7 @@ def gate(n, most=0):
         ("job_tries", n, 0, 255, "tries", "of the job"),
         ("job_next", n, 0, 15, "fragment", "the next to be queued"),
         ("job_count", n, 0, 15, "fragments", "how many the table has"),
-        ("job_parts", n, 0, 65535, "bits", "fragments acknowledged"),
+        ("job_parts", n, 0, 65535, "bits", "fragments that it has; 32768: it told"),
         ("job_due", n, 0, TIME, "us", "sent: when it is sent again"),
         ("job_a", n, 0, TIME, "hash", "of the table that is on its way"),
         ("job_b", n, 0, TIME, "hash", "... a second one"),

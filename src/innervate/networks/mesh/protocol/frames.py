@@ -116,6 +116,14 @@ def in_path(frame, who):
     return 0
 
 
+def is_named(frame, first, who):
+    """1 if the payload has the number `who`, from byte `first` on."""
+    for k in range(first, frame.length):
+        if frame.body[k] == who:
+            return 1
+    return 0
+
+
 def store(node, i, frame):
     """A received packet into place i of the queue."""
     node.q_kind[i] = frame.kind

@@ -13,6 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop
 from innervate.networks.mesh.protocol.paths import is_known
 from innervate.networks.mesh.protocol.queue import compose
+from innervate.networks.mesh.protocol.route import room_of
 from innervate.networks.mesh.protocol.table import (
     CROWD,
     ends_of,
@@ -22,10 +23,13 @@ from innervate.networks.mesh.protocol.table import (
     spread_of_answers,
 )
 
+TOLD = 1 << PARTS_MAX  # in job_parts, behind the bits of parts: the node has told which it has
+
 
 def pump_graph(node, gate, params, now, out):
     """Flood the parts of the graph, and once more those that some node misses."""
     count = part_count(params)
+    silent = 0  # whether anybody has not told what it has
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
             gate.job[s] = GIVEN_UP
@@ -33,6 +37,11 @@ def pump_graph(node, gate, params, now, out):
                 gate.job[s] = UNDER_WAY
                 gate.job_count[s] = count
                 gate.job_next[s] = gate.part = 0
+        if gate.job[s] == UNDER_WAY and gate.job_parts[s] < TOLD:
+            silent = 1
+    for s in range(params.nodes):
+        if not silent:
+            gate.job_next[s] = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
             flood_graph(node, gate, params, now, count, out)
@@ -44,17 +53,30 @@ def is_unasked(gate, s):
     return gate.job[s] == UNDER_WAY and gate.job_next[s] == 0
 
 
-def is_missed(gate, params, index):
-    """1 if a node waits for this part of the graph."""
+def lacks(gate, s, bit):
+    """1 if node s lacks this part; bit PARTS_MAX: if it has not told which it has."""
+    return is_unasked(gate, s) and gate.job_parts[s] >> bit & 1 == 0
+
+
+def is_missed(gate, params, bit):
+    """1 if some node lacks this part, or has not told."""
     for s in range(params.nodes):
-        if gate.job[s] == UNDER_WAY and gate.job_parts[s] >> index & 1 == 0:
+        if lacks(gate, s, bit):
             return 1
     return 0
 
 
+def name_silent(node, gate, params, i):
+    """Who has told nothing since the last flood is asked by name, as far as there is room."""
+    for s in range(params.nodes):
+        if lacks(gate, s, PARTS_MAX) and node.q_length[i] < room_of(node, params, i):
+            add8(node, i, s)
+
+
 def graph_due(params, now, count, tries):
     """When a flood of the graph is over at the latest, and its acks are in."""
-    answers = (params.job_us >> 1) * (params.nodes // CROWD) + spread_of_answers(params)
+    answers = spread_of_answers(params, params.nodes)
+    answers = answers + (params.job_us >> 1) * (params.nodes // CROWD)
     wait = params.job_us * (1 + tries) + params.jitter_us * (count + 4) + answers
     return (now + wait) & MASK30
 
@@ -69,30 +91,30 @@ def flood_graph(node, gate, params, now, count, out):
     pace = params.jitter_us
     if count <= params.queue:
         pace = pace >> 1
-    for index in range(gate.part, count):
-        if is_missed(gate, params, index):
+    i = 0
+    for index in range(gate.part, count + 1):
+        if is_missed(gate, params, index if index < count else PARTS_MAX):
             i = compose(node, now, CONTROL, GRAPH, ALL, 0, out)
             if i < 0:
                 gate.part = index
-                go_on_at(gate, params, (due + pace) & MASK30)
-                return
+                break
             add_hop(node, i)
             fill_graph(node, gate, params, i, index, count)
+            if index == count:
+                name_silent(node, gate, params, i)
             node.q_copies[i] = params.copies  # one may find the channel full of the part before
             node.q_due[i] = due & MASK30
             due = due + pace
-    gate.part = 0
+    if i >= 0:
+        gate.part = 0
     for s in range(params.nodes):
         if is_unasked(gate, s):
-            gate.job_next[s] = 1
-            gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
-
-
-def go_on_at(gate, params, time):
-    """The flood under way goes on at that time."""
-    for s in range(params.nodes):
-        if is_unasked(gate, s):
-            gate.job_due[s] = time
+            if i < 0:
+                gate.job_due[s] = (due + pace) & MASK30
+            else:
+                gate.job_next[s] = 1
+                gate.job_parts[s] = TOLD - 1  # all, for all we know
+                gate.job_due[s] = graph_due(params, now, count, gate.job_tries[s])
 
 
 def fill_graph(node, gate, params, i, index, count):

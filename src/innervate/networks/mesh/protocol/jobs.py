@@ -19,7 +19,7 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16
-from innervate.networks.mesh.protocol.graph_jobs import is_unasked, pump_graph
+from innervate.networks.mesh.protocol.graph_jobs import TOLD, is_unasked, pump_graph
 from innervate.networks.mesh.protocol.neighbours import is_suspect
 from innervate.networks.mesh.protocol.pack import depth_of, pack, room_at
 from innervate.networks.mesh.protocol.paths import (
@@ -81,6 +81,8 @@ def note_lost_table(gate, s):
     gate.mark_a[s] = 0
     if gate.job[s] == CURRENT:
         gate.job[s] = GIVEN_UP
+    if gate.job[s] == GIVEN_UP:
+        gate.job_a[s] = 0  # it has no part of it, either
 
 
 def give_job(gate, params, s):
@@ -95,11 +97,12 @@ def give_job(gate, params, s):
     if a == gate.mark_a[s] and b == gate.mark_b[s]:
         gate.job[s] = CURRENT
         return
+    if params.mode == TABLES or a != gate.job_a[s]:
+        gate.job_parts[s] = TOLD
     gate.job_a[s] = a
     gate.job_b[s] = b
     gate.job[s] = TO_SEND
     gate.job_tries[s] = 0
-    gate.job_parts[s] = 0
 
 
 def next_job(node, gate, params):
@@ -231,12 +234,13 @@ def on_ack(node, gate, params, now, frame, out):
         return
     if get16(frame, 1) != gate.version or gate.job[s] == CURRENT:
         return
-    gate.job_parts[s] = gate.job_parts[s] | get16(frame, 3)
+    told = get16(frame, 3)
     whole = all_parts(gate.job_count[s])
-    if whole and gate.job_parts[s] & whole == whole:
+    gate.job_parts[s] = told | TOLD
+    if whole and told & whole == whole:
         gate.job[s] = CURRENT
         gate.mark_a[s] = gate.job_a[s]
-    elif gate.job[s] == UNDER_WAY:
+    elif gate.job[s] == UNDER_WAY and params.mode == TABLES:
         gate.job_next[s] = 0
     pump(node, gate, params, now, out)
 

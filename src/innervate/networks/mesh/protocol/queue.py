@@ -68,8 +68,8 @@ def make_room(node, rank, out):
         return 1
     newest = -1
     for i in range(node.places):
-        if node.q_state[i] == WAITS and node.q_rank[i] == MESSAGES and is_searching(node, i):
-            if newest < 0 or (node.q_order[i] - node.q_order[newest]) & MASK30 < MASK30 >> 1:
+        if is_searching(node, i):
+            if newest < 0 or is_newer(node, i, newest):
                 newest = i
     if newest < 0 or free_places(node) < rank:
         return 0
@@ -78,8 +78,15 @@ def make_room(node, rank, out):
     return 1
 
 
+def is_newer(node, i, j):
+    """1 if the frame in place i came after that in place j."""
+    return (node.q_order[i] - node.q_order[j]) & MASK30 < MASK30 >> 1
+
+
 def is_searching(node, i):
-    """1 if the message in place i looks for a way, and its origin sends it again."""
+    """1 if a message waits in place i that looks for a way, and its origin sends it again."""
+    if node.q_state[i] != WAITS or node.q_rank[i] != MESSAGES:
+        return 0
     return node.q_flags[i] & DETOURED and node.q_flags[i] & END_TO_END
 
 
@@ -87,7 +94,7 @@ def spare_places(node):
     """How many more frames fit where what looks for a way, and will be sent again, makes room."""
     count = free_places(node)
     for i in range(node.places):
-        if node.q_state[i] == WAITS and node.q_rank[i] == MESSAGES and is_searching(node, i):
+        if is_searching(node, i):
             count = count + 1
     return count
 
@@ -101,9 +108,8 @@ def take_place(node, rank, out):
         if node.q_state[i] == WAITS and node.q_rank[i] > rank:
             if worst < 0 or node.q_rank[i] > node.q_rank[worst]:
                 worst = i
-            elif node.q_rank[i] == node.q_rank[worst]:
-                if (node.q_order[i] - node.q_order[worst]) & MASK30 < (MASK30 >> 1):
-                    worst = i
+            elif node.q_rank[i] == node.q_rank[worst] and is_newer(node, i, worst):
+                worst = i
     if rank > CONTROL or worst < 0:
         return -1
     report(out, REPORT_DROPPED, node.q_origin[worst], node.q_seq[worst])
@@ -174,7 +180,7 @@ def is_before(node, i, j):
         return node.q_rank[i] < node.q_rank[j]
     if node.q_rank[i] == ALARMS and (node.q_link_dst[i] == ALL) != (node.q_link_dst[j] == ALL):
         return node.q_link_dst[i] == ALL
-    return (node.q_order[j] - node.q_order[i]) & MASK30 < (MASK30 >> 1)
+    return is_newer(node, j, i)
 
 
 def pick_due(node, params, now):

@@ -5,7 +5,6 @@ from innervate.dialect.rng import draw
 from innervate.networks.mesh.protocol.constants import (
     ALARM,
     ALARMS,
-    ALL,
     CONTROL,
     DATA,
     GRAPH,
@@ -26,7 +25,7 @@ from innervate.networks.mesh.protocol.messages import hand_up, take
 from innervate.networks.mesh.protocol.neighbours import is_strong
 from innervate.networks.mesh.protocol.queue import has_room, take_over
 from innervate.networks.mesh.protocol.route import learn_way
-from innervate.networks.mesh.protocol.send import enter, send_on
+from innervate.networks.mesh.protocol.send import enter, send_on, spread
 
 AT_EASE = 6  # places free: what is flooded leaves at once, before those who passed it on forget it
 
@@ -84,8 +83,4 @@ def flood_data(node, params, now, frame, out):
     if not accept(node, params, frame.origin, frame.seq, 1):
         return  # passed on so long ago that it is forgotten
     hand_up(params, frame, frame.kind, out)
-    i = take_over(node, now, MESSAGES, frame, out)
-    if i >= 0:
-        node.q_link_dst[i] = ALL
-        node.q_copies[i] = params.copies
-        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+    spread(node, params, now, MESSAGES, frame, out)

@@ -206,14 +206,21 @@ def retransmit(node, params, now, w, out):
     rank = CONTROL if node.wait_flags[w] & PRIORITY else MESSAGES
     if node.wait_kind[w] == ALARM:
         rank = ALARMS
+    i = compose_kept(node, now, rank, w, out)
+    if i >= 0:
+        send_buffered(node, params, now, i, w, node.wait_handle[w], out)
+    return 1
+
+
+def compose_kept(node, now, rank, w, out):
+    """The message kept in place w as a packet, under the number that it has; -1 if no place."""
     i = compose(node, now, rank, node.wait_kind[w], node.wait_dest[w], node.wait_flags[w], out)
     if i >= 0:
-        node.seq = (node.seq - 1) & 65_535  # it keeps its number
+        node.seq = (node.seq - 1) & MASK16
         node.q_seq[i] = node.wait_seq[w]
         for k in range(node.wait_length[w]):
             add8(node, i, node.wait_body[w * node.wait_room + k])
-        send_buffered(node, params, now, i, w, node.wait_handle[w], out)
-    return 1
+    return i
 
 
 def get_before(node, w):

@@ -21,7 +21,7 @@ from innervate.networks.mesh.protocol.constants import (
     TREE,
 )
 from innervate.networks.mesh.protocol.duplicates import forgive
-from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, store
+from innervate.networks.mesh.protocol.frames import add8, add16, add_hop, get16, is_named, store
 from innervate.networks.mesh.protocol.hop import NOBODY_GAVE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
 from innervate.networks.mesh.protocol.queue import WAITS, compose, drop, enqueue, kick
@@ -180,10 +180,7 @@ def is_spared(node, frame):
     """1 if we need not respond: we keep our table in a takeover, or others are asked by name."""
     if frame.length == REQUEST_BYTES:
         return frame.flags & PRIORITY and node.version
-    for k in range(REQUEST_BYTES, frame.length):
-        if frame.body[k] == node.number:
-            return 0
-    return 1
+    return not is_named(frame, REQUEST_BYTES, node.number)
 
 
 def arm_guard(node, params, now, out):

@@ -21,7 +21,6 @@ from innervate.networks.mesh.protocol.constants import (
     WHOLE_GRAPH,
 )
 from innervate.networks.mesh.protocol.duplicates import forget_bad, forwarded_at, is_bad, is_skipped
-from innervate.networks.mesh.protocol.frames import was_at
 from innervate.networks.mesh.protocol.neighbours import (
     FREE,
     count_neighbours,
@@ -32,9 +31,8 @@ from innervate.networks.mesh.protocol.neighbours import (
     random_neighbour,
 )
 from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge, measure_distances
-from innervate.networks.mesh.protocol.upward import uplink
+from innervate.networks.mesh.protocol.upward import NONE, is_untried, uplink
 
-NONE = 255
 CALLS = 2  # a message is flooded in so many of its tries, the parities of which differ
 
 
@@ -126,13 +124,6 @@ def giver(node, i):
     return NOBODY
 
 
-def is_untried(node, i, who):
-    """1 if the packet in place i was not at `who`, nor failed there, whatever we suspect."""
-    if who == NONE or was_at(node, i, who):
-        return 0
-    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
-
-
 def named(node, params, i):
     """Before the packet goes back: recipient, or next in the table, that did not answer before.
 
@@ -195,14 +186,19 @@ def room_of(node, params, i):
     return params.mtu - HEADER_BYTES - CRC_BYTES - node.q_path_len[i]
 
 
+def is_near(node, params, who):
+    """1 if `who` is a neighbour that is loud enough, and answers."""
+    strong = is_strong(node, params, place_of(node, params, who))
+    return strong and not is_suspect(node, params, who)
+
+
 def choose_by_graph(node, params, i):
     """The next hop on a shortest path around all that failed and all that had the packet.
 
     Where the graph knows none, links may have come that it does not have: search.
     """
     dest = node.q_dest[i]
-    near = is_strong(node, params, place_of(node, params, dest))
-    if near and not is_suspect(node, params, dest):
+    if is_near(node, params, dest):
         return dest
     if node.version:
         who = find_hop(node, params, i, dest, room_of(node, params, i), 1)
@@ -218,8 +214,7 @@ def choose_by_route(node, params, i):
     """
     dest = node.q_dest[i]
     if not node.q_flags[i] & SOURCE_ROUTE:
-        near = is_strong(node, params, place_of(node, params, dest))
-        if near and not is_suspect(node, params, dest):
+        if is_near(node, params, dest):
             return dest
         if not node.leading:
             if params.on_demand and is_usable(node, params, i, planned(node, params, dest)):

@@ -30,7 +30,7 @@ from innervate.networks.mesh.protocol.hop import (
 )
 from innervate.networks.mesh.protocol.link_quality import tries_for
 from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
-from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick
+from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick, take_over
 from innervate.networks.mesh.protocol.route import (
     advance_route,
     choose_hop,
@@ -50,6 +50,15 @@ def give_up(node, params, i, out):
     """Nobody can take the packet in place i."""
     report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
     drop(node, params, i)
+
+
+def spread(node, params, now, rank, frame, out):
+    """Pass a flooded packet on once; its path stays short, so that it always fits."""
+    i = take_over(node, now, rank, frame, out)
+    if i >= 0:
+        node.q_copies[i] = params.copies
+        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+    return i
 
 
 def pass_on(node, params, i, who):

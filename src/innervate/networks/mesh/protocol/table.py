@@ -16,10 +16,10 @@ from innervate.networks.mesh.protocol.constants import (
     TABLES,
 )
 from innervate.networks.mesh.protocol.duplicates import clear_bad, record_flood
-from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_route
+from innervate.networks.mesh.protocol.frames import add8, add16, get16, is_named, is_route
 from innervate.networks.mesh.protocol.queue import compose, take_over
 from innervate.networks.mesh.protocol.search import set_edge
-from innervate.networks.mesh.protocol.send import enter, pass_on, send_on, send_up
+from innervate.networks.mesh.protocol.send import enter, pass_on, send_on, send_up, spread
 
 NONE = 255
 GROUP_BYTES = 3
@@ -164,16 +164,7 @@ def on_activate(node, params, now, frame, out):
     """Flooded: put the new tables into force."""
     activate(node, params, frame.body[0], get16(frame, 1), out)
     if not record_flood(node, frame.origin, frame.seq, ACTIVATE, 0):
-        spread(node, params, now, frame, out)
-
-
-def spread(node, params, now, frame, out):
-    """Pass a flooded packet on once; its path stays short, so that it always fits."""
-    i = take_over(node, now, CONTROL, frame, out)
-    if i >= 0:
-        node.q_link_dst[i] = ALL
-        node.q_copies[i] = params.copies
-        node.q_due[i] = (now + draw(node, params.flood_us + 1)) & MASK30
+        spread(node, params, now, CONTROL, frame, out)
 
 
 def part_bytes(params):
@@ -193,39 +184,40 @@ def graph_bytes(params):
 
 
 def on_graph(node, params, now, frame, out):
-    """A part of the flooded graph."""
+    """A part of the flooded graph; behind the last part it is asked who has which, by name."""
     if frame.length <= PART_HEAD or node.leading:
         return
     epoch = frame.body[0]
     version = get16(frame, 1)
     index = frame.body[3] >> 4
     count = frame.body[3] & 15
-    if epoch != node.epoch or index >= count:
+    if epoch != node.epoch or record_flood(node, frame.origin, frame.seq, GRAPH, 0):
         return
-    fresh = not record_flood(node, frame.origin, frame.seq, GRAPH, 0)
-    if is_current(node, epoch, version):
-        if fresh and index == count - 1:  # once for a flood
-            answer_graph(node, params, now, epoch, version, count, out)
-    else:
+    parts = all_parts(count)
+    asked = params.nodes
+    tells = 0
+    if index >= count:
+        asked = frame.length - PART_HEAD
+        tells = is_named(frame, PART_HEAD, node.number)
+    if not is_current(node, epoch, version):
         expect(node, epoch, version, count)
-        read_edges(node, params, frame, index)
-        node.parts = node.parts | 1 << index
-        if node.parts == all_parts(count):
-            put_in_force(node, params, epoch, version, out)
-            answer_graph(node, params, now, epoch, version, count, out)
-    if fresh:
-        spread(node, params, now, frame, out)
+        if index < count:
+            read_edges(node, params, frame, index)
+            node.parts = node.parts | 1 << index
+            tells = index == count - 1
+            if node.parts == parts:
+                tells = 1
+                put_in_force(node, params, epoch, version, out)
+        parts = node.parts
+    if tells:  # but not when all others do
+        wait = draw(node, spread_of_answers(params, asked) + 1)
+        tell_parts(node, params, now, epoch, version, parts, wait, out)
+    spread(node, params, now, CONTROL, frame, out)
 
 
-def spread_of_answers(params):
-    """Within what time all say that they have the graph: their acks meet near the gateway."""
-    return params.spread_us * (1 + params.nodes // CROWD)
-
-
-def answer_graph(node, params, now, epoch, version, count, out):
-    """The graph is whole here: say so, but not when all others do."""
-    wait = draw(node, spread_of_answers(params) + 1)
-    tell_parts(node, params, now, epoch, version, all_parts(count), wait, out)
+def spread_of_answers(params, count):
+    """Within what time so many say which parts they have: their acks meet near the gateway."""
+    return params.spread_us * (1 + count // CROWD)
 
 
 def ends_of(params, pair):

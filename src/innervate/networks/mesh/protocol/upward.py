@@ -5,6 +5,7 @@ from innervate.networks.mesh.protocol.duplicates import is_skipped
 from innervate.networks.mesh.protocol.frames import was_at
 from innervate.networks.mesh.protocol.neighbours import FREE, SUSPECT, UNHEARD
 
+NONE = 255
 FAINT_DB = 2  # below what is reported: half of what crosses such a link is lost
 
 
@@ -36,6 +37,13 @@ def is_uplink(node, k):
     return node.round_depth[k] < node.depth
 
 
+def is_untried(node, i, who):
+    """1 if the packet in place i was not at `who`, nor failed there, whatever we suspect."""
+    if who == NONE or was_at(node, i, who):
+        return 0
+    return not is_skipped(node, node.q_origin[i], node.q_seq[i], who)
+
+
 def uplink(node, params, i):
     """The best uplink for the packet in place i that neither had it nor failed, or NOBODY.
 
@@ -45,9 +53,7 @@ def uplink(node, params, i):
     for k in range(params.places):
         if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
             who = node.neighbour[k]
-            if not was_at(node, i, who) and not is_skipped(
-                node, node.q_origin[i], node.q_seq[i], who
-            ):
+            if is_untried(node, i, who):
                 if params.faint <= params.min_rssi and who == node.parent:
                     return who
                 if best < 0 or is_better(node, params, k, best):

@@ -73,13 +73,12 @@ def on_position(node, params, now, frame, out):
     robot = frame.body[at]
     if robot >= params.nodes or robot == node.number:
         return
-    monitor = resolve(node, params, MONITOR) == node.number
-    if monitor:
-        note_found(node, params, now, frame, out)
-    if params.points == 0:
-        return
     x = signed16(get16(frame, at + 1))
     y = signed16(get16(frame, at + 3))
+    if resolve(node, params, MONITOR) == node.number:
+        note_found(node, params, now, robot, x, y, out)
+    if params.points == 0:
+        return
     gap = margin(params, x, y)
     said = frame.body[at + 7]
     if gap >= 0:
@@ -96,15 +95,11 @@ def on_position(node, params, now, frame, out):
             node.raised[robot] = node.raised[robot] | RAISED_OUT
 
 
-def note_found(node, params, now, frame, out):
-    """The monitor hears of a robot: it is not lost, or not any more."""
-    at = inner(frame)
-    robot = frame.body[at]
+def note_found(node, params, now, robot, x, y, out):
+    """The monitor hears where a robot is: it is not lost, or not any more."""
     node.missed[robot] = 0
     if node.raised[robot] & RAISED_LOST:
         node.raised[robot] = node.raised[robot] & ~RAISED_LOST
-        x = signed16(get16(frame, at + 1))
-        y = signed16(get16(frame, at + 3))
         raise_alarm(node, params, now, CLEAR, robot, x, y, 0, 0, out)
 
 
