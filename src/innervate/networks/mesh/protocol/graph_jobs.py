@@ -29,7 +29,7 @@ TOLD = 1 << PARTS_MAX  # in job_parts, behind the bits of parts: the node has to
 def pump_graph(node, gate, params, now, out):
     """Flood the parts of the graph, and once more those that some node misses."""
     count = part_count(params)
-    silent = 0  # whether anybody has not told what it has
+    silent = 0  # who have not told what they have
     for s in range(params.nodes):
         if gate.job[s] == TO_SEND:
             gate.job[s] = GIVEN_UP
@@ -38,10 +38,12 @@ def pump_graph(node, gate, params, now, out):
                 gate.job_count[s] = count
                 gate.job_next[s] = gate.part = 0
         if gate.job[s] == UNDER_WAY and gate.job_parts[s] < TOLD:
-            silent = 1
+            silent = silent + 1
     for s in range(params.nodes):
         if not silent:
             gate.job_next[s] = 0
+        elif not gate.job_next[s] and silent > params.nodes >> 1:
+            gate.job_parts[s] = 0  # a part was lost here, not on its way: all come again
     for s in range(params.nodes):
         if is_unasked(gate, s):
             flood_graph(node, gate, params, now, count, out)
