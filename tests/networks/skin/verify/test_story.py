@@ -123,8 +123,8 @@ def test_stories_are_told_word_for_word():
     assert lines == WHOLE.read_text(encoding="utf-8").splitlines()
 
 
-SILENT = Mutant("who has no route is silent", "    if not silent:\n",
-                "    if not silent and cell.parent != NONE:\n")  # fmt: skip
+SILENT = Mutant("who has no route is silent", "    if not silent:\n        announce(",
+                "    if not silent and cell.parent != NONE:\n        announce(")  # fmt: skip
 NEWER = Mutant("a newer number is said", "    cell.sent_sq = cell.sq_own\n    cell.sent_at",
                "    cell.sent_sq = cell.sq_own + 1\n    cell.sent_at")  # fmt: skip
 SHORT = Mutant("it is as near as its parent", "return min(cell.dist[cell.parent] + 1, INFINITY)",
