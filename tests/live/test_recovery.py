@@ -10,6 +10,7 @@ from innervate import scenario
 from innervate.cli import app, capturing
 from innervate.export import capture, pcapng
 from innervate.export.errors import ExportError
+from innervate.export.reading import Capture
 from innervate.live import status, tap
 from innervate.networks.skin.export.recovery import line, recoveries
 from innervate.networks.skin.live.parameters import SKIN
@@ -29,7 +30,7 @@ def test_a_simulations_capture_says_what_its_summary_says(tmp_path):
     path = tmp_path / "run.pcapng"
     capture.write(scenario.plan(scenario.from_dict(CUT)), path)
     told = innervate.run(scenario.from_dict(CUT), out=None).summary["recoveries"][0]
-    cut, restored = recoveries(path)
+    cut, restored = recoveries(Capture(path))
     after_ms = 1000 * (cut.at_s - 0.5)  # nobody sent anything just when it was cut
     assert 0 <= after_ms < PERIOD_MS
     assert cut.what.endswith(" - pc.1")
@@ -52,7 +53,7 @@ def line_of(cells, *events):
 
 def found_in(tables, path):
     capture.write(scenario.plan(scenario.from_dict(tables)), path)
-    return recoveries(path)
+    return recoveries(Capture(path))
 
 
 CUT_0 = {"at_s": 0.5, "action": "cut", "interface": 0}
@@ -132,7 +133,7 @@ def test_a_live_skins_capture_says_what_happened_to_it(tmp_path, capsys):
                 assert await running == 0
 
     asyncio.run(main())
-    cut, gone, back = recoveries(path)
+    cut, gone, back = recoveries(Capture(path))
     detected_ms = SKIN["k"] * SKIN["beacon_us"] / 1000
     assert cut.what == "cut c0.2 - pc.0"
     assert 1 <= cut.cells <= 5
@@ -162,7 +163,7 @@ def test_what_says_nothing_of_parents_is_told(kind, description, why, tmp_path):
               pcapng.packet(0, 1, b"x", pcapng.OUTBOUND))  # fmt: skip
     path.write_bytes(b"".join(blocks))
     with pytest.raises(ExportError, match=why):
-        recoveries(path)
+        recoveries(Capture(path))
 
 
 def test_a_capture_of_others_is_no_skins_also_if_nothing_was_sent(tmp_path):
@@ -170,9 +171,9 @@ def test_a_capture_of_others_is_no_skins_also_if_nothing_was_sent(tmp_path):
     for interface in (b"", pcapng.interface(149, "s0", "station 0")):
         path.write_bytes(pcapng.section() + interface)
         with pytest.raises(ExportError, match="no capture of a skin"):
-            recoveries(path)
+            recoveries(Capture(path))
     path.write_bytes(pcapng.section() + pcapng.interface(147, "pc.0", "pc port 0"))
-    assert recoveries(path) == []
+    assert recoveries(Capture(path)) == []
 
 
 def test_what_ends_in_the_middle_of_a_block_says_so(tmp_path, capsys):

@@ -152,7 +152,7 @@ def _said() -> Any:
 
 
 def _healing(name: str) -> Any:
-    healed = recovery.recoveries(captured(name)[0])
+    healed = recovery.recoveries(Capture(captured(name)[0]))
     return plain([{**plain(one), "line": recovery.line(one)} for one in healed])
 
 

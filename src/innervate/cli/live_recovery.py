@@ -24,7 +24,7 @@ def show(capture: Path, /, *, as_json: Json = False) -> int:
     kinds = _kinds(capture)
     recovery = next((one for one in able if one.name in kinds), able[0]).recovery
     whole = Capture(capture)
-    found = recovery.watched(whole)
+    found = recovery.recoveries(whole)
     if whole.cut_short:
         print(f"innervate: {capture} {CUT_SHORT}", file=sys.stderr)
     if as_json:

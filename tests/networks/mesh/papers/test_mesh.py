@@ -193,7 +193,9 @@ def test_where_nothing_of_what_is_allowed_was_used_the_figure_says_so():
     got = Measured(results("bars"), True)
     unused = [row for row, bar in enumerate(bars.bars(got)) if bar.used == 0]
     (ax,) = bars.draw(got).axes
-    assert [text.get_position()[1] for text in ax.texts if text.get_text() == "none"] == unused
+    assert [
+        text.get_position()[1] for text in ax.texts if text.get_text() == "nothing amiss"
+    ] == unused
     assert 0 < len(unused) < len(ax.patches)
 
 

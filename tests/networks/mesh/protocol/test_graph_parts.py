@@ -23,7 +23,13 @@ from innervate.networks.mesh.protocol.frames import get16
 from innervate.networks.mesh.protocol.graph_jobs import TOLD, pump_graph
 from innervate.networks.mesh.protocol.jobs import give_jobs, note_lost_table, on_ack
 from innervate.networks.mesh.protocol.queue import kick
-from innervate.networks.mesh.protocol.table import PART_HEAD, all_parts, graph_bytes, part_bytes
+from innervate.networks.mesh.protocol.table import (
+    PART_HEAD,
+    all_parts,
+    graph_bytes,
+    on_graph,
+    part_bytes,
+)
 from tests.networks.mesh.bench import Bench, Frame
 
 LINE = [(0, 1), (1, 2)]
@@ -289,6 +295,18 @@ def test_a_graph_of_another_epoch_is_nobody_s():
     assert flooded_by(bench, gate) == ([COUNT], [[1]])
     assert parts_by(bench, 1) == []
     assert told_by(bench, 1) == []
+
+
+def test_a_part_behind_the_question_changes_nothing():
+    bench, _ = settled()
+    node = bench.nodes[1]
+    before = node.part_count, node.parts, node.new_version
+    frame = Frame()
+    frame.kind, frame.origin, frame.seq, frame.link_dst, frame.length = GRAPH, 0, 9, ALL, 5
+    frame.body[:5] = [node.epoch, 7, 7, 16 * (COUNT + 1) + COUNT, 1]
+    on_graph(node, bench.params, bench.now, frame, bench.out)
+    assert (node.part_count, node.parts, node.new_version) == before
+    assert not any(node.q_state)
 
 
 def test_not_all_say_at_once_that_they_have_the_graph():

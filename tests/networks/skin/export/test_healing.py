@@ -4,6 +4,7 @@ import pytest
 
 from innervate.dialect import plain
 from innervate.export import links, pcapng
+from innervate.export.reading import Capture
 from innervate.networks.skin import frames as skin
 from innervate.networks.skin.export.recovery import CUT as LOST
 from innervate.networks.skin.export.recovery import END_NS, Healing, line, recoveries
@@ -53,7 +54,7 @@ def healed(tmp_path, *packets):
         blocks.append(pcapng.interface(147, f"{number}", links.describe(what, node, port, there)))
     path = tmp_path / "skin.pcapng"
     path.write_bytes(b"".join([*blocks, *packets]))
-    return recoveries(path)
+    return recoveries(Capture(path))
 
 
 BEGIN = (beacon(0, C0_PC, 1), beacon(1, C1_PC, 1), beacon(2, C0_C1, 0), beacon(2, C1_C0, 0))

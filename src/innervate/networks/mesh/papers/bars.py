@@ -17,9 +17,9 @@ from innervate.plot import style
 TITLE = "What was asked for"
 CAPTION = (
     "30 nodes, mean degree 8, 250 kbit/s. Bars: how much of what is allowed was used, up to the "
-    "line (none: nothing); then what was asked for, what was measured, of how many. None of it is "
-    "the document's. Standbys wait for requests (guard_s = 0); if nothing is said they ask, and "
-    "take a second."
+    "line (nothing amiss: none of it); then what was asked for, what was measured, of how many. "
+    "None of it is the document's. Standbys wait for requests (guard_s = 0); if nothing is said "
+    "they ask, and take a second."
 )
 DEAD = 8
 STATE_NODES = 50
@@ -170,7 +170,7 @@ def draw(got: Measured) -> Figure:
     ax.axvline(1, color=style.INK, lw=0.8)
     for row, bar in zip(rows, found, strict=True):
         if not bar.used:
-            ax.text(0.03, row, "none", va="center", color=style.BLUE)
+            ax.text(0.03, row, "nothing amiss", va="center", color=style.BLUE)
         ax.text(1.35, row, bar.asked, va="center")
         ax.text(2.2, row, bar.got, va="center", weight="bold")
         ax.text(3.1, row, bar.of, va="center", color=style.SOFT)

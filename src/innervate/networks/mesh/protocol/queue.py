@@ -69,7 +69,7 @@ def make_room(node, rank, out):
     newest = -1
     for i in range(node.places):
         if is_searching(node, i):
-            if newest < 0 or is_newer(node, i, newest):
+            if newest < 0 or came_after(node, i, newest):
                 newest = i
     if newest < 0 or free_places(node) < rank:
         return 0
@@ -78,7 +78,7 @@ def make_room(node, rank, out):
     return 1
 
 
-def is_newer(node, i, j):
+def came_after(node, i, j):
     """1 if the frame in place i came after that in place j."""
     return (node.q_order[i] - node.q_order[j]) & MASK30 < MASK30 >> 1
 
@@ -108,7 +108,7 @@ def take_place(node, rank, out):
         if node.q_state[i] == WAITS and node.q_rank[i] > rank:
             if worst < 0 or node.q_rank[i] > node.q_rank[worst]:
                 worst = i
-            elif node.q_rank[i] == node.q_rank[worst] and is_newer(node, i, worst):
+            elif node.q_rank[i] == node.q_rank[worst] and came_after(node, i, worst):
                 worst = i
     if rank > CONTROL or worst < 0:
         return -1
@@ -180,7 +180,7 @@ def is_before(node, i, j):
         return node.q_rank[i] < node.q_rank[j]
     if node.q_rank[i] == ALARMS and (node.q_link_dst[i] == ALL) != (node.q_link_dst[j] == ALL):
         return node.q_link_dst[i] == ALL
-    return is_newer(node, j, i)
+    return came_after(node, j, i)
 
 
 def pick_due(node, params, now):

@@ -191,7 +191,9 @@ def on_graph(node, params, now, frame, out):
     version = get16(frame, 1)
     index = frame.body[3] >> 4
     count = frame.body[3] & 15
-    if epoch != node.epoch or record_flood(node, frame.origin, frame.seq, GRAPH, 0):
+    if epoch != node.epoch or index > count:
+        return
+    if record_flood(node, frame.origin, frame.seq, GRAPH, 0):
         return
     parts = all_parts(count)
     asked = params.nodes

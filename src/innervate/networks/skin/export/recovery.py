@@ -7,7 +7,6 @@ that went away and came back.
 
 from collections import deque
 from dataclasses import dataclass, field
-from pathlib import Path
 from statistics import median
 
 from innervate.export import links, pcapng
@@ -251,17 +250,12 @@ class Watcher:
         self.found.append(now.found)
 
 
-def recoveries(path: Path) -> list[Healing]:
+def recoveries(capture: Capture) -> list[Healing]:
     """Read a capture of a skin: an entry for everything that happened to it, in order.
 
     Raises:
         ExportError: it is none, is damaged, or says too little.
     """
-    return watched(Capture(path))
-
-
-def watched(capture: Capture) -> list[Healing]:
-    """The same of a capture that nobody has read, and which says then whether it was whole."""
     watcher = Watcher(capture)
     packets = sorted(capture.packets(), key=lambda packet: packet.time_ns)
     if {links.kind_of(one.link_type) for one in capture.interfaces} != {"skin"}:
