@@ -6,6 +6,7 @@ Also what a plan becomes when it is brought up live: node files and events.
 from __future__ import annotations
 
 import dataclasses
+import inspect
 from collections.abc import Callable, Iterator
 from functools import partial
 from inspect import Parameter
@@ -117,6 +118,9 @@ def record(network: Network) -> Any:
 def keys(model: Any) -> Any:
     """The keys of a table with kinds, ranges, defaults; all that are tables inside it too."""
     (top,), parts = msgspec.json.schema_components([model])
+    for part in parts.values():  # as deep as they stand in their class before msgspec 0.23
+        if "description" in part:
+            part["description"] = inspect.cleandoc(part["description"])
     return {"top": top, **parts}
 
 

@@ -1,6 +1,6 @@
 """Files, texts and dicts become scenarios, and scenarios become text again."""
 
-from __future__ import annotations
+from __future__ import inspect
 
 import gc
 import tomllib
@@ -135,6 +135,9 @@ def test_a_byte_order_mark_and_windows_lines(tmp_path: Path, small: str) -> None
 def test_json_schema_is_published() -> None:
     schema = json_schema()
     assert "SkinScenario" in schema["$defs"]
+    said = [one["description"] for one in schema["$defs"].values() if "description" in one]
+    assert any("\n" in words for words in said)
+    assert said == [inspect.cleandoc(words) for words in said], "as deep as its class stands"
     told = msgspec.json.decode(msgspec.json.encode(schema))
     radio = told["$defs"]["RadioScenario"]
     assert radio["required"] == ["kind"]

@@ -1,5 +1,6 @@
 """Scenario files: TOML to a validated model, and on to the plan of a run."""
 
+import inspect
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +69,9 @@ def json_schema() -> dict[str, Any]:
     schemas, parts = msgspec.json.schema_components(
         dict.fromkeys(network.model for network in networks().values())
     )
+    for part in parts.values():  # msgspec before 0.23 leaves docstrings indented
+        if "description" in part:
+            part["description"] = inspect.cleandoc(part["description"])
     for network in networks().values():
         table = parts[network.model.__name__]  # code says the kind by its class, a file by the key
         table["properties"]["kind"].pop("default", None)
