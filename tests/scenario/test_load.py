@@ -1,8 +1,9 @@
 """Files, texts and dicts become scenarios, and scenarios become text again."""
 
-from __future__ import inspect
+from __future__ import annotations
 
 import gc
+import inspect
 import tomllib
 from pathlib import Path
 
