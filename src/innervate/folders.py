@@ -249,8 +249,14 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     found += [] if found else _of_values(folder, network, files)
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
-        found += checks.of_layouts(path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME,
-                                   checks.LOOKED_AT[network.medium])  # fmt: skip
+        found += checks.of_layouts(
+            path,
+            frames.LAYOUTS,
+            frames.KIND_BITS,
+            fields.FRAME,
+            checks.LOOKED_AT[network.medium],
+            checks.PLACES if hasattr(fields, "PLACED") else frozenset(),
+        )
         laid = {kind: {one[0] for one in fields} for kind, _name, fields in frames.LAYOUTS}
         found += sends.of_kinds(files, laid)
     return found
@@ -274,6 +280,8 @@ def _of_values(folder: Path, network: Any, files: list[Path]) -> list[checks.Fin
     found: list[checks.Finding] = checks.of_usual(place, usual, fields.PARAMS)
     found += checks.of_given(place, getattr(fields, "GIVEN", ()), fields.FRAME)
     found += checks.of_messages(place, getattr(fields, "MESSAGES", ()))
+    if hasattr(fields, "PLACED"):
+        found += checks.of_placed(place, fields.PLACED, fields.FRAME)
     if network.medium in MEDIA_ON_AIR and not network.over:
         found += sends.of_delays(files)
     if network.medium == "channel":

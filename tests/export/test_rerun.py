@@ -12,8 +12,8 @@ from innervate import run, scenario
 from innervate.export import rrd
 from innervate.export.errors import ExportError
 from innervate.export.rrd_parts import ALARM, GREY, PORTS
-from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.networks.skin.export.rrd import LIFTED_M, OFF, RADIUS_M, WITHOUT_ROUTE
+from innervate.scenario.robots import position_cm
 from innervate.topology import cells_from_urdf, normals_from_urdf
 from tests.export.test_captures import RADIO
 from tests.export.test_files import FENCED

@@ -14,7 +14,7 @@ from innervate.live import play, status
 from innervate.live.errors import LiveError
 from innervate.live.up import Processes
 from innervate.networks.mesh.live import walks
-from innervate.networks.mesh.scenario.plan import Walk
+from innervate.scenario.robots import Walk
 from tests.live.net import running, until
 
 FIRST_S = 40.0

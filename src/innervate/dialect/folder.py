@@ -10,6 +10,8 @@ from innervate.dialect.checker import broken_rules, functions_of, with_numbers
 
 MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
+PLACES = frozenset({"x", "y"})  # fields of an item that says where a robot is
+UNITS = {"cm": 1, "dm": 10, "m": 100}  # ... in so many cm
 MEASURED = {"rssi"}  # fields of a frame that are set by who receives it
 NOTED = {"kind", "made_at"} | MEASURED  # those that no layout has to name
 # Fields of a frame that a medium looks at, by medium.
@@ -227,6 +229,16 @@ def of_messages(path, kinds):
     return [Finding(path, line, "MESSAGES is the kinds of inputs that are to be delivered: (1,)")]
 
 
+def of_placed(path, kind, frame):
+    """What is wrong with the kind of inputs by which robots are told where they are."""
+    units = {field[0]: field[4] for field in frame if field[0] in PLACES and not field[1]}
+    if isinstance(kind, int) and len(units) == 2 and len(set(units.values()) & UNITS.keys()) == 1:
+        return []
+    line = _lines_of(path).get(("PLACED", ""), 1)
+    what = "PLACED is a kind of input, whose x and y in FRAME are both in cm, dm or m: 2"
+    return [Finding(path, line, what)]
+
+
 def of_taken(path, fields, taken, table="PARAMS"):
     """Fields of a table that have a name of the medium's own, and would take its value's place."""
     lines = _lines_of(path)
@@ -269,7 +281,7 @@ def _lines_of(path):
     return found
 
 
-def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset()):
+def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset(), unsent=frozenset()):
     """What is wrong with the layouts of frames: bits that do not hold what is declared.
 
     Args:
@@ -278,7 +290,9 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset()):
         kind_bits: bits of the kind.
         frame: the declared fields of a frame.
         looked_at: fields that the medium looks at.
+        unsent: fields that nodes are only handed.
     """
+    noted = NOTED | unsent
     declared = {field[0]: field for field in frame}
     line, found, laid = _lines_of(path).get(("LAYOUTS", ""), 1), [], set()
     names = {}
@@ -299,12 +313,12 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset()):
             what = f"{name}: the medium looks at {field}; give it bits in every layout"
             found.append(Finding(path, line, what))
         for field, _length, low, high, *_ in frame:
-            if field not in NOTED.union(one[0] for one in fields) and not low <= 0 <= high:
+            if field not in noted.union(one[0] for one in fields) and not low <= 0 <= high:
                 what = (f"{name}: {field} is {low} to {high} in FRAME, and 0 where it arrives, as "
                         "it has no bits here; give it some, or let it be 0")  # fmt: skip
                 found.append(Finding(path, line, what))
     for field in declared:
-        if field not in laid | NOTED:
+        if field not in laid | noted:
             what = f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out"
             found.append(Finding(path, line, what))
     return found

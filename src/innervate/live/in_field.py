@@ -4,16 +4,20 @@ The air between processes is none: nothing collides, and what a medium access is
 queues. What a link loses is in the scenario, and not played.
 """
 
+from collections.abc import Coroutine
 from typing import Any
 
 from innervate.dialect.access import ALL
 from innervate.dialect.outbox import URGENT
 from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.declared import DeclaredNode, DeclaredStack
-from innervate.live.deployment import Deployment, Pairs, Table
+from innervate.live.deployment import Deployment, Pairs, Stage, Table
 from innervate.live.errors import LiveError
+from innervate.live.moving import tell
 from innervate.live.nodefile import Loaded
+from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
+from innervate.scenario.declared.moving import placed_of
 
 RSSI = -50  # of every frame that comes over UDP, dBm
 
@@ -86,6 +90,14 @@ class FieldDeployment(Deployment):
         if not cables:
             raise LiveError(f"node {number} hears nobody; raise air.reach_m")
         return {}, {"protocol": dict(self.plan.params)}
+
+    def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
+        """Inputs; and robots are told where they are, if their network wants to know."""
+        placed = placed_of(networks()[self.plan.kind].fields)
+        inputs = super().others(stage)
+        if placed is None:
+            return inputs
+        return inputs + [tell(self.plan, walk, placed, stage) for walk in self.plan.walks]
 
     def cable_of(self, fault: Any) -> int:
         """The number of the link that a fault is done to; -1 if it is done to none."""

@@ -230,3 +230,11 @@ def column(table: Any, name: str, count: int | None = None) -> Numbers:
 def get(table: Any, place: int, name: str) -> Any:
     """A field of one record, compiled or plain."""
     return getattr(table[place], name) if isinstance(table, list) else table[name][place]
+
+
+def timed(tables: Tables, names: tuple[str, ...], rows: Sequence[tuple[int, ...]]) -> Any:
+    """A table of what happens, in order of time; never without a row."""
+    table = tables.records(names, max(len(rows), 1), wide=names)
+    for place, row in enumerate(rows):
+        put(table, place, **dict(zip(names, row, strict=True)))
+    return table

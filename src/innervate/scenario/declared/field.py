@@ -11,9 +11,10 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from innervate.network import networks
+from innervate.scenario import robots
 from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
-from innervate.scenario.declared import shared
+from innervate.scenario.declared import moving, shared
 from innervate.scenario.declared.foreseen import warnings
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Table, above_0, number, whole
@@ -104,6 +105,8 @@ class FieldScenario(shared.Declared, frozen=True, kw_only=True):
         side_m: of the square, m.
         positions_m: instead of a layout: (x, y) of every node, m.
         link: instead of places: who hears whom.
+        robot: nodes that move, and how.
+        sample_hz: so often they are moved, and told where they are.
         absent: nodes that are off until they are revived.
         duration_s: simulated time, s.
         start_us: nodes are switched on within so long, us.
@@ -120,6 +123,8 @@ class FieldScenario(shared.Declared, frozen=True, kw_only=True):
     side_m: Annotated[float, above_0("metres", 100_000)] = 100.0
     positions_m: list[tuple[float, float]] = []  # noqa: RUF012
     link: list[LinkTable] = []  # noqa: RUF012
+    robot: list[moving.RobotTable] = []  # noqa: RUF012
+    sample_hz: robots.SampleHz = 50.0
     absent: list[int] = []  # noqa: RUF012
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000
     air: AirTable = AirTable()
@@ -147,6 +152,8 @@ class Heard:
 
     rssi_cdb: list[int]  # how loud, 0.01 dBm
     prob_q15: list[int]  # chance of reception in 1/32768, where nothing disturbs
+    base_cdb: list[int] = field(default_factory=list)  # how loud at 1 m; empty where nobody moves
+    exponent_c: int = 300  # path loss exponent x 100
 
 
 @dataclass(slots=True)
@@ -167,6 +174,8 @@ class FieldPlan:
     absent: list[int]  # per node, 1 = off until it is revived
     inputs: list[Input]
     faults: list[Fault] = field(default_factory=list)
+    walks: list[robots.Walk] = field(default_factory=list)  # how robots move
+    sample_us: int = 20_000  # they are moved, and told where they are, so often
 
 
 def check(source: Source, model: FieldScenario) -> None:
@@ -182,6 +191,7 @@ def check(source: Source, model: FieldScenario) -> None:
         raise source.error(("air", "exponent_min"), "air.exponent_min is above exponent_max")
     for place, link in enumerate(model.link):
         _check_pair(source, ("link", place, "nodes"), link.nodes, model.nodes)
+    moving.check(source, model)
     shared.check(source, model, model.nodes, ACTIONS, partial(_check_other, source, model.nodes))
 
 
@@ -211,6 +221,10 @@ def plan(scenario: Any) -> FieldPlan:
     model, network = scenario.model, networks()[scenario.model.kind]
     count = model.nodes
     points = [] if model.link else _points(model)
+    numbered, duration_us = moving.Numbered(scenario.source, count), round(1e6 * model.duration_s)
+    for node, start in robots.starts(model.robot, numbered).items():
+        points[node] = start
+    ground = robots.Ground(points, points, model.seed, duration_us)
     heard = _linked(model) if model.link else _placed(model, points)
     draw = stream(model.seed, "starts")
     starts = [draw.uniform(0, model.start_us - 1) for _ in range(count)]
@@ -220,7 +234,7 @@ def plan(scenario: Any) -> FieldPlan:
         scenario=scenario,
         kind=model.kind,
         seed=model.seed,
-        duration_us=round(1e6 * model.duration_s),
+        duration_us=duration_us,
         nodes=count,
         params=shared.parameters(network.fields, model.protocol),
         air=model.air,
@@ -231,6 +245,8 @@ def plan(scenario: Any) -> FieldPlan:
         absent=[int(node in model.absent) for node in range(count)],
         inputs=shared.inputs_of(model, network, count, ACTIONS),
         faults=sorted(faults, key=lambda fault: (fault.at_us, fault.index)),
+        walks=robots.walks(enumerate(model.robot), numbered, ground),
+        sample_us=round(1e6 / model.sample_hz),
     )
 
 
@@ -267,7 +283,13 @@ def _placed(model: FieldScenario, points: list[tuple[int, int]]) -> Heard:
     rssi = [placement.UNHEARD if i % (count + 1) == 0 else max(at_1m + one, placement.UNHEARD + 1)
             for i, one in enumerate(gains)]  # fmt: skip
     chances = (placement.reception_q15(one - RSSI50_CDB) for one in rssi)
-    return Heard(rssi, [one if one >= LEAST * placement.ONE_Q15 else 0 for one in chances])
+    base = [at_1m + one if i % (count + 1) else placement.UNHEARD for i, one in enumerate(faded)]
+    return Heard(rssi, [in_reach(one) for one in chances], base if model.robot else [], exponent_c)
+
+
+def in_reach(chance_q15: int) -> int:
+    """A chance of reception, or 0 where it is so small that nobody counts on it; in 1/32768."""
+    return chance_q15 if chance_q15 >= LEAST * placement.ONE_Q15 else 0
 
 
 def _linked(model: FieldScenario) -> Heard:
@@ -293,9 +315,10 @@ def describe(plan: Any) -> str:
     lines = [
         opening(plan),
         f"  nodes      {plan.nodes:,} in a field, {pairs} each other",
+        *moving.lines(plan),
         f"  protocol   {params}",
     ]
-    found = warnings(plan, plan.good, plan.scenario.model.start_us)
+    found = warnings(plan, moving.met(plan), plan.scenario.model.start_us)
     own = shared.own_events(plan, ACTIONS)
     return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 

@@ -136,8 +136,8 @@ def check_script(source: Source, model: Any, graph: Graph | None = None) -> None
     """
     if model.script is None:
         return
-    for name in ("event", "input"):
-        if getattr(model, name):
+    for name in ("event", "input", "robot"):
+        if getattr(model, name, None):
             what = f"a [script] says all that happens; leave the [[{name}]]s out"
             raise source.error((name, 0), what)
     if graph is None:

@@ -1,6 +1,6 @@
 """From a plan of declared nodes in a field to a world, compiled (arrays) or plain (lists)."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,19 +8,32 @@ import numpy as np
 from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.network import Network, access_of
+from innervate.scenario.declared.field import RSSI50_CDB, in_reach
+from innervate.scenario.declared.moving import placed_of
 from innervate.sim import heard
 from innervate.sim.channel.world import Heap
-from innervate.sim.field import powers, queue
+from innervate.sim.field import powers, queue, walkers
 from innervate.sim.field import world as w
 from innervate.sim.field.loop import BOOT, NEVER
 from innervate.sim.field.medium import NONE
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import ACTION, DELIVERY, ROW, TAP, TRAIL, Names, Tables, get, put, uniform
+from innervate.sim.tables import (
+    ACTION,
+    DELIVERY,
+    ROW,
+    TAP,
+    TRAIL,
+    Names,
+    Tables,
+    get,
+    put,
+    timed,
+    uniform,
+)
 
 OUTBOX = 16
 PLACES_PER_NODE = 4
 TAPS = 1 << 12
-RSSI50_CDB = -9_500
 
 
 class Access(NamedTuple):
@@ -50,6 +63,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
     places = min(PLACES_PER_NODE * n + 64, queue.PLACES_MAX)
     waiting = n * plan.air.queue_frames
     # In one event all may be given a frame, and all be told that a carrier has gone.
+    chances = [in_reach(chance) for chance in powers.chance_table()]
     margin, rows = 2 * n * (room + 1), {"rows": ROW, "deliveries": DELIVERY}
     world = w.World(
         run=tables.records(w.RUN, 1, wide=w.WIDE),
@@ -65,6 +79,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
         due=tables.numbers(n * (network.protocol.TIMERS + below.timers), NEVER, np.int64),
         **access_tables(tables, below, n),
         **air_tables(tables, plan.heard, tables.states(fields.FRAME, places), n),
+        **walkers.motion_tables(tables, plan, plan.heard, plan.walks, chances),
         ring=tables.states(fields.FRAME, waiting),
         acts=tables.records(ACTION, waiting, wide=ACTION),
         commands=timed(tables, w.COMMAND, events_of(plan)),
@@ -83,6 +98,7 @@ def build(plan: Any, network: Network, plain: bool, kept: Recorded) -> w.World:
 def _set_up(world: w.World, plan: Any, network: Network, below: Any) -> None:
     """Its numbers, parameters and nodes; what happens first."""
     radio, fields, has_access = plan.air, network.fields, bool(network.over)
+    placed = placed_of(fields)
     set_air(
         world,
         plan,
@@ -95,6 +111,10 @@ def _set_up(world: w.World, plan: Any, network: Network, below: Any) -> None:
         mac=int(has_access),
         collisions=1,
         told=1,
+        sample=plan.sample_us,
+        unit=placed.unit_cm if placed is not None else 1,
+        moving=int(bool(plan.walks)),
+        rssi50=RSSI50_CDB,
         offers=len(plan.inputs),
         room=radio.queue_frames,
     )
@@ -109,7 +129,9 @@ def _set_up(world: w.World, plan: Any, network: Network, below: Any) -> None:
     for i in range(plan.nodes):
         own = {"number": i, "rng": int(seeds[i]), "choice": rng.GENERATE}
         put(world.stations, i, **{name: own[name] for name in own if name in names})
+    walkers.place(world, plan)
     push_first(world)
+    walkers.push_samples(world, len(plan.walks))
 
 
 # What any network in a field has.
@@ -165,14 +187,6 @@ def events_of(plan: Any) -> list[tuple[int, ...]]:
     events = [(at, BOOT, i, 0, 0) for i, at in enumerate(plan.starts_us) if not plan.absent[i]]
     events += [(f.at_us, f.action, f.node, max(f.other, 0), f.value) for f in plan.faults]
     return sorted(events, key=lambda event: event[0])
-
-
-def timed(tables: Tables, names: tuple[str, ...], rows: Sequence[tuple[int, ...]]) -> Any:
-    """A table of what happens, in order of time; never without a row."""
-    table = tables.records(names, max(len(rows), 1), wide=names)
-    for place, row in enumerate(rows):
-        put(table, place, **dict(zip(names, row, strict=True)))
-    return table
 
 
 def kept_tables(

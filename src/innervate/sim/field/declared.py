@@ -20,11 +20,12 @@ from innervate.folders import invariants_of
 from innervate.kernel import compilation, tables
 from innervate.network import Network, access_of, layouts_of, networks
 from innervate.scenario.declared.field import sizes_of
+from innervate.scenario.declared.moving import placed_of
 from innervate.sim import came, clocks, heap, heard, rows, taps
 from innervate.sim.came import note_came
 from innervate.sim.channel.build import grow_heap
 from innervate.sim.counts import Counts
-from innervate.sim.field import access, build, calls, listening, loop, medium, powers
+from innervate.sim.field import access, build, calls, listening, loop, medium, motion, powers
 from innervate.sim.field import world as w
 from innervate.sim.field.simulation import Field
 from innervate.sim.field.states import DEAD, OFF
@@ -40,13 +41,13 @@ BELOW = (
     access.due, access.step,
 )  # fmt: skip
 KEPT = (
-    listening.pressing, listening.offer, listening.sample, listening.tell_sent,
-    listening.note_report, listening.record_sent,
+    listening.pressing, listening.offer, listening.tell_sent, listening.note_report,
+    listening.record_sent,
 )  # fmt: skip
 
 
-def functions(network: Network) -> ModuleType:
-    """What the loop calls (see `sim/field`)."""
+def functions(network: Network, moves: bool = False) -> ModuleType:
+    """What the loop calls (see `sim/field`); `moves`: there are robots."""
     protocol, fields = network.protocol, network.fields
     names = {name for name, length, *_ in fields.FRAME if not length}
     look, frames = look_of(fields.FRAME, layouts_of(network)), frames_of(fields.FRAME, MEASURED)
@@ -55,6 +56,8 @@ def functions(network: Network) -> ModuleType:
     for some in (
         frames, {"frame_bytes": _frame_bytes(network.frames)}, parts_of(look),
         _entries(protocol, names, look), access_handlers(below),
+        {"sample": motion.sample if moves else listening.sample},
+        {"tell_place": _told(network.fields, frames["copy_frame"])},
         _noted("rssi" in names, **frames),
         _checks(list(invariants_of(network, "node_").values())),
     ):  # fmt: skip
@@ -140,6 +143,23 @@ def _noted(
             "note_heard": note_loud if is_measured else note_heard}  # fmt: skip
 
 
+def _told(fields: Any, copy_frame: Any) -> Callable[..., None]:
+    """What tells a robot where it is: an input, as its network's `PLACED` says."""
+    placed = placed_of(fields)
+    if placed is None:
+        return listening.tell_no_place
+    kind, _unit, (x_low, x_high), (y_low, y_high) = placed
+
+    def tell_place(world, do, index, time):  # type: ignore[no-untyped-def]
+        walk, item = world.walks[index], world.item[0]
+        copy_frame(item, world.items[len(world.items) - 1])
+        item.x = min(max(walk.told_x, x_low), x_high)
+        item.y = min(max(walk.told_y, y_low), y_high)
+        calls.give(world, do, walk.node, time, kind)
+
+    return tell_place
+
+
 def _checks(own: list[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
     """The checks after every call; and what a node loses that is switched on again: its queue.
 
@@ -159,12 +179,15 @@ def _checks(own: list[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
 
 
 @functools.cache
-def compiled_loop(network: Network) -> Callable[..., None]:
-    """The loop of a network over a field, compiled with its protocol."""
-    do = functions(network)
+def compiled_loop(network: Network, moves: bool = False) -> Callable[..., None]:
+    """The loop of a network over a field, compiled with its protocol; `moves`: with robots."""
+    do = functions(network, moves)
     compilation.register(arith, outbox, rng, heap, clocks)
     compilation.register(medium, rows, taps, listening, came, hot=False)
     compilation.register_functions(powers.strength)
+    if moves:
+        compilation.register(motion, hot=False)
+        compilation.register_functions(*motion.CALLED)
     modules = modules_of(network)
     if network.over:
         modules += compilation.modules_of(importlib.import_module(access_of(network).entry))
@@ -212,6 +235,7 @@ def simulation(plan: Any, *, plain: bool = False, **kept: bool) -> DeclaredField
     if not network.has("frames") or not hasattr(network.frames, "LAYOUTS"):
         raise Unfit("frames.LAYOUTS is missing: it says how long a frame is on the air")
     kept.pop("deliveries", None)
-    advance = loop.bind(functions(network)) if plain else compiled_loop(network)
+    moves = bool(plan.walks)
+    advance = loop.bind(functions(network, moves)) if plain else compiled_loop(network, moves)
     world = build.build(plan, network, plain, Recorded(**kept))
     return DeclaredField(plan, world, advance, "" if plain else plan.kind)

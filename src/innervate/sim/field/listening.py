@@ -50,6 +50,9 @@ def record_sent(world, place, time, length, receivers):
     air = world.air[place]
     if air.state != ON_AIR:
         return
+    in_reach = reach_of(world, air.node)  # robots come and go while it is on the air
+    world.counters[counts.SENT] += in_reach - air.receivers
+    air.receivers = in_reach
     if time < air.end:
         world.counters[counts.BROKEN_OFF] += air.receivers
         return
@@ -115,7 +118,11 @@ def note_report(_world, _node, _time, _code):
 
 
 def sample(_world, _do, _index, _time):
-    """A place that a node would be told; nobody walks."""
+    """Nobody walks, where there are no robots."""
+
+
+def tell_no_place(_world, _do, _index, _time):
+    """A protocol that does not want to know is not told where its robot is."""
 
 
 def offer(world, do, index, time):

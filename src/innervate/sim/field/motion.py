@@ -1,18 +1,21 @@
 """Robots move: where they are, what their radio links are worth there, what they are told."""
 
-from innervate.sim.field import medium, powers
+from innervate.sim.field import medium, powers, queue
 from innervate.sim.field.states import ALIVE
 from innervate.topology import astray
 from innervate.topology.placement import UNHEARD
 
-SPEED_MAX = 127
-PLACE_MAX = 32767
+# What it calls of others' modules, to be compiled with it.
+CALLED = (
+    powers.chance, powers.loss,
+    astray.err, astray.drawn, astray.normal, astray.next_of, astray.centimetres,
+)  # fmt: skip
 HALF_SPEED = 1_000_000  # cm/us to 2 cm/s, twice
 
 
 def walk_on(world, index, time):
-    """Where the walker is at `time`, as x, y of its node and speed in the item."""
-    walk, item = world.walks[index], world.item[0]
+    """Where the walker is at `time`, as x, y of its node; its speed in 2 cm/s."""
+    walk = world.walks[index]
     radio = world.radios[walk.node]
     while walk.point < walk.last and world.points[walk.point + 1].time <= time:
         walk.point += 1
@@ -25,8 +28,7 @@ def walk_on(world, index, time):
         y += (2 * (there.y - here.y) * since + took) // (2 * took)
         vx = (HALF_SPEED * (there.x - here.x) + took) // (2 * took)
         vy = (HALF_SPEED * (there.y - here.y) + took) // (2 * took)
-    item.vx = min(max(vx, -SPEED_MAX), SPEED_MAX)
-    item.vy = min(max(vy, -SPEED_MAX), SPEED_MAX)
+    walk.vx, walk.vy = vx, vy
     if walk.placed and x == radio.x and y == radio.y:
         return
     walk.placed = 1
@@ -35,18 +37,29 @@ def walk_on(world, index, time):
         renew(world, walk.node)
 
 
-def tell_place(world, index):
-    """Where the walker believes to be as the item's position, in units from the fence's corner."""
-    run, walk, item = world.run[0], world.walks[index], world.item[0]
+def believe(world, index):
+    """Where the walker believes to be, in units from the run's origin."""
+    run, walk = world.run[0], world.walks[index]
     radio = world.radios[walk.node]
     x, y = radio.x - run.origin_x, radio.y - run.origin_y
     if walk.noise > 0:
         astray.err(walk, world.normals)
         x += astray.centimetres(walk.noise, walk.off_x)
         y += astray.centimetres(walk.noise, walk.off_y)
-    item.x = min(max((x + run.unit // 2) // run.unit, -PLACE_MAX), PLACE_MAX)
-    item.y = min(max((y + run.unit // 2) // run.unit, -PLACE_MAX), PLACE_MAX)
-    return radio.state == ALIVE
+    walk.told_x = (x + run.unit // 2) // run.unit
+    walk.told_y = (y + run.unit // 2) // run.unit
+
+
+def sample(world, do, index, time):
+    """A robot is elsewhere, and learns where, if its network wants to know."""
+    node = world.walks[index].node
+    walk_on(world, index, time)
+    do.note_carriers(world, do, time)
+    believe(world, index)
+    if world.radios[node].state == ALIVE:
+        do.tell_place(world, do, index, time)
+    at = time + world.run[0].sample
+    queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, index))
 
 
 def renew(world, node):

@@ -9,21 +9,27 @@ from innervate.sim.tables import Out
 RUN = (
     "nodes", "timers", "own_timers",
     "mac", "collisions", "turnaround", "byte_ns", "phy_bytes", "sense", "capture",
-    "rng", "told", "on_air", "free", "next_command", "commands", "next_offer", "offers", "room",
+    "rng", "sample", "origin_x", "origin_y", "unit", "moving", "rssi50", "told",
+    "on_air", "free", "next_command", "commands", "next_offer", "offers", "room",
     "checks", "watchful", "status", "fingerprint", "now", "handled", "arrived", "transmissions",
     "received", "gave_up", "blocked", "rows", "row_limit", "deliveries", "delivery_limit",
     "trail", "trail_limit", "taps", "tap_limit", "broken", "broken_node",
 )  # fmt: skip
 # What the medium knows of a node; `first`, `waiting`: of its ring of frames to be sent.
 RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "offset", "noise",
-         "first", "waiting")  # fmt: skip
+         "first", "waiting", "x", "y")  # fmt: skip
 AIR = ("node", "state", "start", "end", "digest", "receivers")
 COMMAND = ("time", "action", "node", "other", "value")
 OFFER = ("time", "node", "kind")
+# A robot on its way, and how it errs about its place (see topology/astray.py): `noise` in um,
+# errors in SIGMA; where it believes to be and how fast it is, as it is told.
+WALK = ("node", "point", "last", "phase", "placed", "noise", "keep", "fresh", "rng", "off_x",
+        "off_y", "told_x", "told_y", "vx", "vy")  # fmt: skip
+POINT = ("time", "x", "y")
 
 # All fields have 32 bits, these and all of RUN 64.
-WIDE = frozenset({"time", "start", "end", "offset", "noise", "value", "digest", "fingerprint",
-                  "tell_at", *RUN})  # fmt: skip
+WIDE = frozenset({"time", "start", "end", "phase", "offset", "noise", "x", "y", "value", "digest",
+                  "fingerprint", "tell_at", *RUN})  # fmt: skip
 
 
 class World(NamedTuple):
@@ -46,9 +52,13 @@ class World(NamedTuple):
     rssi: Any  # per sender and receiver: 0.01 dBm
     prob: Any  # ... chance of reception in 1/32768
     cut: Any  # ... 1 = no signal for now
+    base: Any  # ... 0.01 dBm at 1 m, where somebody moves
     power: Any  # ... linear, see powers.py
     sums: Any  # per node: power of all signals and of the noise there
     strengths: Any  # power per 0.1 dBm
+    losses: Any  # path loss by squared distance
+    chances: Any  # chance of reception per 0.1 dB
+    normals: Any  # normal numbers by how rare they are
     air: Any  # per place: a transmission
     frames: Any  # its frame
     worst: Any  # per place and receiver: the strongest interference it met
@@ -57,6 +67,8 @@ class World(NamedTuple):
     got: Any  # who receives the frame that ends
     ring: Any  # per node: frames that wait for those before them
     acts: Any  # ... with what each was sent
+    walks: Any  # robots on their ways
+    points: Any  # ... between which they go
     commands: Any
     offers: Any  # what nodes are handed, in order of time
     items: Any  # ... the items

@@ -5,7 +5,7 @@ import pytest
 from innervate.networks.mesh.analysis.alarms import Crossing, FalseAlarm, alarms, all_crossings
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.protocol import constants as c
-from innervate.networks.mesh.scenario.plan import Walk
+from innervate.scenario.robots import Walk
 from tests.networks.mesh.analysis.test_summary import S, given, made
 
 END = 22 * S

@@ -6,8 +6,8 @@ from innervate.networks.mesh.analysis.alarms import FalseAlarm, judged
 from innervate.networks.mesh.analysis.messages import NEVER
 from innervate.networks.mesh.analysis.said import said
 from innervate.networks.mesh.protocol import constants as c
-from innervate.networks.mesh.scenario.plan import Walk
 from innervate.scenario.actions.field import CUT, KILL, RESTART, REVIVE
+from innervate.scenario.robots import Walk
 from tests.networks.mesh.analysis.test_summary import S, fault, given, made
 
 END = 30 * S

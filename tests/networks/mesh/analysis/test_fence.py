@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from innervate.networks.mesh.analysis import fence
-from innervate.networks.mesh.scenario.plan import Walk
+from innervate.scenario.robots import Walk
 
 SQUARE = [(0, 0), (1000, 0), (1000, 1000), (0, 1000)]
 HOLE = [(400, 400), (400, 600), (600, 600), (600, 400)]

@@ -32,9 +32,10 @@ from innervate.networks.mesh.protocol.constants import (
     REQUEST,
     RESPONSE,
 )
-from innervate.networks.mesh.scenario.plan import MeshFault, Offer, Walk
+from innervate.networks.mesh.scenario.plan import MeshFault, Offer
 from innervate.networks.mesh.sim import world as w
 from innervate.scenario.actions.field import CUT, KILL, RESTORE, REVIVE
+from innervate.scenario.robots import Walk
 from innervate.sim.tables import ROW
 from innervate.topology.placement import UNREACHABLE, distances
 

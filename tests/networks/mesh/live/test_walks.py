@@ -8,7 +8,7 @@ import pytest
 
 from innervate.live.errors import LiveError
 from innervate.networks.mesh.live.walks import STANDING_S, Errors, place_at, walk
-from innervate.networks.mesh.scenario.plan import Walk
+from innervate.scenario.robots import Walk
 from tests.live import time_by_hand
 from tests.networks.mesh.pinger import REPORT_PLACE
 from tests.networks.mesh.runs import run

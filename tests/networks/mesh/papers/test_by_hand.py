@@ -16,9 +16,9 @@ from innervate.networks.mesh.papers import (
 )
 from innervate.networks.mesh.protocol.constants import DATA, END_TO_END, PRIORITY, REPORT_TABLE
 from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD
-from innervate.networks.mesh.scenario.plan import Walk
 from innervate.papers.in_field import MONITOR
 from innervate.scenario.actions.field import KILL, REVIVE
+from innervate.scenario.robots import Walk
 from innervate.topology import placement
 
 

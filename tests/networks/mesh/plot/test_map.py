@@ -22,8 +22,8 @@ from innervate.networks.mesh.plot.map import (
 )
 from innervate.networks.mesh.plot.sheet import Sheet
 from innervate.networks.mesh.protocol.constants import ALL, MONITOR
-from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.plot import svg
+from innervate.scenario.robots import position_cm
 
 NODES = "".join(f"[[node]]\nx_m = {10 * i}\ny_m = 0\n" for i in range(5))
 

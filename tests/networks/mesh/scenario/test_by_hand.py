@@ -21,6 +21,7 @@ from innervate.networks.mesh.scenario.nodes import (
     nodes_of,
 )
 from innervate.scenario import ScenarioError
+from innervate.scenario import robots as spine
 from innervate.scenario.bundled import FOLDER
 from innervate.scenario.source import Source
 
@@ -221,19 +222,19 @@ def test_bundled_imports_are_named_and_others_lie_beside_the_scenario():
 
 
 def test_a_robot_is_there_once():
-    model = Of(robot=[RobotTable(node=k, waypoints=[(1.0, k)]) for k in (1, 0)])
+    tables = [RobotTable(node=k, waypoints=[(1.0, k)]) for k in (1, 0)]
     nodes = Nodes(HERE, ["a", "b"])
-    assert robots.starts(model, nodes) == {1: (100, 100), 0: (100, 0)}
-    model.robot.append(RobotTable(node="a"))
+    assert spine.starts(tables, nodes) == {1: (100, 100), 0: (100, 0)}
+    tables.append(RobotTable(node="a"))
     with pytest.raises(ScenarioError, match="there are two robots a; leave one out"):
-        robots.starts(model, nodes)
+        spine.starts(tables, nodes)
 
 
 def test_a_step_takes_a_moment():
     """1 cm at 100 m/s: 100 us. What is no step takes none, and a walk goes on until the end."""
-    step = robots._leg_us(RobotTable(node=0, speed_mps=100.0), (0, 0), (0, 1))
+    step = spine._leg_us(RobotTable(node=0, speed_mps=100.0), (0, 0), (0, 1))
     assert step == 100
-    assert robots._leg_us(RobotTable(node=0), (3, 3), (3, 3)) == 0
+    assert spine._leg_us(RobotTable(node=0), (3, 3), (3, 3)) == 0
     there = walked(random=True, area=(0.0, 0.0, 0.01, 0.01), speed_mps=1.0, duration_us=400_000)
     assert all(a[1:] != b[1:] for a, b in itertools.pairwise(there))
     there = walked(

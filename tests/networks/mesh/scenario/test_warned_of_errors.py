@@ -3,8 +3,8 @@
 import pytest
 
 from innervate import scenario
-from innervate.networks.mesh.scenario.plan import Walk
 from innervate.networks.mesh.scenario.words import _fastest_mps, warnings
+from innervate.scenario.robots import Walk
 
 
 def said(*robots, fence=None, **more):

@@ -7,11 +7,12 @@ import pytest
 from innervate.dialect.rng import GENERATE
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
-from innervate.networks.mesh.scenario.plan import Offer, Walk
+from innervate.networks.mesh.scenario.plan import Offer
 from innervate.networks.mesh.sim import build, orders, recorder, simulate
 from innervate.networks.mesh.sim.build import DUPLICATES, OUTBOX
 from innervate.networks.mesh.sim.over_channel import KEPT
 from innervate.scenario.actions.field import CUT, KILL
+from innervate.scenario.robots import Walk
 from innervate.sim.field import medium, powers, queue
 from innervate.sim.field.loop import BOOT
 from innervate.sim.field.medium import NONE

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from innervate.networks.mesh.scenario.plan import Walk
+from innervate.scenario.robots import Walk
 from innervate.topology.placement import UNHEARD
 from tests.networks.mesh.pinger import REPORT_HEARD, REPORT_PLACE, REPORT_SPEED
 from tests.networks.mesh.runs import mesh_plan, radio, run

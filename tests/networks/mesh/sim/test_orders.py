@@ -7,7 +7,7 @@ import pytest
 from innervate.networks.mesh.protocol.constants import ACK, MESSAGE, REPORT_GRAPH, SAMPLE, SENT
 from innervate.networks.mesh.sim import orders, recorder, stacks
 from innervate.sim import taps
-from innervate.sim.field import calls, medium, motion, queue
+from innervate.sim.field import calls, medium
 from innervate.sim.field.states import ALIVE, COMMITTED, DEAD, ON_AIR, VOID
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
 
@@ -85,16 +85,16 @@ def test_who_is_off_is_given_nothing_and_that_is_counted(given, state):
     assert (given, world.run[0].unasked) == ([], 3)
 
 
-@pytest.mark.parametrize("is_on", [True, False])
-def test_a_robot_learns_its_place_again_and_again(given, monkeypatch, is_on):
-    walked = []
-    monkeypatch.setattr(motion, "walk_on", lambda _world, *what: walked.append(what))
-    monkeypatch.setattr(motion, "tell_place", lambda _world, index: is_on and index == 1)
-    world = Of(walks=[None, Of(node=1)], run=[Of(sample=500)], heap=Of(keys=[0] * 4, size=[0]))
-    orders.sample(world, None, 1, 70)
-    assert walked == [(1, 70)]
-    assert given == ([(1, 70, SAMPLE)] if is_on else [])
-    assert world.heap.keys[0] == queue.key_of(570, queue.SAMPLE, 1, 1)
+@pytest.mark.parametrize(("place", "speed"), [(5, 7), (-5, -7), (40_000, 200), (-40_000, -200)])
+def test_a_robot_is_told_its_place_and_its_speed_as_far_as_they_fit(given, place, speed):
+    walk = Of(node=1, told_x=place, told_y=-place, vx=speed, vy=-speed)
+    world = Of(walks=[None, walk], item=[Of(x=9, y=9, vx=9, vy=9)])
+    orders.tell_place(world, None, 1, 70)
+    item = world.item[0]
+    sign = 1 if place > 0 else -1
+    x, vx = sign * min(abs(place), 32_767), sign * min(abs(speed), 127)
+    assert (item.x, item.y, item.vx, item.vy) == (x, -x, vx, -vx)
+    assert given == [(1, 70, SAMPLE)]
 
 
 @pytest.mark.parametrize("told", [0, 1])

@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import ALL, DATA, PARITY
-from innervate.networks.mesh.scenario.plan import ONE, MeshFault, Offer, Walk
+from innervate.networks.mesh.scenario.plan import ONE, MeshFault, Offer
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.scenario import from_dict, load
 from innervate.scenario import plan as plan_of
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+from innervate.scenario.robots import Walk
 from innervate.sim.tables import uniform
 from innervate.topology.placement import UNHEARD
 from tests.networks.mesh.runs import mesh_plan, radio, run

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import innervate
 from innervate import scenario as scenarios
-from innervate.networks.mesh.scenario.plan import Walk
 from innervate.scenario.errors import ScenarioError
+from innervate.scenario.robots import Walk
 from tests.networks.mesh.pinger import REPORT_PLACE, REPORT_SPEED
 from tests.networks.mesh.runs import run
 from tests.networks.mesh.sim.test_motion import POINTS, at, reports, walking

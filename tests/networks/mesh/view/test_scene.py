@@ -4,8 +4,9 @@ from types import SimpleNamespace as Of
 
 import numpy as np
 
-from innervate.networks.mesh.view.scene import UP, Field
+from innervate.networks.mesh.view.scene import Field
 from innervate.sim.field.states import ALIVE
+from innervate.web.field_view import UP
 from tests.web.runs import plan_of
 
 LINKED = {

@@ -16,7 +16,7 @@ from innervate.networks.mesh.analysis.messages import NEVER, timeout_us
 from innervate.networks.mesh.analysis.said import Said, said
 from innervate.networks.mesh.analysis.summary_keys import Alarms
 from innervate.networks.mesh.protocol.constants import ALARM, CROSS, FLOOD, PREDICT, REPORT_ALARM
-from innervate.networks.mesh.scenario.plan import position_cm
+from innervate.scenario.robots import position_cm
 
 # A place is rounded along each axis, by half a cm and by half a unit: at most so far away.
 ROUNDED_UNITS = 2**0.5

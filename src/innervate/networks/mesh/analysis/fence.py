@@ -7,7 +7,8 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from innervate.networks.mesh.rings import of_table
-from innervate.networks.mesh.scenario.plan import Point, Walk, position_cm
+from innervate.networks.mesh.scenario.plan import Point
+from innervate.scenario.robots import Walk, position_cm
 
 Edge = tuple[Point, Point]
 CLOSE_CM = 1e-3  # overruns are right to this

@@ -7,8 +7,8 @@ import numpy as np
 
 from innervate.export.recording import INFORMATION, WARNING
 from innervate.export.rrd_parts import ALARM, GREY, INK, PORTS, Column, Log, Parts
-from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.scenario.actions.field import KILL, REVIVE
+from innervate.scenario.robots import position_cm
 
 STEP_US = 100_000  # between two places of a robot
 NODE_M, GATEWAY_M, ROBOT_M = 0.6, 1.1, 1.0  # radii

@@ -21,7 +21,7 @@ from innervate.export.scenes import (
     stamp,
     text,
 )
-from innervate.networks.mesh.scenario.plan import position_cm
+from innervate.scenario.robots import position_cm
 
 
 def channels(plan: Any, _tables: Mapping[str, Any]) -> list[Channel]:

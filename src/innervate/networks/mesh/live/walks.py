@@ -9,8 +9,8 @@ from typing import Any
 
 from innervate.live.deployment import sleep_until
 from innervate.live.errors import LiveError
-from innervate.networks.mesh.scenario.plan import Point, Walk, position_cm
-from innervate.networks.mesh.scenario.robots import errs
+from innervate.networks.mesh.scenario.plan import Point
+from innervate.scenario.robots import Walk, errs, position_cm
 from innervate.topology import astray
 
 ANSWER_S = 5.0
@@ -31,7 +31,7 @@ class Errors:
     """By how much a robot is wrong about its place: sample by sample what a simulation has."""
 
     def __init__(self, plan: Any, way: Walk) -> None:
-        self._walk = SimpleNamespace(**errs(plan, way)._asdict())
+        self._walk = SimpleNamespace(**errs(way, plan.seed, plan.sample_us)._asdict())
         self._samples = 0
 
     def at(self, sample: int) -> Point:

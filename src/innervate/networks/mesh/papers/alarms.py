@@ -11,12 +11,12 @@ from innervate.networks.mesh.papers import testbed as beds
 from innervate.networks.mesh.papers.document import LATENCY, MUST, Sentence, beyond, said
 from innervate.networks.mesh.papers.testbed import GRAPH, LITERAL, MeshTestbed, Options
 from innervate.networks.mesh.protocol.constants import ALARM, FLOOD
-from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.networks.mesh.scenario.profiles import FAST, GOOD_CDB
 from innervate.networks.mesh.sim.simulate import simulate
 from innervate.papers import drawing
 from innervate.papers.experiment import Claim, Claims, Measured, Point, verdict
 from innervate.plot import style
+from innervate.scenario.robots import position_cm
 from innervate.sim.status import ON_FRAME
 from innervate.topology import placement
 from innervate.trace.streams import stream

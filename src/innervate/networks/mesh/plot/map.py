@@ -9,11 +9,11 @@ from innervate.networks.mesh.analysis.paths import Ground
 from innervate.networks.mesh.analysis.way import Hop
 from innervate.networks.mesh.plot.sheet import Labels, Sheet
 from innervate.networks.mesh.protocol.constants import MONITOR
-from innervate.networks.mesh.scenario.plan import position_cm
 from innervate.plot import svg
 from innervate.plot.charts import ticks
 from innervate.plot.svg import Drawing, Point
 from innervate.scenario.actions.field import RESTART, REVIVE
+from innervate.scenario.robots import position_cm
 
 NAMED_MAX = 120  # of more nodes only those with a part to play are named
 CROSSINGS_MAX = 24  # marks of more crossings would hide the field

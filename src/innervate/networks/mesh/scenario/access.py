@@ -5,10 +5,11 @@ from typing import Any
 
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.network import Network
-from innervate.networks.mesh.scenario.plan import HEADER_SLOTS, Walk
+from innervate.networks.mesh.scenario.plan import HEADER_SLOTS
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB, Profile, crowded
 from innervate.networks.radio.scenario.baselines import baseline
 from innervate.networks.radio.scenario.plan import parameters
+from innervate.scenario.robots import Walk
 from innervate.topology.placement import path_loss_cdb
 
 DELAY_US = (1, 2)  # from one node to another; detection included

@@ -9,8 +9,9 @@ from innervate.networks.mesh.protocol.constants import ACK_BYTES, ALL, MONITOR
 from innervate.networks.mesh.scenario.access import is_shared
 from innervate.networks.mesh.scenario.nodes import listed
 from innervate.networks.mesh.scenario.params import sent_at_most
-from innervate.networks.mesh.scenario.plan import ONE, MeshPlan, Walk, position_cm
+from innervate.networks.mesh.scenario.plan import ONE, MeshPlan
 from innervate.scenario.actions.field import CUT, JAM, KILL, QUIET, RESTART, RESTORE, REVIVE
+from innervate.scenario.robots import Walk, position_cm
 from innervate.topology.placement import distances, neighbours
 
 METRE_CM = 100

@@ -12,17 +12,12 @@ from innervate.networks.mesh.scenario.settings import MeshProtocolTable
 from innervate.networks.radio.scenario.model import MACS
 from innervate.scenario import keys
 from innervate.scenario.actions.field import ACTIONS
+from innervate.scenario.robots import Metres, NodeId, Place, RobotTable, SampleHz, Seconds
 
-NodeId = Annotated[int | str, Meta(description='a node by number from 0, or by name, like "n3"')]
-Metres = Annotated[
-    float, Meta(ge=-100_000, le=100_000, description="a number of metres within +-100000")
-]
 Length = Annotated[float, keys.above_0("metres", limit=100_000)]
-Seconds = Annotated[float, keys.number("seconds", 0, limit=100_000)]
 Decibels = Annotated[float, keys.number("dB", 0, 30)]
 Power = Annotated[float, keys.number("dBm", -150, 60)]
 Quality = Annotated[float, Meta(ge=0, le=1, description="a share of received frames, 0 to 1")]
-Point = Annotated[tuple[Metres, Metres], Meta(description="a point [x, y] in metres")]
 NodeName = Annotated[
     str, Meta(min_length=1, max_length=40, description="a name of 1 to 40 characters")
 ]
@@ -140,40 +135,19 @@ class FlowTable(keys.Table, frozen=True, kw_only=True):
 class FenceTable(keys.Table, frozen=True, kw_only=True):
     """[fence]: the polygon that robots must not leave."""
 
-    polygon: Annotated[list[Point], Meta(description="a list of corners [x, y] in metres")]
+    polygon: Annotated[list[Place], Meta(description="a list of corners [x, y] in metres")]
     holes: Annotated[
-        list[list[Point]], Meta(description="a list of polygons, each a list of corners [x, y]")
+        list[list[Place]], Meta(description="a list of polygons, each a list of corners [x, y]")
     ] = []
     number: Annotated[int, keys.whole("", 0, 255)] = 0
     unit_cm: Unit | None = None
-    sample_hz: Annotated[
-        float, Meta(ge=1, le=1000, description="positions per second, 1 to 1000")
-    ] = 50.0
+    sample_hz: SampleHz = 50.0
     predict_s: Annotated[float, keys.number("seconds", 0, 10)] = 0.5
     clear_m: Annotated[float, keys.number("metres", 0, 100)] = 0.2
     lost_beacons: Annotated[int, keys.whole("beacons", 1, 253)] = 3
     watch: bool = True
     flood: Literal["never", "crossings", "all"] = "crossings"
     floods: Annotated[int, keys.whole("floods", 0, 3)] = 3
-
-
-class RobotTable(keys.Table, frozen=True, kw_only=True):
-    """[[robot]]: a node that moves."""
-
-    node: NodeId
-    waypoints: Annotated[
-        list[Point], Meta(max_length=10_000, description="a list of points [x, y] in metres")
-    ] = []
-    random: bool = False
-    area: Annotated[
-        tuple[Metres, Metres, Metres, Metres] | None,
-        Meta(description="a rectangle [x, y, x, y] in metres, two opposite corners"),
-    ] = None
-    speed_mps: Annotated[float, keys.number("m/s", 0.001, 100)] = 1.0
-    start_s: Seconds = 0.0
-    pause_s: Seconds = 0.0
-    position_noise_m: Annotated[float, keys.number("metres", 0, 100)] = 0.0
-    position_hold_s: Annotated[float, keys.number("seconds", 0, 3_600)] = 0.0
 
 
 class MeshEventTable(keys.Table, frozen=True, kw_only=True):

@@ -1,11 +1,10 @@
 """The plan of a mesh run: whole numbers only. Floats end here."""
 
-from bisect import bisect_right
 from dataclasses import dataclass, field
-from operator import itemgetter
 from typing import Any
 
 from innervate.scenario.declared.field import Fault
+from innervate.scenario.robots import Walk
 from innervate.topology.placement import ONE_Q15
 
 ONE: int = ONE_Q15
@@ -27,34 +26,6 @@ class Offer:
     flags: int  # END_TO_END (2), PRIORITY (32)
     length: int  # bytes of payload, 0 .. 90
     flow: int  # which [[flow]] it belongs to
-
-
-@dataclass(frozen=True, slots=True)
-class Walk:
-    """How a robot moves: straight between points, then it stays."""
-
-    node: int  # the robot
-    # (time us, x cm, y cm), ascending in time; before the first it stands there.
-    points: tuple[tuple[int, int, int], ...]
-    noise_um: int = 0  # along each axis, standard deviation of where it believes to be, um
-    hold_us: int = 0  # after so long 1/e of an error is left, us; 0: each sample has one of its own
-
-
-def position_cm(walk: Walk, time_us: float) -> Point:
-    """Where the robot is: straight between its points, standing before the first and at the last.
-
-    Raises:
-        ValueError: the walk has no points.
-    """
-    if not walk.points:
-        raise ValueError("a walk needs at least one point")
-    behind = bisect_right(walk.points, time_us, key=itemgetter(0))
-    if behind in (0, len(walk.points)):
-        _, x, y = walk.points[max(0, behind - 1)]
-        return (x, y)
-    (t0, x0, y0), (t1, x1, y1) = walk.points[behind - 1], walk.points[behind]
-    share = (time_us - t0) / (t1 - t0)
-    return (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
 
 
 @dataclass(slots=True)

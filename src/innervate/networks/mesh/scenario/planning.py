@@ -17,6 +17,7 @@ from innervate.networks.mesh.scenario.nodes import Nodes, nodes_of
 from innervate.networks.mesh.scenario.params import of_mode, parameters
 from innervate.networks.mesh.scenario.plan import MeshPlan
 from innervate.networks.mesh.scenario.profiles import Profile, profile_of
+from innervate.scenario.robots import starts
 from innervate.topology.placement import neighbours
 from innervate.trace.streams import stream
 
@@ -101,11 +102,11 @@ def _ends(model: MeshScenario, flows: list[list[tuple[int, int]]]) -> set[int]:
 
 
 def _network(model: MeshScenario, nodes: Nodes, profile: Profile) -> Network:
-    starts = mesh_robots.starts(model, nodes)
+    begin = starts(model.robot, nodes)
     if not nodes.links:
-        return placed(model, nodes, profile, starts)
+        return placed(model, nodes, profile, begin)
     found = linked(model, nodes, profile)
-    for node, start in starts.items() if found.points else ():
+    for node, start in begin.items() if found.points else ():
         found.points[node] = start
     return found
 

@@ -11,6 +11,7 @@ from innervate.networks.mesh.scenario.nodes import (
     there_are,
     too_many,
 )
+from innervate.scenario import robots
 from innervate.scenario.actions.field import TABLE, TARGETS
 from innervate.scenario.events import Finding, in_time, own_keys, refuse
 from innervate.scenario.source import Source, shown
@@ -35,8 +36,8 @@ def _findings(source: Source, model: MeshScenario) -> Iterator[Finding]:
         yield from _flow(model, index)
     if model.fence is not None:
         mesh_fence.check(source, model.fence)
-    for index in range(len(model.robot)):
-        yield from _robot(model, index)
+    for index, robot in enumerate(model.robot):
+        yield from robots.findings(robot, index)
     for index, event in enumerate(model.event):
         yield from _event(model, index, event)
 
@@ -198,18 +199,6 @@ def _flow(model: MeshScenario, index: int) -> Iterator[Finding]:
     if flow.stop_s is not None and flow.start_s is not None and flow.stop_s <= flow.start_s:
         message = f"{name}.stop_s = {flow.stop_s:g} is not after start_s = {flow.start_s:g}"
         yield (*key, "stop_s"), message
-
-
-def _robot(model: MeshScenario, index: int) -> Iterator[Finding]:
-    robot, key = model.robot[index], ("robot", index)
-    if robot.random and len(robot.waypoints) > 1:
-        message = f"robot.{index} is random and has waypoints; keep the first, its start, or none"
-        yield (*key, "waypoints"), message
-    if robot.area is not None and not robot.random:
-        yield (*key, "area"), f"robot.{index}.area goes with random = true"
-    if robot.position_hold_s and not robot.position_noise_m:
-        message = f"robot.{index}.position_hold_s goes with position_noise_m"
-        yield (*key, "position_hold_s"), message
 
 
 def _event(model: MeshScenario, index: int, event: MeshEventTable) -> Iterator[Finding]:

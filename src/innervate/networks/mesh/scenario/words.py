@@ -10,10 +10,11 @@ from innervate.networks.mesh.scenario.fence import is_outside
 from innervate.networks.mesh.scenario.foreseen import foreseen
 from innervate.networks.mesh.scenario.model import MeshScenario
 from innervate.networks.mesh.scenario.nodes import RESERVED, count_of, listed
-from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan, Walk
+from innervate.networks.mesh.scenario.plan import MeshFault, MeshPlan
 from innervate.networks.mesh.scenario.profiles import PROFILES
 from innervate.scenario.actions.field import JAM, TARGETS
 from innervate.scenario.events import opening, told
+from innervate.scenario.robots import Walk
 from innervate.topology.placement import distances, neighbours
 
 NEIGHBOURS_MIN, GATEWAY_MIN = 3, 5  # rules for planning WirelessHART networks [mesh 9]

@@ -10,18 +10,16 @@ from innervate.networks.mesh.protocol import constants as mesh_const
 from innervate.networks.mesh.protocol import csma, csma_fields
 from innervate.networks.mesh.protocol import fields as mesh_fields
 from innervate.networks.mesh.protocol.constants import MTU
-from innervate.networks.mesh.scenario.plan import Walk
-from innervate.networks.mesh.scenario.robots import errs
 from innervate.networks.mesh.sim import channel, recorder
 from innervate.networks.mesh.sim import world as m
 from innervate.networks.mesh.sim.over_channel import KEPT
+from innervate.scenario.robots import Walk
 from innervate.sim.field import build as field
-from innervate.sim.field import powers, queue
+from innervate.sim.field import powers, queue, walkers
 from innervate.sim.field.loop import NEVER
 from innervate.sim.field.world import COMMAND
 from innervate.sim.recorded import Recorded
-from innervate.sim.tables import ACTION, ROW, Tables, get, put, uniform
-from innervate.topology import astray
+from innervate.sim.tables import ACTION, ROW, Tables, get, put, timed
 
 OUTBOX = 32
 DUPLICATES = 1 << 15
@@ -112,10 +110,7 @@ def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
         good[a, b] = good[b, a] = 1
     return {
         **field.air_tables(tables, radio, frames, n),
-        "base": tables.given(radio.base_cdb or [0], np.int32),
-        "losses": tables.given(powers.loss_table(radio.exponent_c)),
-        "chances": tables.given(powers.chance_table()),
-        "normals": tables.given(astray.normal_table()),
+        **walkers.motion_tables(tables, plan, radio, _paths(plan), powers.chance_table()),
         "good": tables.given(good),
     }
 
@@ -123,31 +118,19 @@ def _medium(tables: Tables, plan: Any, frame: Any) -> dict[str, Any]:
 def _script(tables: Tables, plan: Any) -> dict[str, Any]:
     """What happens to the nodes, as tables in order of time."""
     offers = [(o.at_us, o.node, o.dest, o.flags, o.length) for o in plan.offers]
-    walks, points = _walks(plan)
     return {
-        "commands": field.timed(tables, COMMAND, field.events_of(plan)),
-        "offers": field.timed(tables, m.OFFER, sorted(offers, key=lambda offer: offer[0])),
-        "walks": field.timed(tables, m.WALK, walks),
-        "points": field.timed(tables, m.POINT, points),
+        "commands": timed(tables, COMMAND, field.events_of(plan)),
+        "offers": timed(tables, m.OFFER, sorted(offers, key=lambda offer: offer[0])),
     }
 
 
-def _walks(plan: Any) -> tuple[list[Any], list[Any]]:
-    """Walkers with their place in the list of all points; robots that stand still, too."""
-    paths = list(plan.walks)
-    moving = {walk.node for walk in paths}
-    for node, robot in enumerate(plan.robots):
-        if robot and plan.positions_cm and node not in moving:
-            paths.append(Walk(node, ((0, *plan.positions_cm[node]),)))
-    phases = uniform(plan.seed, "sample", plan.nodes, plan.sample_us)
-    walks: list[Any] = []
-    points: list[Any] = []
-    for walk in paths:
-        first = len(points)
-        points += list(walk.points)
-        place = (walk.node, first, len(points) - 1, int(phases[walk.node]), 0)
-        walks.append((*place, *errs(plan, walk)))
-    return walks, points
+def _paths(plan: Any) -> list[Walk]:
+    """Who is told where it is: robots that stand still, too."""
+    moving = {walk.node for walk in plan.walks}
+    return plan.walks + [
+        Walk(node, ((0, *plan.positions_cm[node]),)) for node, robot in enumerate(plan.robots)
+        if robot and plan.positions_cm and node not in moving
+    ]  # fmt: skip
 
 
 def _set_run(world: m.World, plan: Any) -> None:
@@ -201,14 +184,10 @@ def _set_nodes(world: m.World, plan: Any, spare: int) -> None:
         if plan.ranks[i] >= 0:
             put(world.radios, i, gate=gate)
             gate += 1
-        if plan.positions_cm:
-            x, y = plan.positions_cm[i]
-            put(world.radios, i, x=x, y=y)
+    walkers.place(world, plan)
 
 
 def _set_events(world: m.World, plan: Any) -> None:
     """Queue the first event of every kind; each queues the next."""
     field.push_first(world)
-    for i in range(len(_walks(plan)[0])):
-        at, node = int(get(world.walks, i, "phase")), int(get(world.walks, i, "node"))
-        queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, i))
+    walkers.push_samples(world, len(_paths(plan)))

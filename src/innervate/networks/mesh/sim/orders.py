@@ -3,13 +3,15 @@
 from innervate.dialect.arith import MASK16
 from innervate.networks.mesh.protocol.constants import ACK, MESSAGE, REPORT_GRAPH, SAMPLE, SENT
 from innervate.networks.mesh.sim import recorder
-from innervate.sim.field import calls, medium, motion, queue
+from innervate.sim.field import calls, medium
 from innervate.sim.field.states import ALIVE
 from innervate.sim.status import BROKEN, DONE, POOL_FULL, ROWS_FULL
 
 DUPLICATES_FULL = 100  # a status: the table of deliveries is half full
 
 BYTE = 0xFF
+SPEED_MAX = 127
+PLACE_MAX = 32767
 
 
 def pressing(world):
@@ -59,14 +61,14 @@ def offer(world, do, index, time):
     calls.give(world, do, node, time, MESSAGE)
 
 
-def sample(world, do, index, time):
-    """A robot learns where it is."""
-    node = world.walks[index].node
-    motion.walk_on(world, index, time)
-    if motion.tell_place(world, index):
-        calls.give(world, do, node, time, SAMPLE)
-    at = time + world.run[0].sample
-    queue.push(world.heap, queue.key_of(at, queue.SAMPLE, node, index))
+def tell_place(world, do, index, time):
+    """A robot learns where it is, in units from the fence's corner, and how fast it goes."""
+    walk, item = world.walks[index], world.item[0]
+    item.x = min(max(walk.told_x, -PLACE_MAX), PLACE_MAX)
+    item.y = min(max(walk.told_y, -PLACE_MAX), PLACE_MAX)
+    item.vx = min(max(walk.vx, -SPEED_MAX), SPEED_MAX)
+    item.vy = min(max(walk.vy, -SPEED_MAX), SPEED_MAX)
+    calls.give(world, do, walk.node, time, SAMPLE)
 
 
 def check(world, do, node, _time):

@@ -24,7 +24,6 @@ from innervate.sim.field.simulation import Field
 from innervate.sim.ranges import is_in_range
 from innervate.sim.status import POOL_FULL
 from innervate.sim.tables import ROW, TRAIL, get
-from innervate.topology import astray
 
 SLICE_EVENTS = 200_000
 PLAIN_SLICE_EVENTS = 2_000
@@ -88,10 +87,7 @@ def _jitted(entry: ModuleType, access: radio_stacks.Protocol | None) -> Any:
     compilation.register(
         *compilation.modules_of(entry), csma, medium, motion, recorder, rows, taps, hot=False
     )
-    compilation.register_functions(powers.strength, powers.chance, powers.loss)
-    compilation.register_functions(
-        astray.err, astray.drawn, astray.normal, astray.next_of, astray.centimetres
-    )
+    compilation.register_functions(powers.strength, *motion.CALLED)
     layer = stacks.Layer(over_medium)
     if access is not None:
         layer = stacks.Layer(over_channel, radio_simulate.registered(access, over_channel))

@@ -11,6 +11,7 @@ from innervate.networks.mesh.protocol import csma
 from innervate.networks.mesh.protocol.constants import ACK
 from innervate.networks.mesh.protocol.frames import copy_frame, frame_bytes
 from innervate.networks.mesh.sim import orders, recorder
+from innervate.sim.field import motion
 from innervate.sim.handlers import Given, access_handlers, handlers
 
 ROUTER = Given("world.nodes[node], world.gates[world.radios[node].gate], world.params[0]")
@@ -23,8 +24,8 @@ BELOW = (
 
 # What it asks of the mesh, besides its handlers.
 ORDERS = (
-    orders.pressing, orders.wipe, orders.offer, orders.sample, orders.tell_sent, orders.note_heard,
-    orders.note_report, orders.note_carriers, orders.check,
+    orders.pressing, orders.wipe, orders.offer, motion.sample, orders.tell_place, orders.tell_sent,
+    orders.note_heard, orders.note_report, orders.note_carriers, orders.check,
     recorder.record_sent, recorder.record_delivered, recorder.tap,
 )  # fmt: skip
 

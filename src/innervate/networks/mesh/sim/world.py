@@ -21,10 +21,6 @@ RUN = (
 # What the medium knows of a node.
 RADIO = ("state", "deaf", "on_air", "held", "hot", "told", "tell_at", "boots", "gate", "offset",
          "noise", "x", "y")  # fmt: skip
-# ... and how it errs about its place (see topology/astray.py): `noise` in um, errors in SIGMA.
-WALK = ("node", "point", "last", "phase", "placed",
-        "noise", "keep", "fresh", "rng", "off_x", "off_y")  # fmt: skip
-POINT = ("time", "x", "y")
 OFFER = ("time", "node", "dest", "flags", "length")
 
 SENT = ("time", "end", "node", "kind", "flags", "link_dst", "origin", "dest", "seq", "path_len",

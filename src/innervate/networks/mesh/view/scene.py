@@ -9,8 +9,7 @@ from innervate.networks.mesh.plot.sheet import WIDTH, is_to_scale, laid_out
 from innervate.networks.mesh.scenario.plan import ONE
 from innervate.networks.mesh.scenario.profiles import GOOD_CDB
 from innervate.sim.field.states import ALIVE
-
-UP, DOWN, AWAY = 1, 0, 2  # of links; AWAY: out of range for now
+from innervate.web.field_view import Links
 
 Numbers = np.ndarray[Any, np.dtype[np.int64]]
 
@@ -22,11 +21,8 @@ class Field:
         self.plan = plan
         self.walks = bool(plan.walks) and is_to_scale(plan, WIDTH)  # somebody moves
         moving = {walk.node for walk in plan.walks} if self.walks else set()
-        met = {(min(i, j), max(i, j)) for i in moving for j in range(plan.nodes) if i != j}
-        # The links: good at the start, and between a robot that moves and anybody.
-        self.pairs: list[tuple[int, int]] = sorted({*plan.good, *met})
-        self._ends = np.array(self.pairs, np.int64).reshape(-1, 2)
-        self._wanders = np.array([bool(moving & set(pair)) for pair in self.pairs], np.bool_)
+        self._links = Links(plan.nodes, plan.good, moving)
+        self.pairs = self._links.pairs
         true_places = is_to_scale(plan, WIDTH)
         self._to_scale = true_places
         places = plan.positions_cm if true_places else laid_out(plan)
@@ -75,14 +71,10 @@ class Field:
 
     def link_up(self, world: Any) -> Numbers:
         """UP, DOWN or AWAY for every link."""
-        count = self.plan.nodes
-        a, b = self._ends.T
-        alive = world.radios["state"] == ALIVE
-        there = alive[a] & alive[b] & (world.cut[a * count + b] == 0)
-        least = self.plan.radio.rssi50_cdb + GOOD_CDB
-        near = np.minimum(world.rssi[a * count + b], world.rssi[b * count + a]) >= least
-        found = np.where(self._wanders & ~near, AWAY, np.where(there, UP, DOWN))
-        return found.astype(np.int64)
+        found: Numbers = self._links.up(
+            world, world.radios["state"] == ALIVE, self.plan.radio.rssi50_cdb + GOOD_CDB
+        )
+        return found
 
     def positions(self, world: Any) -> Any:
         """Where all nodes are now: (n, 2), metres, y downwards."""
