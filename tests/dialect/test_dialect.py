@@ -17,6 +17,7 @@ ABOUT = {
     "source.py",
     "checker.py",
     "bounded.py",
+    "held.py",
     "loops.py",
     "clocks.py",
     "folder.py",

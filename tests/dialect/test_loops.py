@@ -56,6 +56,45 @@ def test_a_way_through_a_loop_on_which_nothing_changes_is_told(body):
     assert one.what.startswith("a loop without bound: there is a way through it on which nothing")
 
 
+@pytest.mark.parametrize("chain", [
+    "n > 5|n <= 5", "n > cell.m|cell.m > n|n == cell.m", "n > 1|n == 1", "cell.m|not cell.m",
+    "0 < n < 9|n >= 9", "cell.m > 0 and n > 3|cell.m <= 0|n < 4", "n % 2 == 0|n % 2 != 0",
+    "n > -3|n == -3", "n == 1|n == 2|n == 3|n > 3",
+])  # fmt: skip
+def test_an_if_that_covers_all_cases_needs_no_else(chain):
+    sides = "\n        elif ".join(f"{test}:\n            n -= 1" for test in chain.split("|"))
+    assert told_of(f"while n > 0:\n        if {sides}") == []
+
+
+@pytest.mark.parametrize("chain", [
+    "n > 5|n < 5", "n > cell.m|cell.m > n", "n > 1", "n == 1|n == 2|n > 3", "0 < n < 9|n > 9",
+    "cell.m > 0 and n > 3|cell.m < 0|n < 4", "n % 2 == 0|n % 2 == 1", "cell.m|cell.n",
+    "n >= 2 * cell.m|n < cell.m * 2",
+])  # fmt: skip
+def test_of_one_that_leaves_a_case_out_it_is_said_which_if_needs_an_else(chain):
+    sides = "\n        elif ".join(f"{test}:\n            n -= 1" for test in chain.split("|"))
+    (one,) = told_of(f"while n > 0:\n        if {sides}")
+    line = 7 + 2 * chain.count("|")
+    assert one.what.endswith(
+        f"nothing changes; give the if in line {line} an else that changes it, or breaks"
+    )
+
+
+def test_of_more_cases_than_can_be_looked_at_nothing_is_taken_for_granted():
+    sides = "\n        elif ".join(f"cell.path[{i}] > 0:\n            n -= 1" for i in range(9))
+    all_but = " and ".join(f"cell.path[{i}] <= 0" for i in range(9))
+    (one,) = told_of(
+        f"while n > 0:\n        if {sides}\n        elif {all_but}:\n            n = 1"
+    )
+    assert "give the if in line 25 an else" in one.what
+
+
+def test_of_more_ways_than_are_told_apart_any_is_possible():
+    sides = "".join(f"\n        if cell.path[{i}]:\n            pass" for i in range(9))
+    (one,) = told_of(f"while n > 0:\n        if n <= 0:\n            pass{sides}")
+    assert one.what.endswith("nothing changes; change something, or break")
+
+
 SOURCE = '''"""Loops."""
 
 LIMIT = 3

@@ -4,14 +4,22 @@ What is not seen here is stopped as it goes round: bounded.py.
 """
 
 import ast
+from itertools import chain
+
+from innervate.dialect.held import possible
 
 PURE = {"abs", "max", "min"}
+WAYS = 64  # ways through a block that are told apart
 
 
 def endless(loop):
     """Why a `while` need not end; "" if it is not seen."""
-    if not calls(loop.test) and _is_idle(loop.body):
-        return "there is a way through it on which nothing changes; change something, or break"
+    if not calls(loop.test) and (way := _idle_way(loop)) is not None:
+        said = "there is a way through it on which nothing changes"
+        sides = [place for place, holds in way if not holds and not place.orelse]
+        if not sides:
+            return f"{said}; change something, or break"
+        return f"{said}; give the if in line {sides[-1].lineno} an else that changes it, or breaks"
     exits = list(_exits_of(loop.body))
     if None in exits or () in exits:
         return ""
@@ -25,29 +33,40 @@ def endless(loop):
     return "nothing that its condition looks at changes in it; write for i in range(...)"
 
 
-def _is_idle(statements):
-    """True if there is a way through a loop's body, to its next round, that changes nothing.
+def _idle_way(loop):
+    """A way through a loop's body, to its next round, that changes nothing; None if there is none.
 
-    Whoever takes it once takes it for ever. A call that is handed something may change it.
+    Whoever takes it once takes it for ever. A call that is handed something may change it. A way is
+    the conditions on it: (the `if` or the loop, whether it holds).
     """
-    return any(_idle_ends(statements))
+    for way in chain(*_idle_ways(loop.body)):
+        found = ((loop, True), *way)
+        if possible([(place.test, holds) for place, holds in found]):
+            return found
+    return None
 
 
-def _idle_ends(statements):
-    """Whether nothing is changed on some way to the end of a block; and on one to a `continue`."""
-    goes_on = False
+def _idle_ways(statements):
+    """The ways that change nothing to the end of a block, and those to a `continue`."""
+    ends, again = [()], []
     for statement in statements:
         if isinstance(statement, ast.If) and not calls(statement.test):
-            sides = [_idle_ends(side) for side in (statement.body, statement.orelse)]
-            goes_on |= any(again for _, again in sides)
-            if any(on for on, _ in sides):
+            through = []
+            for side, holds in ((statement.body, True), (statement.orelse, False)):
+                on, back = _idle_ways(side)
+                through += [((statement, holds), *way) for way in on]
+                again += [(*end, (statement, holds), *way) for end in ends for way in back]
+            if len(ends) * len(through) > WAYS:
+                ends = through = [()]  # so many that any is taken for possible
+            ends = [(*end, *way) for end in ends for way in through]
+            if ends:
                 continue
         elif isinstance(statement, ast.Continue):
-            return False, True
+            return [], again + ends
         elif isinstance(statement, ast.Pass):
             continue
-        return False, goes_on
-    return True, goes_on
+        return [], again
+    return ends, again
 
 
 def calls(node):
