@@ -109,9 +109,10 @@ def test_what_breaks_later_than_the_trial_is_found_by_a_second_run(own, monkeypa
 
 @pytest.mark.slow  # compiles a protocol that no other test runs
 def test_a_loop_that_does_not_end_is_stopped_in_a_compiled_run(own, monkeypatch):
+    """It ends after 3,000,007 rounds: a run in which nothing stops it is seen to go on."""
     monkeypatch.setattr(blaming, "try_plain", lambda *_given, **_kept: None)
-    own.change("protocol.py", TAKE, f"{TAKE}        left = node.value\n"
-               "        while left != 0:\n            left -= 2\n")  # fmt: skip
+    own.change("protocol.py", TAKE, f"{TAKE}        left = 3_000_000 + node.value\n"
+               "        while left > 0:\n            left -= 1\n")  # fmt: skip
     at = own.line("protocol.py", "while")
     with pytest.raises(NetworkError, match=f"protocol.py:{at}: EndlessLoop: a loop of more than 1"):
         innervate.run(own.scenario)

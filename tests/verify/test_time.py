@@ -6,6 +6,7 @@ import pytest
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.outbox import send, set_timer
+from innervate.dialect.rng import draw
 from innervate.verify import declared
 from innervate.verify.graphs import graph_of
 from innervate.verify.states import happen
@@ -48,6 +49,47 @@ def test_a_timer_fires_when_it_is_due_and_time_has_passed_so_far(waits):
         (timer, wait - first) for timer, wait in enumerate(waits) if timer != waits.index(first)
     )
     assert step.state.nodes[1] == state.nodes[1]
+
+
+def explored(wait_of):
+    """Two nodes whose timer, when it fires, is set anew to `wait_of(node)` from now."""
+
+    def on_start(node, params, now, cause, out):
+        node.left = 0
+        set_timer(out, 0, (now + 5) & MASK30)
+
+    def on_timer(node, params, now, timer, out):
+        node.left = (node.left + 1) % 100
+        set_timer(out, 0, (now + wait_of(node)) & MASK30)
+
+    drawn = (("rng", 0, 1, 1 << 30, "raw", ""), ("choice", 0, -1, 1 << 30, "raw", ""),
+             ("asked", 0, 0, 1 << 30, "raw", ""))  # fmt: skip
+    fields = SimpleNamespace(STATE=STATE + drawn, FRAME=(), PARAMS=())
+    protocol = SimpleNamespace(
+        on_start=on_start, on_timer=on_timer, on_frame=lambda *_: None, TIMERS=1, OUTBOX=4
+    )
+    net = declared.Net(protocol, fields, graph_of("pair"), {})
+    return net, declared.explore(net, declared.Budget(restart=0), 400, lambda *_: False, "pair")
+
+
+@pytest.mark.parametrize("wait_of", [lambda _node: 0, lambda _node: -3,
+                                     lambda node: 7 * (node.left == 0)])  # fmt: skip
+def test_who_sets_a_timer_at_once_for_ever_lets_time_stand_still(wait_of):
+    _net, (tally, story) = explored(wait_of)
+    if wait_of(SimpleNamespace(left=0)) > 0:  # every hundredth time only
+        assert not story.title
+        return
+    assert tally.ended == "broken"
+    assert story.title == (
+        "on_timer of n0 sets a timer that is due at once, again and again: time stands still"
+    )
+    assert story.sentences[0].startswith("Timer 0 of n0 fires")
+
+
+def test_who_may_draw_no_wait_goes_on_and_what_was_looked_at_is_noted_nowhere():
+    net, (_tally, story) = explored(lambda node: draw(node, 4))
+    assert not story.title
+    assert (net.draws.sizes, net.draws.some) == ({4}, set())
 
 
 @pytest.mark.parametrize(("wait", "delays", "words"), [

@@ -4,8 +4,7 @@ from types import FrameType
 
 from innervate.dialect.arith import HALF30, MASK30
 from innervate.folders import NetworkError
-
-AT_ONCE_MOST = 1_000  # times that a node may set timers for now, or the past, at one reading
+from innervate.verify.standing import AGAIN, AT_ONCE_MOST
 
 
 class Timers:
@@ -28,6 +27,5 @@ class Timers:
         count = count + 1 if before == reading else 1
         self.set[who] = reading, count
         if count > AT_ONCE_MOST:
-            what = "sets a timer that is due at once, again and again: time stands still"
             name = handler.f_code.co_name
-            raise NetworkError(f"{place}: {name} {what}; set it for later, (now + ...) & MASK30")
+            raise NetworkError(f"{place}: {name} {AGAIN}; set it for later, (now + ...) & MASK30")

@@ -26,6 +26,7 @@ from innervate.verify.graphs import GRAPHS, graph_of
 from innervate.verify.net import Net
 from innervate.verify.readings import Readings
 from innervate.verify.scripts import STUCK, scenario_of
+from innervate.verify.standing import wrong_of
 from innervate.verify.states import Budget, State, is_still, most_frames
 from innervate.verify.tally import Tally
 from innervate.verify.telling import past_words, story_of
@@ -40,7 +41,7 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
     started, tally = wall_s(), Tally(states=1)
     before: dict[State, tuple[State | None, str] | None] = {}
     for first in net.begins(budget):
-        if broken := first.broken or (net.of_all and net.broken_of_all(first.state)):
+        if broken := first.broken or wrong_of(net, first.state):
             told = Story(broken, [f"{first.words}."], events=[first.words])
             return replace(tally, ended="broken"), told
         before.setdefault(first.state, (None, first.words) if net.draws.made else None)
@@ -55,7 +56,7 @@ def explore(net: Net, budget: Budget, limit: int, tell: Tell, name: str) -> tupl
             if not waits and is_still(state):
                 return replace(tally, ended="broken"), story_of(net, before, state, STUCK)
             for step in steps:
-                if broken := step.broken or (net.of_all and net.broken_of_all(step.state)):
+                if broken := step.broken or wrong_of(net, step.state):
                     told = story_of(net, before, state, broken, step)
                     return replace(tally, ended="broken"), told
                 if most_frames(step.state) > IN_FLIGHT:

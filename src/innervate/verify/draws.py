@@ -9,6 +9,7 @@ draws give something else than the first. What was left out is noted.
 
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from innervate.dialect.rng import GENERATE
@@ -128,6 +129,16 @@ class Draws:
         self.made, self._more = [], None
         step = make(*what)
         return step._replace(words=step.words + told(self.made)) if self.made else step
+
+    @contextmanager
+    def by_chance(self) -> Iterator[None]:
+        """What is drawn meanwhile belongs to no event: a stream says it, and it is not noted."""
+        kept = self.made, self._more, set(self.sizes), set(self.some)
+        self.made, self._more = [], None
+        try:
+            yield
+        finally:
+            self.made, self._more, self.sizes, self.some = kept
 
     def as_dict(self) -> dict[str, Any]:
         """What was tried, for --json."""

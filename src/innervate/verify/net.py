@@ -71,6 +71,7 @@ class Net:
                        if unit == "us" and high == MASK30 and name != TIMED}  # fmt: skip
         self.readings: Readings | None = None  # where calls are looked at by it
         self.past: dict[tuple[str, int], int] = {}  # us that a handler set a timer in the past
+        self.moving = set[Node]()  # due at once, and known to go on (see standing.py)
 
     def begins(self, budget: Budget) -> Iterator[Step]:
         """All ways in which the network can begin, by what its nodes draw."""

@@ -16,6 +16,7 @@ from innervate.scenario.emit import inline, to_toml
 from innervate.topology import Graph
 from innervate.verify.cases import Story
 from innervate.verify.net import SWITCHED_ON, Net
+from innervate.verify.standing import wrong_of
 from innervate.verify.states import Budget, State, Step, happen, is_still
 
 STUCK = "nothing can happen any more: no timer is set, no frame is on its way"
@@ -106,10 +107,10 @@ def begins(steps: list[str]) -> int:
 
 def looked_at(net: Net, step: Step, waits: bool) -> Step:
     """A step with what is broken after it, as an exploration finds it."""
-    broken = step.broken or (net.of_all and net.broken_of_all(step.state))
+    broken = step.broken or wrong_of(net, step.state)
     if not broken and not waits and is_still(step.state):
         broken = STUCK
-    return step._replace(broken=broken or "")
+    return step._replace(broken=broken)
 
 
 def drawn_of(text: str) -> tuple[int, ...]:

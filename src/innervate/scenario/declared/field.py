@@ -123,7 +123,7 @@ class FieldScenario(shared.Declared, frozen=True, kw_only=True):
     side_m: Annotated[float, above_0("metres", 100_000)] = 100.0
     positions_m: list[tuple[float, float]] = []  # noqa: RUF012
     link: list[LinkTable] = []  # noqa: RUF012
-    robot: list[moving.RobotTable] = []  # noqa: RUF012
+    robot: list[moving.MovingTable] = []  # noqa: RUF012
     sample_hz: robots.SampleHz = 50.0
     absent: list[int] = []  # noqa: RUF012
     start_us: Annotated[int, whole("microseconds", 1, 10_000_000)] = 1000

@@ -32,7 +32,7 @@ def check(source: Source, model: Any) -> None:
     robots.starts(model.robot, Numbered(source, model.nodes))
 
 
-class RobotTable(robots.RobotTable, frozen=True, kw_only=True):
+class MovingTable(robots.RobotTable, frozen=True, kw_only=True):
     """[[robot]]: a node that moves, by its number."""
 
     node: Annotated[int, whole("", 0)]
@@ -76,7 +76,7 @@ def placed_of(fields: Any) -> Placed | None:
 
 def met(plan: Any) -> list[tuple[int, int]]:
     """Pairs that may hear each other: those that do at the start, and a robot and anybody."""
-    return plan.good + [
+    return list(plan.good) + [
         (walk.node, node) for walk in plan.walks for node in range(plan.nodes) if node != walk.node
     ]
 
