@@ -46,6 +46,9 @@ def install(folder: Path | None = None) -> Path:
         ExportError: it cannot be written.
     """
     target = folder or plugin_folder()
+    if target.is_file():
+        what = "--dissector alone takes a folder; add --pcapng for a scenario's frames, too"
+        raise ExportError(f"{target} is a file; {what}")
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -13,11 +13,11 @@ from innervate.live.build import links_of, sealer_of, state_of
 from innervate.live.declared import DeclaredNode, DeclaredStack
 from innervate.live.deployment import Deployment, Pairs, Stage, Table
 from innervate.live.errors import LiveError
-from innervate.live.moving import tell
+from innervate.live.moving import follow, tell
 from innervate.live.nodefile import Loaded
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
-from innervate.scenario.declared.moving import placed_of
+from innervate.scenario.declared.moving import met, placed_of
 
 RSSI = -50  # of every frame that comes over UDP, dBm
 
@@ -77,8 +77,9 @@ class FieldDeployment(Deployment):
     no_link = "{a} and {b} do not hear each other"
 
     def layout(self) -> tuple[list[str], Pairs]:
-        """Nodes by number; pairs that hear at least half of each other's frames."""
-        return [f"n{i}" for i in range(self.plan.nodes)], list(self.plan.good)
+        """Nodes by number; pairs that hear at least half of each other's frames, some time."""
+        names = [f"n{i}" for i in range(self.plan.nodes)]
+        return names, sorted({(min(pair), max(pair)) for pair in met(self.plan)})
 
     def check(self, cables: str, sealed: bool) -> None:
         """Refuse serial cables, which join two ends each."""
@@ -92,12 +93,13 @@ class FieldDeployment(Deployment):
         return {}, {"protocol": dict(self.plan.params)}
 
     def others(self, stage: Stage) -> list[Coroutine[Any, Any, None]]:
-        """Inputs; and robots are told where they are, if their network wants to know."""
-        placed = placed_of(networks()[self.plan.kind].fields)
-        inputs = super().others(stage)
-        if placed is None:
-            return inputs
-        return inputs + [tell(self.plan, walk, placed, stage) for walk in self.plan.walks]
+        """Inputs; robots come and go, and are told where, if their network wants to know."""
+        found = super().others(stage)
+        if self.plan.walks:
+            found.append(follow(self.plan, stage))
+        if (placed := placed_of(networks()[self.plan.kind].fields)) is not None:
+            found += [tell(self.plan, walk, placed, stage) for walk in self.plan.walks]
+        return found
 
     def cable_of(self, fault: Any) -> int:
         """The number of the link that a fault is done to; -1 if it is done to none."""

@@ -1,14 +1,18 @@
-"""Live nodes that are told where their robots are, as the scenario has it."""
+"""Robots of live nodes: who hears them follows from where they are, which they are told."""
 
 import asyncio
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
-from innervate.live.deployment import Stage, Table, ask, sleep_until
+from innervate.live.deployment import Pairs, Stage, Table, ask, sleep_until
+from innervate.scenario.declared.field import RSSI50_CDB
 from innervate.scenario.declared.moving import Placed
 from innervate.scenario.robots import Walk, errs, position_cm
-from innervate.topology import astray
+from innervate.topology import astray, placement
+from innervate.topology.placement import Point
+
+LOOKED_US = 100_000  # so often it is looked who hears whom
 
 
 def told(plan: Any, walk: Walk, placed: Placed) -> Iterator[tuple[int, Table]]:
@@ -32,6 +36,40 @@ def told(plan: Any, walk: Walk, placed: Placed) -> Iterator[tuple[int, Table]]:
 def within(number: float, limits: tuple[int, int]) -> int:
     """The nearest whole number within limits."""
     return min(max(round(number), limits[0]), limits[1])
+
+
+def changes(plan: Any, links: Pairs) -> Iterator[tuple[int, int, str]]:
+    """When which of the links is cut or restored, us, as robots come and go; all hold at first."""
+    ways = {walk.node: walk for walk in plan.walks}
+    carried = [True] * len(links)
+    last_us = max((walk.points[-1][0] for walk in plan.walks), default=0)
+    for at_us in range(0, min(last_us + plan.sample_us, plan.duration_us), LOOKED_US):
+        places = dict(enumerate(plan.positions_cm))
+        for node, walk in ways.items():
+            x, y = position_cm(walk, at_us)
+            places[node] = round(x), round(y)
+        for cable, (a, b) in enumerate(links):
+            if a in ways or b in ways:
+                holds = _is_near(plan, places, a, b)
+                if holds != carried[cable]:
+                    carried[cable] = holds
+                    yield at_us, cable, "restore" if holds else "cut"
+
+
+def _is_near(plan: Any, places: dict[int, Point], a: int, b: int) -> bool:
+    """True if two nodes receive half of each other's frames, where nothing disturbs them."""
+    far_cm = placement.distance_cm(places[a], places[b])
+    lost = placement.path_loss_cdb(far_cm, plan.heard.exponent_c)
+    least = min(plan.heard.base_cdb[i * plan.nodes + j] for i, j in ((a, b), (b, a)))
+    return bool(least - lost >= RSSI50_CDB)
+
+
+async def follow(plan: Any, stage: Stage) -> None:
+    """Cut and restore links as robots come and go."""
+    began = asyncio.get_running_loop().time()
+    for at_us, cable, what in changes(plan, stage.deployment.links):
+        await sleep_until(began + at_us / 1e6)
+        await stage.change(cable, what)
 
 
 async def tell(plan: Any, walk: Walk, placed: Placed, stage: Stage) -> None:

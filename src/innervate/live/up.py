@@ -164,7 +164,7 @@ class Processes:
         """Cut, restore or loosen a cable at both its ends."""
         self._hurt[cable] = (what, loss)
         if what == "restore":
-            del self._hurt[cable]
+            self._hurt.pop(cable, None)
         for number in self.links[cable]:
             await self._change_end(number, cable, what, loss)
 

@@ -100,8 +100,8 @@ class _Row(Told):
 
     name = ""
 
-    def _check(self, place: int) -> None:
-        if place < 0:
+    def _check(self, place: Any) -> None:
+        if isinstance(place, int) and place < 0:
             raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
 
     def __getitem__(self, place: Any) -> Any:

@@ -134,9 +134,29 @@ def test_live_nodes_are_told_as_simulated_ones_are(told):
         assert request == {"do": "input", "kind": 2, "item": {"x": min(x, 1500), "y": 0}}
     deployment = in_field.FieldDeployment(plan)
     waiting = deployment.others(Of(deployment=deployment))
-    assert len(waiting) == 2
+    assert len(waiting) == 3
     for one in waiting:
         one.close()
+
+
+def test_links_of_live_robots_are_cut_and_restored_as_they_come_and_go(told):
+    plan = scenarios.plan(loaded(told))
+    deployment = in_field.FieldDeployment(plan)
+    assert deployment.links == [(0, 2), (1, 2)]
+    found = list(moving.changes(plan, deployment.links))
+    assert [one[1:] for one in found] == [(1, "cut"), (0, "cut"), (1, "restore")]
+    for at_us, cable, _what in found[1:]:
+        x_m = position_cm(plan.walks[0], at_us)[0] / 100
+        far_m = abs(x_m - 200 * cable)
+        assert 20 < far_m < 60, "about the reach, where half of the frames are received"
+    changed = []
+
+    async def change(cable, what):
+        changed.append((cable, what))
+
+    stage = Of(deployment=deployment, change=change)
+    asyncio.run(moving.follow(plan, stage))
+    assert changed == [one[1:] for one in found]
 
 
 def test_a_live_robot_is_asked_at_its_times(told, monkeypatch):

@@ -3,7 +3,7 @@
 from collections.abc import Coroutine
 from typing import Any
 
-from innervate.live.deployment import Stage, Table
+from innervate.live.deployment import Pairs, Stage, Table
 from innervate.live.in_field import FieldDeployment
 from innervate.networks.mesh.live import walks
 from innervate.networks.mesh.rings import of_table
@@ -18,6 +18,10 @@ class MeshDeployment(FieldDeployment):
 
     no_serial = "--pty joins the cells of a skin; mesh nodes take --netns or UDP"
     no_link = "no cable joins {a} and {b}; name a good link"
+
+    def layout(self) -> tuple[list[str], Pairs]:
+        """Nodes by number; links that are good at the start, whoever moves."""
+        return [f"n{i}" for i in range(self.plan.nodes)], list(self.plan.good)
 
     def file(self, number: int, cables: list[int]) -> tuple[Table, dict[str, Table]]:
         """The head of a node's file, and its tables."""
