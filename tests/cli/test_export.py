@@ -54,6 +54,12 @@ def test_the_dissector_goes_where_it_is_told_or_to_wireshark(tmp_path, monkeypat
     assert "DissectorTable" in texts.pop()
 
 
+def test_a_file_is_no_folder_for_the_dissector(tmp_path, capsys):
+    (tmp_path / "one.toml").write_text("")
+    assert main(["export", "--dissector", str(tmp_path / "one.toml")]) == 2
+    assert "one.toml is a file; --dissector alone takes a folder" in capsys.readouterr().err
+
+
 def test_the_dissector_knows_the_network_beside_the_scenario(own, monkeypatch):
     monkeypatch.setenv("HOME", str(own.folder))
     assert main(["export", str(own.scenario), "--graph", "g.json", "--dissector"]) == 0

@@ -16,6 +16,14 @@ def test_the_nodes_of_a_run_are_its_states_by_number(alone, medium):
     assert [node.number for node in run.nodes] == list(range(run.summary["nodes"]))
 
 
+def test_arrays_of_a_plain_run_take_slices(alone):
+    run = innervate.run(made(alone / "mine", "field").scenario, plain=True)
+    seen = run.nodes[0].seen
+    assert seen[:3] == [seen[0], seen[1], seen[2]]
+    with pytest.raises(IndexError, match=r"seen\[-1\]: an index is 0 to 7"):
+        seen[-1]
+
+
 def test_the_nodes_of_a_compiled_run_have_their_fields_as_attributes():
     run = innervate.run("babel-patch", overrides={"duration_s": 3.0, "event": []})
     assert list(run.nodes.number) == list(range(run.summary["nodes"]))

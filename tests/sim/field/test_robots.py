@@ -9,6 +9,7 @@ import innervate
 from innervate import scenario as scenarios
 from innervate.live import in_field, moving
 from innervate.network import networks
+from innervate.scenario.declared.field import describe
 from innervate.scenario.declared.moving import placed_of
 from innervate.scenario.robots import position_cm
 from innervate.sim.field.declared import simulation
@@ -104,6 +105,13 @@ def test_what_moves_with_a_signal_is_heard_by_who_listens_for_the_carrier(bare):
     given = [NEWS[0] | {"at_s": 0.2}]
     run = ran(bare, robot=[there], input=given, duration_s=0.7, **{"air.bits_per_s": 200})
     assert run.nodes[2].busy == 1
+
+
+def test_nodes_that_a_robot_may_join_are_not_told_to_be_apart(bare):
+    for changes, is_apart in (({}, False), ({"robot": []}, True)):
+        told = describe(scenarios.plan(loaded(bare, **changes)))
+        assert ("falls into 2 parts" in told) == is_apart
+        assert ("  robots     n2, moved 50 times a second\n" in told) != is_apart
 
 
 def test_a_page_shows_it_move(bare):

@@ -12,7 +12,8 @@ What a network brings, in a module `do` (`kernel/compilation.bound`), with the w
 - What the loop asks: `pressing(world)`, `wipe(world, node)`, `offer(world, do, index, time)`,
   `sample(world, do, index, time)`; of the layer below `hand_down` and what `access` has.
 - What is kept and told: `record_sent`, `record_delivered`, `tap`, `note_report`, `note_heard`,
-  `tell_sent(world, do, node, time, ok)`, `note_carriers(world, do, time)`, and
+  `tell_sent(world, do, node, time, ok)`, `note_carriers(world, do, time)`,
+  `tell_place(world, do, index, time)` of robots (`motion.sample`), and
   `check(world, do, node, time)` after every call.
 
 A network that only declares its protocol is given all of that by `declared`.
