@@ -219,6 +219,13 @@ def test_a_phone_shows_what_is_selected_above_the_play_bar(look, skin):
     assert sheet["y"] + sheet["height"] <= bar["y"]
     assert sheet["y"] >= before["y"] + before["height"]  # it hides nothing of the map
     assert box(page, "#stage") == before
+    high, end = page.evaluate("""() => {  // at once: the next state brings other words
+      document.getElementById("selected-facts").textContent = "field 7, ".repeat(99);
+      const of = (id) => document.getElementById(id).getBoundingClientRect();
+      return [of("selected-facts").height, of("selected-do").bottom];
+    }""")
+    assert high < 0.15 * PHONE["height"]  # the map stays, and the rest is scrolled to
+    assert end < bar["y"]
     page.locator("#unselect").tap()
     expect(page.locator("#selection")).to_be_hidden()
 

@@ -105,18 +105,22 @@ def views(tmp_path):
     return page
 
 
+FIELDS = (("heat", "K"), ("on", "flag"), ("count", "number"))
+
+
 @pytest.mark.parametrize(("view", "facts"), [
     ("skin.js", "put out: its identity is revoked"),
     ("mesh.js", "node, put out: its identity is revoked"),
-    ("plain.js", "put out: its identity is revoked, heat 3 K"),
+    ("plain.js", "put out: its identity is revoked, heat 3,000 K, on yes, count 7"),
 ])  # fmt: skip
 def test_every_page_says_of_who_is_revoked_that_it_was_put_out(views, view, facts):
     name = {"skin.js": "SkinView", "mesh.js": "MeshView", "plain.js": "PlainView"}[view]
     role = "cell" if view == "skin.js" else "node"
     nodes = [{"id": at, "label": f"n{at}", "role": role, "x": at, "y": 0} for at in range(2)]
     scene = {"kind": "own", "source": "live", "nodes": nodes, "links": [], "can": [], "ports": 0,
-             "series": [], "fields": [{"name": "heat", "unit": "K"}]}  # fmt: skip
-    state = {"put_out": [0, 1], "way": [0, 2], "fields": {"heat": [3, 3]}}
+             "series": [], "fields": [{"name": name, "unit": unit} for name, unit in FIELDS]}
+    state = {"put_out": [0, 1], "way": [0, 2],
+             "fields": {"heat": [3000, 3000], "on": [0, 1], "count": [7, 7]}}  # fmt: skip
     network = json.dumps((views / "network.js").as_uri())
     made = f"new it.{name}(new (await import({network})).Network"
     told = found(view, f"""await (async () => {{
