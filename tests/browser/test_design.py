@@ -285,7 +285,7 @@ def test_a_cut_that_nobody_needed_says_so(look, skin):
         expect(page.locator("#recovery")).not_to_have_class("number open")
         said = page.locator("#recovery .more").inner_text()
         click(page, cable, "link, up")
-        if "no cell affected" in said:
+        if "no cell lost its way" in said:
             return
     raise AssertionError("every one of these cables was on somebody's way")
 
@@ -297,7 +297,7 @@ def test_the_pc_is_no_cell(look, tmp_path):
     with beside(path, 0.5) as address:
         page = look(address)
         hold(page, 2.0)
-        said = "the PC restarted: no cell affected"
+        said = "the PC restarted: no cell lost its way"
         expect(page.locator("#recovery .more")).to_have_text(said)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from matplotlib.colors import to_rgb
 
+from innervate.plot import svg
 from innervate.plot.sweeps import contrast
 
 PAGE = Path(__file__).resolve().parents[2] / "src" / "innervate" / "web" / "page"
@@ -51,6 +52,30 @@ def test_who_is_yet_to_come_is_not_called_switched_off():
         "does not answer": network("radio", "live", cut_off=[0]),
     }
     assert said(list(cases.values())) == [words.strip() for words in cases]
+
+
+# Texts with names from right to left in them, and with < > where they are set apart.
+TURNED = (
+    "through <שלום 1>, 1 hop", "<שלום>: 4 nodes", "<عقدة 12>, <עוד 3> - n4",
+    "node <مرحبا 12> is off", "<\U0001e900 7>", "n1 - n2: 3 é",
+)  # fmt: skip
+
+
+def test_names_from_right_to_left_turn_nothing_round_on_pages_and_in_reports():
+    shown = [text.translate({ord("<"): "\u2068", ord(">"): "\u2069"}) for text in TURNED]
+    plain = [text.translate({ord("<"): "", ord(">"): ""}) for text in TURNED]
+    assert found("words.js", f"{json.dumps(plain)}.map(it.apart)") == shown
+    assert list(map(svg.clean, plain)) == shown
+    assert list(map(svg.verbatim, plain)) == plain, "a scenario is copied as it is"
+
+
+@pytest.mark.parametrize(("number", "unit", "words"), [
+    (999, "ms", "999 ms"), (4000, "ms", "4 s"), (1234, "ms", "1.23 s"),
+    (4000, "cells", "4000 cells"),
+])  # fmt: skip
+def test_values_of_plots_are_short(number, unit, words):
+    """A scale of 4000 ms had no room for its unit, and nothing else said it."""
+    assert found("words.js", f"it.value({number}, '{unit}')") == words
 
 
 def test_legends_say_of_one_sign_all_that_it_means():
@@ -117,8 +142,16 @@ def test_every_page_says_of_who_is_revoked_that_it_was_put_out(views, view, fact
     name = {"skin.js": "SkinView", "mesh.js": "MeshView", "plain.js": "PlainView"}[view]
     role = "cell" if view == "skin.js" else "node"
     nodes = [{"id": at, "label": f"n{at}", "role": role, "x": at, "y": 0} for at in range(2)]
-    scene = {"kind": "own", "source": "live", "nodes": nodes, "links": [], "can": [], "ports": 0,
-             "series": [], "fields": [{"name": name, "unit": unit} for name, unit in FIELDS]}
+    scene = {
+        "kind": "own",
+        "source": "live",
+        "nodes": nodes,
+        "links": [],
+        "can": [],
+        "ports": 0,
+        "series": [],
+        "fields": [{"name": name, "unit": unit} for name, unit in FIELDS],
+    }
     state = {"put_out": [0, 1], "way": [0, 2],
              "fields": {"heat": [3000, 3000], "on": [0, 1], "count": [7, 7]}}  # fmt: skip
     network = json.dumps((views / "network.js").as_uri())

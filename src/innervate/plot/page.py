@@ -9,7 +9,7 @@ from typing import Any
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
 from innervate.plot.charts import Bars, Panel, Steps
-from innervate.plot.svg import Drawing, clean
+from innervate.plot.svg import Drawing, clean, verbatim
 from innervate.plot.words import count_words, figure_words
 
 ROWS_MAX = 200
@@ -34,7 +34,8 @@ def page(title: str, body: str) -> str:
 def element(tag: str, text: str, kind: str = "") -> str:
     """An element with text, which is escaped."""
     opening = f'<{tag} class="{kind}">' if kind else f"<{tag}>"
-    return f"{opening}{clean(text)}</{tag}>\n"
+    inside = verbatim(text) if tag == "pre" else clean(text)
+    return f"{opening}{inside}</{tag}>\n"
 
 
 def headline(found: Mapping[str, str]) -> str:
