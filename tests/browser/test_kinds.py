@@ -69,7 +69,7 @@ def test_at_the_end_a_short_run_fills_the_timeline(look, tmp_path):
         assert words >= {"D", "R"}, "boxes are too narrow for their letters"
         at, end = page.locator("#seek").evaluate("(seek) => [seek.valueAsNumber, Number(seek.max)]")
         assert 0 < at == end < 1, "the slider was at its beginning, of 60 s"
-        expect(page.locator("#clock")).to_have_text(re.compile(r"^0\.\d+ s / 0\.\d+ s – end$"))
+        expect(page.locator("#clock")).to_have_text(re.compile(r"^0\.\d+ s / 0\.\d+ s \u2013 end$"))
 
 
 def test_names_from_right_to_left_are_set_apart_and_saved_as_they_are(look, tmp_path):

@@ -210,6 +210,33 @@ def test_a_cell_that_sends_by_others_elsewhere_looks_as_no_other_does(views, col
     assert kinds == ["beyond", {"depth": "d7", "port": "p7"}[colour]]
 
 
+# Contexts that note what is drawn on the map, and on the tile of one hatched cell.
+NOTED = """(() => {
+  const calls = [];
+  const pen = (of) => new Proxy({}, { set: () => true, get: (_, name) => (...given) => {
+    calls.push(`${of} ${name}`);
+    return { a: 2, setTransform() {} };
+  } });
+  globalThis.Path2D = class { moveTo() {} lineTo() {} closePath() {} };
+  globalThis.DOMMatrix = class {};
+  globalThis.OffscreenCanvas = class {
+    getContext() { return pen("tile"); }
+    transferToImageBitmap() { return {}; }
+  };
+  const stage = { scale: 20, x: [10, 30], y: [10, 10], width: 99, height: 99, clear() {} };
+  view.draw(0, pen("map"), stage);
+  return calls.filter((call) => / (fill|stroke|drawImage)$/.test(call)).sort();
+})()"""
+
+
+def test_hatched_cells_are_stamps_of_one(views):
+    """Each filled with a pattern and outlined, 2,000 took 2.3 times as long as plain ones."""
+    state = {"beyond": [1, 1], "parent": [-1, -1], "port": [-1, -1], "depth": [-1, -1]}
+    assert viewed(views, "skin.js", "SkinView", NOTED, state) == [
+        "map drawImage", "map drawImage", "tile fill", "tile fill", "tile stroke", "tile stroke",
+    ]  # fmt: skip
+
+
 def test_a_node_of_which_no_field_is_known_is_filled_as_its_legend_says(views):
     value = "[view.filled(null), view.legend().map(([, words]) => words)]"
     fill, words = viewed(views, "plain.js", "PlainView", value, {}, fields=[])
