@@ -119,7 +119,7 @@ export function slanting(context) {
 }
 
 /** Draws a hatched cell at a place. It is painted once: to stamp thousands is quicker than to fill
- * as many with one colour; to fill and outline each with a pattern takes up to 2.6 times as long. */
+ * as many with one colour; to fill and outline each with a pattern took up to 2.6 times that. */
 export function stamped(context, shape, pitch) {
   const ratio = context.getTransform().a;
   const side = Math.ceil(1.2 * pitch * ratio) + 4; // px of the screen; a hexagon is 1.13 high
