@@ -99,7 +99,8 @@ export function offWords(network) {
 }
 
 // Words of letters from right to left, with the numbers between and behind them.
-const RIGHT = "\\u0590-\\u08ff\\ufb1d-\\ufdff\\ufe70-\\ufefc\\u{10800}-\\u{10fff}\\u{1e800}-\\u{1efff}";
+const RIGHT = "\\u0590-\\u08ff\\ufb1d-\\ufdff\\ufe70-\\ufefc"
+  + "\\u{10800}-\\u{10fff}\\u{1e800}-\\u{1efff}";
 const TURNED = new RegExp(`[${RIGHT}](?:[${RIGHT}\\d ]*[${RIGHT}\\d])?`, "gu");
 
 /** A text in which names written from right to left turn nothing round that stands beside them. */
