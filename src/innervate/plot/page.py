@@ -14,6 +14,7 @@ from innervate.plot.words import count_words, figure_words
 
 ROWS_MAX = 200
 FIGURE = re.compile(r"[-\d.,]+ \S{1,5}")  # a number with its unit
+INTERVAL = re.compile(r"\(([-\d.,]+) to ([-\d.,]+)\)")
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
 # Parts of a page, wherever they stand.
@@ -136,8 +137,10 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") ->
 
 
 def _on_one_line(cell: str) -> str:
-    """A number that stays with its unit, however narrow the screen; other cells as they are."""
-    return cell.replace(" ", "\N{NO-BREAK SPACE}") if FIGURE.fullmatch(cell) else cell
+    """A cell whose numbers stay with their units, and intervals whole, however narrow it is."""
+    space = "\N{NO-BREAK SPACE}"
+    whole = cell.replace(" ", space) if FIGURE.fullmatch(cell) else cell
+    return INTERVAL.sub(rf"(\1{space}to{space}\2)", whole)
 
 
 def details(head: str, inside: str) -> str:
