@@ -9,6 +9,7 @@ from pathlib import Path
 
 import grimp
 import networkx as nx
+import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch
@@ -19,6 +20,11 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCES, PICTURE = ROOT / "src", ROOT / "docs/images/house.svg"
 SPINE, HOME = "innervate", "innervate.networks"
 WIDTH, FLOOR = 1.9, 1.1  # of a room with its gap, of a floor
+APART, BELOW = 0.5, 0.85  # between networks; from the lowest rooms to a network's name
+BELOW_SPINE = 3  # networks with many rooms, which have a row of their own
+UNIT_IN = 0.37  # so that all is some 10 inches wide, as a page is: read without zooming in
+NAME_PT, COUNT_PT, TITLE_PT = 7.5, 7, 9.5
+Corner = tuple[float, float]  # left and lower end
 WALL, LIGHT, DARK = "#52606d", "#e8eef4", "#1f2933"
 TINTS = ("#dcefe3", "#fdeedb", "#e6e3f6", "#f9e2e2", "#e3f0f7", "#f3f0da")
 
@@ -66,53 +72,72 @@ def floors(graph: nx.DiGraph) -> dict[str, int]:
 
 
 def house(
-    ax: Axes, graph: nx.DiGraph, level: dict[str, int], home: str, left: float, tint: str
-) -> float:
-    """Draw the rooms of one package on their floors; how wide it is."""
-    rows = [[room for room in sorted(graph) if level[room] == floor]
-            for floor in range(1 + max(level[room] for room in graph))]  # fmt: skip
-    wide = max(map(len, rows))
-    at: dict[str, tuple[float, float]] = {}
+    ax: Axes, graph: nx.DiGraph, level: dict[str, int], home: str, corner: Corner, tint: str
+) -> None:
+    """Draw the rooms of one package on their floors, and its name below."""
+    rows = by_floor(graph, level)
+    wide = breadth(graph, level)
+    at: dict[str, Corner] = {}
     for floor, row in enumerate(rows):
         # Rooms over what they stand on, as far as there is space.
         row.sort(key=lambda room: sum(at[b][0] for b in sorted(graph.successors(room)) if b in at)
                  / max(1, graph.out_degree(room)))  # fmt: skip
         for number, room in enumerate(row):
-            x = left + WIDTH * (number + 0.5 + (wide - len(row)) / 2)
-            at[room] = (x, FLOOR * floor)
+            x = corner[0] + WIDTH * (number + 0.5) + (wide - WIDTH * len(row)) / 2
+            at[room] = (x, corner[1] + FLOOR * floor)
     for one, other in sorted(graph.edges):
         (x, y), (to_x, to_y) = at[one], at[other]
         ax.plot([x, to_x], [y - 0.3, to_y + 0.3], color=WALL, lw=0.6, alpha=0.55, zorder=1)
     for room, (x, y) in at.items():
-        box = FancyBboxPatch((x - 0.84, y - 0.3), 1.68, 0.6, boxstyle="round,pad=0.02",
+        box = FancyBboxPatch((x - 0.88, y - 0.36), 1.76, 0.72, boxstyle="round,pad=0.02",
                              fc=tint, ec=WALL, lw=0.8, zorder=2)  # fmt: skip
         ax.add_patch(box)
-        ax.text(x, y + 0.09, room, ha="center", va="center", size=6.2, color=DARK, zorder=3)
+        ax.text(x, y + 0.14, room, ha="center", va="center", size=NAME_PT, color=DARK, zorder=3)
         count = f"{lines(home, room):,}"
-        ax.text(x, y - 0.15, count, ha="center", va="center", size=5.5, color=WALL, zorder=3)
-    return wide * WIDTH
+        ax.text(x, y - 0.18, count, ha="center", va="center", size=COUNT_PT, color=DARK, zorder=3)
+    called = home.removeprefix("innervate.").replace(".", "/")
+    name = "the spine: names no network" if home == SPINE else called
+    ax.text(corner[0] + wide / 2, corner[1] - BELOW, name, ha="center", size=TITLE_PT, color=DARK)
+
+
+def by_floor(graph: nx.DiGraph, level: dict[str, int]) -> list[list[str]]:
+    """The rooms of a package on each floor, from the lowest."""
+    return [[room for room in sorted(graph) if level[room] == floor]
+            for floor in range(1 + max(level[room] for room in graph))]  # fmt: skip
+
+
+def breadth(graph: nx.DiGraph, level: dict[str, int]) -> float:
+    """How wide a package is drawn."""
+    return WIDTH * max(map(len, by_floor(graph, level)))
 
 
 def draw() -> Path:
-    """The spine, and beside it every network with the same plan inside."""
+    """The spine beside the networks with few rooms, below them those with many."""
     graph = built()
-    figure, ax = plt.subplots(figsize=(22, 6))
-    spine = nx.transitive_reduction(imports(graph, SPINE))
-    right = house(ax, spine, floors(spine), SPINE, 0.0, LIGHT)
-    ax.text(right / 2, -0.75, "the spine: names no network", ha="center", size=9, color=DARK)
     homes = [f"{HOME}.{name}" for name in networks()]
-    plans = [nx.transitive_reduction(imports(graph, home)) for home in homes]
-    level = floors(nx.compose_all(plans))  # the same plan in each
-    for home, inside, tint in zip(homes, plans, TINTS, strict=True):
-        width = house(ax, inside, level, home, right + 0.5, tint)
-        called = home.removeprefix("innervate.").replace(".", "/")
-        ax.text(right + 0.5 + width / 2, -0.75, called, ha="center", size=9, color=DARK)
-        right += 0.5 + width
-    ax.set_xlim(-0.2, right + 0.2)
-    ax.set_ylim(-1.05, None)
+    spine = nx.transitive_reduction(imports(graph, SPINE))
+    plans = {home: nx.transitive_reduction(imports(graph, home)) for home in homes}
+    level = floors(nx.compose_all(plans.values()))  # the same plan in each
+    tints = dict(zip([SPINE, *homes], (LIGHT, *TINTS), strict=True))
+    many = sorted(homes, key=lambda home: -len(plans[home]))[:BELOW_SPINE]
+    few = [home for home in homes if home not in many]
+    tall = FLOOR * (1 + max(level.values())) + BELOW
+    figure, ax = plt.subplots()
+    ends = []
+    for row, bottom in (([SPINE, *few], tall), ([home for home in homes if home in many], 0.0)):
+        left = 0.0
+        for home in row:
+            inside, on = (spine, floors(spine)) if home == SPINE else (plans[home], level)
+            house(ax, inside, on, home, (left, bottom), tints[home])
+            left += breadth(inside, on) + APART
+        ends.append(left - APART)
+    ax.set_xlim(-0.2, max(ends) + 0.2)
+    ax.set_ylim(-BELOW - 0.1, tall + FLOOR * (max(floors(spine).values()) + 0.5))
     ax.set_axis_off()
+    ax.set_position((0, 0, 1, 1))
+    figure.set_size_inches(UNIT_IN * np.ptp(ax.get_xlim()), UNIT_IN * np.ptp(ax.get_ylim()))
     plt.rcParams["svg.hashsalt"] = "house"  # the same bytes for the same rooms
-    figure.savefig(PICTURE, bbox_inches="tight", metadata={"Date": None})
+    figure.savefig(PICTURE, metadata={"Date": None})
     plt.close(figure)
     return PICTURE
 

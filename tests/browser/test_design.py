@@ -219,6 +219,13 @@ def test_a_phone_shows_what_is_selected_above_the_play_bar(look, skin):
     assert sheet["y"] + sheet["height"] <= bar["y"]
     assert sheet["y"] >= before["y"] + before["height"]  # it hides nothing of the map
     assert box(page, "#stage") == before
+    high, end = page.evaluate("""() => {  // at once: the next state brings other words
+      document.getElementById("selected-facts").textContent = "field 7, ".repeat(99);
+      const of = (id) => document.getElementById(id).getBoundingClientRect();
+      return [of("selected-facts").height, of("selected-do").bottom];
+    }""")
+    assert high < 0.15 * PHONE["height"]  # the map stays, and the rest is scrolled to
+    assert end < bar["y"]
     page.locator("#unselect").tap()
     expect(page.locator("#selection")).to_be_hidden()
 
@@ -278,7 +285,7 @@ def test_a_cut_that_nobody_needed_says_so(look, skin):
         expect(page.locator("#recovery")).not_to_have_class("number open")
         said = page.locator("#recovery .more").inner_text()
         click(page, cable, "link, up")
-        if "no cell affected" in said:
+        if "no cell lost its way" in said:
             return
     raise AssertionError("every one of these cables was on somebody's way")
 
@@ -290,7 +297,7 @@ def test_the_pc_is_no_cell(look, tmp_path):
     with beside(path, 0.5) as address:
         page = look(address)
         hold(page, 2.0)
-        said = "the PC restarted: no cell affected"
+        said = "the PC restarted: no cell lost its way"
         expect(page.locator("#recovery .more")).to_have_text(said)
 
 

@@ -3,6 +3,7 @@
 import re
 from math import dist
 
+from innervate.scenario import load
 from tests.browser.servers import PHONE, beside, click, expect, facts, place, seek
 from tests.browser.test_design import DRAWN, WORDS_OF, WRITTEN, hold
 
@@ -66,6 +67,21 @@ def test_at_the_end_a_short_run_fills_the_timeline(look, tmp_path):
         page.evaluate(DRAWN)
         words = {text for text, *_ in page.evaluate(WORDS_OF, "#timeline canvas")[0]}
         assert words >= {"D", "R"}, "boxes are too narrow for their letters"
+        at, end = page.locator("#seek").evaluate("(seek) => [seek.valueAsNumber, Number(seek.max)]")
+        assert 0 < at == end < 1, "the slider was at its beginning, of 60 s"
+        expect(page.locator("#clock")).to_have_text(re.compile(r"^0\.\d+ s / 0\.\d+ s \u2013 end$"))
+
+
+def test_names_from_right_to_left_are_set_apart_and_saved_as_they_are(look, tmp_path):
+    path = tmp_path / "mesh.toml"
+    path.write_text(row_of("שלום 1", "far").replace("a row", "عقدة"))
+    with beside(path, None) as address:
+        page = look(address)
+        assert page.title() == "\u2068عقدة\u2069 - innervate watch"
+        click(page, "\u2068שלום 1\u2069 - far", has="link, cut")  # noqa: RUF001
+        with page.expect_download() as told:
+            page.locator("#save").click()
+        assert load(str(told.value.path())).model.node[0].name == "שלום 1"
 
 
 def test_a_mesh(look, tmp_path):

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from matplotlib.colors import to_rgb
 
+from innervate.plot import svg
 from innervate.plot.sweeps import contrast
 
 PAGE = Path(__file__).resolve().parents[2] / "src" / "innervate" / "web" / "page"
@@ -51,6 +52,30 @@ def test_who_is_yet_to_come_is_not_called_switched_off():
         "does not answer": network("radio", "live", cut_off=[0]),
     }
     assert said(list(cases.values())) == [words.strip() for words in cases]
+
+
+# Texts with names from right to left in them, and with < > where they are set apart.
+TURNED = (
+    "through <שלום 1>, 1 hop", "<שלום>: 4 nodes", "<عقدة 12>, <עוד 3> - n4",
+    "node <مرحبا 12> is off", "<\U0001e900 7>", "n1 - n2: 3 é",
+)  # fmt: skip
+
+
+def test_names_from_right_to_left_turn_nothing_round_on_pages_and_in_reports():
+    shown = [text.translate({ord("<"): "\u2068", ord(">"): "\u2069"}) for text in TURNED]
+    plain = [text.translate({ord("<"): "", ord(">"): ""}) for text in TURNED]
+    assert found("words.js", f"{json.dumps(plain)}.map(it.apart)") == shown
+    assert list(map(svg.clean, plain)) == shown
+    assert list(map(svg.verbatim, plain)) == plain, "a scenario is copied as it is"
+
+
+@pytest.mark.parametrize(("number", "unit", "words"), [
+    (999, "ms", "999 ms"), (4000, "ms", "4 s"), (1234, "ms", "1.23 s"),
+    (4000, "cells", "4000 cells"),
+])  # fmt: skip
+def test_values_of_plots_are_short(number, unit, words):
+    """A scale of 4000 ms had no room for its unit, and nothing else said it."""
+    assert found("words.js", f"it.value({number}, '{unit}')") == words
 
 
 def test_legends_say_of_one_sign_all_that_it_means():
@@ -105,18 +130,30 @@ def views(tmp_path):
     return page
 
 
+FIELDS = (("heat", "K"), ("on", "flag"), ("count", "number"))
+
+
 @pytest.mark.parametrize(("view", "facts"), [
     ("skin.js", "put out: its identity is revoked"),
     ("mesh.js", "node, put out: its identity is revoked"),
-    ("plain.js", "put out: its identity is revoked, heat 3 K"),
+    ("plain.js", "put out: its identity is revoked, heat 3,000 K, on yes, count 7"),
 ])  # fmt: skip
 def test_every_page_says_of_who_is_revoked_that_it_was_put_out(views, view, facts):
     name = {"skin.js": "SkinView", "mesh.js": "MeshView", "plain.js": "PlainView"}[view]
     role = "cell" if view == "skin.js" else "node"
     nodes = [{"id": at, "label": f"n{at}", "role": role, "x": at, "y": 0} for at in range(2)]
-    scene = {"kind": "own", "source": "live", "nodes": nodes, "links": [], "can": [], "ports": 0,
-             "series": [], "fields": [{"name": "heat", "unit": "K"}]}  # fmt: skip
-    state = {"put_out": [0, 1], "way": [0, 2], "fields": {"heat": [3, 3]}}
+    scene = {
+        "kind": "own",
+        "source": "live",
+        "nodes": nodes,
+        "links": [],
+        "can": [],
+        "ports": 0,
+        "series": [],
+        "fields": [{"name": name, "unit": unit} for name, unit in FIELDS],
+    }
+    state = {"put_out": [0, 1], "way": [0, 2],
+             "fields": {"heat": [3000, 3000], "on": [0, 1], "count": [7, 7]}}  # fmt: skip
     network = json.dumps((views / "network.js").as_uri())
     made = f"new it.{name}(new (await import({network})).Network"
     told = found(view, f"""await (async () => {{
@@ -171,6 +208,33 @@ def test_a_cell_that_sends_by_others_elsewhere_looks_as_no_other_does(views, col
     value = f'(view.colour = "{colour}", view.deepest = 8, [0, 1].map((i) => view.kindOf(i)))'
     kinds = viewed(views, "skin.js", "SkinView", value, state)
     assert kinds == ["beyond", {"depth": "d7", "port": "p7"}[colour]]
+
+
+# Contexts that note what is drawn on the map, and on the tile of one hatched cell.
+NOTED = """(() => {
+  const calls = [];
+  const pen = (of) => new Proxy({}, { set: () => true, get: (_, name) => (...given) => {
+    calls.push(`${of} ${name}`);
+    return { a: 2, setTransform() {} };
+  } });
+  globalThis.Path2D = class { moveTo() {} lineTo() {} closePath() {} };
+  globalThis.DOMMatrix = class {};
+  globalThis.OffscreenCanvas = class {
+    getContext() { return pen("tile"); }
+    transferToImageBitmap() { return {}; }
+  };
+  const stage = { scale: 20, x: [10, 30], y: [10, 10], width: 99, height: 99, clear() {} };
+  view.draw(0, pen("map"), stage);
+  return calls.filter((call) => / (fill|stroke|drawImage)$/.test(call)).sort();
+})()"""
+
+
+def test_hatched_cells_are_stamps_of_one(views):
+    """Each filled with a pattern and outlined, 2,000 took 2.3 times as long as plain ones."""
+    state = {"beyond": [1, 1], "parent": [-1, -1], "port": [-1, -1], "depth": [-1, -1]}
+    assert viewed(views, "skin.js", "SkinView", NOTED, state) == [
+        "map drawImage", "map drawImage", "tile fill", "tile fill", "tile stroke", "tile stroke",
+    ]  # fmt: skip
 
 
 def test_a_node_of_which_no_field_is_known_is_filled_as_its_legend_says(views):

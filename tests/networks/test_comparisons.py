@@ -15,6 +15,7 @@ from innervate.networks.rpl import comparison as rpl
 from innervate.networks.rpl.protocol.constants import INFINITE
 from innervate.networks.rpl.shows import depth
 from innervate.papers import cabled
+from innervate.web.declared_view import shown_by
 
 # A cable that has the PC at its far end, one that has it at its near end, and two without it.
 CASE = {"cables": [["c0.1", "c1.0"], ["c2.2", "pc.0"], ["pc.1", "c0.3"], ["c1.1", "c2.0"]],
@@ -136,3 +137,4 @@ def test_rpl_and_flooding_lie_over_a_channel_that_is_sensed_and_rpl_shows_how_fa
     assert [nets[name].medium for name in ("rpl", "flooding", "babel")] == [
         "field", "field", "cables"]  # fmt: skip
     assert list(nets["rpl"].shows) == ["distance to the root"]
+    assert shown_by(nets["rpl"])[0][0]["name"] == "distance to the root", "pages open with it"

@@ -1,7 +1,7 @@
 import pytest
 
 from innervate.networks.skin.plot import words as skin_words
-from innervate.plot import words
+from innervate.plot import page, words
 
 
 @pytest.mark.parametrize(
@@ -107,3 +107,12 @@ def test_a_broken_cable_is_named_once():
         "cable from interface 1 to p0 r5 c3 down",
     ]
     assert skin_words.broken_cables([]) == []
+
+
+@pytest.mark.parametrize(("cell", "shown"), [
+    ("17.0 ms", "17.0~ms"), ("25.2 (25.1 to 29.7)", "25.2 (25.1~to~29.7)"),
+    ("cut: 6.7 (-1.0 to 9,600), less", "cut: 6.7 (-1.0~to~9,600), less"),
+    ("as (it is to be)", "as (it is to be)"),
+])  # fmt: skip
+def test_numbers_stay_with_their_units_and_intervals_whole(cell, shown):
+    assert f"<td>{shown}</td>" in page.table(["a"], [[cell]]).replace("\N{NO-BREAK SPACE}", "~")

@@ -166,6 +166,33 @@ def test_syntax_errors_have_a_line(small: str) -> None:
         loads(small + "x", path="demo.toml")
 
 
+@pytest.mark.parametrize(("char", "name"), [
+    ("\u202e", "U+202E (right-to-left override)"), ("\u2066", "U+2066 (left-to-right isolate)"),
+    ("\u200f", "U+200F (right-to-left mark)"), ("\u200b", "U+200B (zero width space)"),
+    ("\ufeff", "U+FEFF (zero width no-break space)"), ("\u2028", "U+2028 (line separator)"),
+    ("\x1b", "U+001B"),
+])  # fmt: skip
+def test_characters_that_nobody_sees_are_refused(char: str, name: str) -> None:
+    """U+202E turns round what stands behind a name; two names that look alike are told by none."""
+    words = f"{name}, which nobody sees; leave it out"
+    text = 'kind = "mesh"\nname = {}\n[[node]]\nname = {}\nx_m = 0\ny_m = 0\n'
+    odd = f'"a\\U{ord(char):08x}b"'
+    with pytest.raises(ScenarioError) as found:
+        loads(text.format(odd, '"n"'), path="f.toml")
+    assert str(found.value) == f"f.toml:2: name holds {words}"
+    with pytest.raises(ScenarioError) as found:
+        loads(text.format('"n"', odd), path="f.toml")
+    assert str(found.value) == f"f.toml:4: node.0.name holds {words}"
+    with pytest.raises(ScenarioError) as found:
+        loads(f'kind = "mesh"\n[robot]\n{odd} = 1\n', path="f.toml")
+    assert str(found.value) == f"f.toml:2: a key of robot holds {words}"
+
+
+def test_letters_from_right_to_left_are_names() -> None:
+    nodes = [{"name": name, "x_m": 9 * i, "y_m": 0} for i, name in enumerate(("שלום 1", "مرحبا"))]
+    assert from_dict({"kind": "mesh", "name": "שלום", "node": nodes}).name == "שלום"
+
+
 def test_an_error_says_where(small: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         loads(small.replace("k = 3", "k = 0"), path="demo.toml")

@@ -113,10 +113,15 @@ def test_template_runs_as_it_is() -> None:
 
 
 def test_dump_keeps_odd_strings() -> None:
-    tables = {"kind": "skin", "name": 'a"\\\x7f\x01é\n', "link": [{"a": "x y", "b": "pc"}]}
+    tables = {"kind": "skin", "name": 'a"\\é \u05d0', "link": [{"a": "x y", "b": "pc"}]}
     scenario = from_dict(tables)
     assert loads(dump(scenario)).model == scenario.model
-    assert scenario.name == 'a"\\\\x7f\\x01é\\n', "as it is told, in one line"
+
+
+def test_the_name_of_a_file_is_told_in_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "a\u202eb\n.toml"
+    file.write_text('kind = "skin"\n[[link]]\na = "x"\nb = "pc"\n')
+    assert load(file).name == "a\\u202eb\\n"
 
 
 def test_relative_robot_files_stay_found(tmp_path: Path) -> None:

@@ -50,6 +50,11 @@ def test_poses_follow_the_joints(tmp_path: Path) -> None:
         (URDF.replace("0.02 0 0", "nan 0 0"), "skin_*", "takes three numbers"),
         (URDF.replace('parent link="base"', 'parent link="skin_0"'), "skin_*", "form a ring"),
         (
+            URDF.replace('<link name="skin_1"/>', '<link name="skin_&#x202e;1"/>'),
+            "skin_*",
+            r"a link of r.urdf holds U\+202E (right-to-left override\), which nobody sees",
+        ),
+        (
             URDF.replace('<link name="skin_1"/>', 2 * '<link name="skin_0"/>'),
             "skin_*",
             'r.urdf has 3 links called "skin_0"; name them apart',

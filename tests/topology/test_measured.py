@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -86,6 +88,14 @@ def test_topohub() -> None:
     assert 4.5e7 < berlin[1] - munich[1] < 5.5e7  # Berlin lies 500 km to the north
     with pytest.raises(TopologyError, match='has no network "sndlib/none"'):
         measured.from_topohub("sndlib/none")
+
+
+def test_names_of_a_package_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    nodes = [{"id": 0, "name": "A"}, {"id": 1, "name": "B\u200b"}]
+    net = {"nodes": nodes, "links": [{"source": 0, "target": 1}]}
+    monkeypatch.setitem(sys.modules, "topohub", SimpleNamespace(get=lambda _: net))
+    with pytest.raises(TopologyError, match=r"name of node 1 holds U\+200B \(zero width space\)"):
+        measured.from_topohub("any")
 
 
 def test_an_id_that_is_there_twice_is_one_node() -> None:
@@ -177,9 +187,10 @@ WRONG = (
     ('{"nodes": [{"id": true}], "links": []}', 'node 0 has no "id"'),
     ('{"nodes": [{"id": 1}], "links": [{"source": true, "target": 1}]}', "link 0 leads to True"),
     ('{"nodes": [{"id": " "}], "links": []}', 'the "id" of node 0 is empty'),
-    ('{"nodes": [{"id": "a\\n"}], "links": []}', 'the "id" of node 0 holds characters that cannot'),
-    ('{"nodes": [{"id": "\\ud800"}], "links": []}', 'the "id" of node 0 holds characters that'),
-    ("\x1b[31mA B", "a name in line 1 holds characters that cannot be printed"),
+    ('{"nodes": [{"id": "a\\n"}], "links": []}', 'the "id" of node 0 holds U+000A, which'),
+    ('{"nodes": [{"id": "\\ud800"}], "links": []}', 'the "id" of node 0 holds U+D800, which'),
+    ("\x1b[31mA B", "a name in line 1 holds U+001B, which nobody sees"),
+    ("A\u202e B", "a name in line 1 holds U+202E (right-to-left override), which nobody sees"),
     (f"A B\n{'n' * 201} B", "a name in line 2 is longer than 200 characters"),
 )
 

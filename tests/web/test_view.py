@@ -5,14 +5,15 @@ from types import SimpleNamespace
 import pytest
 
 from innervate.analysis.headline import OK, Headline
+from innervate.scenario.actions import channel
 from innervate.web import messages
 from innervate.web.errors import Refused
 from innervate.web.history import LOG, History
 from innervate.web.view import Memory, View
 
 
-def fault(at_us, takes=True, name=""):
-    return SimpleNamespace(at_us=at_us, takes=takes, name=name or f"fault of {at_us}")
+def fault(at_us, takes=True, name="", **more):
+    return SimpleNamespace(at_us=at_us, takes=takes, name=name or f"fault of {at_us}", **more)
 
 
 class MadeUp(View):
@@ -105,6 +106,16 @@ def test_the_newest_that_took_something_away_is_what_is_recovered_from():
     view.begin_fault(fault(4_000_000))
     assert view.is_open
     assert view.fields(False)["since_cut_s"] == 0.5
+
+
+def test_who_leaves_by_plan_is_no_failure():
+    """A page said "since the last failure" of a robot's orderly leaving, and marked it in plots."""
+    view = MadeUp()
+    view.actions = channel.TABLE
+    assert view.begin_fault(fault(5, action=channel.KILL, node=1))
+    assert view.begin_fault(fault(9, action=channel.LEAVE, node=2))
+    assert view.memory.fault.at_us == 5
+    assert told(view) == [("fault of 5", "loss"), ("fault of 9", None)]
 
 
 def test_of_what_goes_at_one_moment_the_first_is_named_and_the_others_counted():

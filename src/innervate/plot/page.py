@@ -9,11 +9,12 @@ from typing import Any
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK
 from innervate.plot import theme
 from innervate.plot.charts import Bars, Panel, Steps
-from innervate.plot.svg import Drawing, clean
+from innervate.plot.svg import Drawing, clean, verbatim
 from innervate.plot.words import count_words, figure_words
 
 ROWS_MAX = 200
 FIGURE = re.compile(r"[-\d.,]+ \S{1,5}")  # a number with its unit
+INTERVAL = re.compile(r"\(([-\d.,]+) to ([-\d.,]+)\)")
 LEVEL_CLASSES = {OK: "status", DEGRADED: "status warn", DOWN: "status bad", NO_DATA: "status none"}
 
 # Parts of a page, wherever they stand.
@@ -34,7 +35,8 @@ def page(title: str, body: str) -> str:
 def element(tag: str, text: str, kind: str = "") -> str:
     """An element with text, which is escaped."""
     opening = f'<{tag} class="{kind}">' if kind else f"<{tag}>"
-    return f"{opening}{clean(text)}</{tag}>\n"
+    inside = verbatim(text) if tag == "pre" else clean(text)
+    return f"{opening}{inside}</{tag}>\n"
 
 
 def headline(found: Mapping[str, str]) -> str:
@@ -135,8 +137,10 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") ->
 
 
 def _on_one_line(cell: str) -> str:
-    """A number that stays with its unit, however narrow the screen; other cells as they are."""
-    return cell.replace(" ", "\N{NO-BREAK SPACE}") if FIGURE.fullmatch(cell) else cell
+    """A cell whose numbers stay with their units, and intervals whole, however narrow it is."""
+    space = "\N{NO-BREAK SPACE}"
+    whole = cell.replace(" ", space) if FIGURE.fullmatch(cell) else cell
+    return INTERVAL.sub(rf"(\1{space}to{space}\2)", whole)
 
 
 def details(head: str, inside: str) -> str:

@@ -7,6 +7,7 @@ Drawings carry their natural size; in a page they shrink to the width there is. 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
@@ -16,6 +17,9 @@ Value = str | float | int | None
 ARROW_PX = 7.0
 HIDDEN = 'aria-hidden="true"'  # of drawings that words beside them say
 
+# Letters from right to left; words of them, with the numbers between and behind them.
+_RIGHT = "\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufefc\U00010800-\U00010fff\U0001e800-\U0001efff"
+_TURNED = re.compile(rf"[{_RIGHT}](?:[{_RIGHT}\d ]*[{_RIGHT}\d])?")
 # What XML 1.0 cannot hold, even escaped.
 _FORBIDDEN = {c: "\ufffd" for c in (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)}
 
@@ -29,7 +33,14 @@ def number(value: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Text with what XML cannot hold replaced, and the rest escaped."""
+    """Text with what XML cannot hold replaced, and the rest escaped; words written from right to
+    left, with their numbers, turn nothing round that stands beside them.
+    """
+    return _TURNED.sub("\u2068\\g<0>\u2069", verbatim(text))
+
+
+def verbatim(text: str) -> str:
+    """Text to be copied: escaped, and nothing put into it."""
     return escape(_valid(text))
 
 

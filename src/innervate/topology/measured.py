@@ -20,6 +20,7 @@ from typing import Any
 
 from innervate.topology.errors import TopologyError
 from innervate.topology.placement import Point, components, neighbours
+from innervate.topology.unseen import unseen
 
 SIZE_MAX = 64 * 1024 * 1024
 EARTH_CM = 637_100_000
@@ -193,8 +194,8 @@ def _unnameable(name: str) -> str:
     """Why nobody can be called so in a scenario, on a terminal and in a report; "" if one can."""
     if not name.strip():
         return "is empty; name it"
-    if not name.isprintable():
-        return "holds characters that cannot be printed; leave them out"
+    if odd := unseen(name):
+        return f"holds {odd}, which nobody sees; leave it out"
     return f"is longer than {NAME_MAX} characters; shorten it" if len(name) > NAME_MAX else ""
 
 
@@ -325,6 +326,9 @@ def from_topohub(name: str) -> Measured:
     # A place is [longitude, latitude] there.
     places = [tuple(node["pos"])[::-1] if "pos" in node else None for node in tables["nodes"]]
     names = _different([str(node.get("name", node["id"])) for node in tables["nodes"]])
+    for i, one in enumerate(names):
+        if problem := _unnameable(one):
+            raise TopologyError(f"the name of node {i} {problem}", "topohub")
     return Measured(names, found, _metres(places, found))
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from innervate.topology.errors import TopologyError
+from innervate.topology.unseen import unseen
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
@@ -88,6 +89,9 @@ def read_links(path: Path, pattern: str) -> list[Link]:
         some += ", ..." if len(links) > 3 else ""
         message = f'no link of {path.name} matches "{pattern}"; it has {len(links)}: {some}'
         raise TopologyError(message, "links")
+    if odd := next(filter(None, map(unseen, names)), ""):
+        message = f"the name of a link of {path.name} holds {odd}, which nobody sees; leave it out"
+        raise TopologyError(message, "urdf")
     twice = next((name for name in names if links.count(name) > 1), None)
     if twice is not None:
         message = f'{path.name} has {links.count(twice)} links called "{twice}"; name them apart'

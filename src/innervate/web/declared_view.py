@@ -21,7 +21,7 @@ from innervate.web.live_view import shown_fields
 from innervate.web.view import Memory, View
 
 NODES_MAX = 1_000
-DELIVERED = {"id": "delivered", "label": "messages delivered so far", "unit": ""}
+DELIVERED = {"id": "delivered", "label": "deliveries so far", "unit": ""}
 
 
 class Declared(View):
@@ -142,8 +142,8 @@ class DeclaredView(Declared, CabledView):
 
 
 def shown_by(network: Network) -> tuple[list[dict[str, str]], dict[str, Any]]:
-    """What nodes can be coloured by: all of it, and what of it the network has functions for."""
+    """What nodes can be coloured by, and what of it the network has functions for; those first."""
     own = network.shows if network.has("shows") else {}
     more = [{"name": name, "unit": unit, "meaning": " ".join((of.__doc__ or "").split())}
             for name, (unit, of) in own.items()]  # fmt: skip
-    return [*shown_fields(network), *more], own
+    return [*more, *shown_fields(network)], own

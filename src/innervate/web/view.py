@@ -151,9 +151,12 @@ class View(ABC):
 
     def has_absent(self) -> bool:
         """True if somebody is yet to come, or leaves: off at times, though nothing failed."""
-        leaving = [i for i, action in enumerate(self.actions) if action.word == LEAVE]
-        leaves = any(fault.action in leaving for fault in self.plan.faults)
+        leaves = any(map(self.leaves, self.plan.faults))
         return leaves or any(getattr(self.plan, "absent", ()))
+
+    def leaves(self, fault: Any) -> bool:
+        """True if somebody goes by plan: nothing failed."""
+        return bool(self.actions) and self.actions[fault.action].word == LEAVE
 
     def begin_fault(self, fault: Any) -> bool:
         """Something is done to the network now; false if that changes nothing."""
@@ -162,6 +165,9 @@ class View(ABC):
             self.log.say(fault.at_us, f"{cause}: nothing changed")
             return False
         memory.event_us = fault.at_us
+        if self.leaves(fault):
+            self.log.say(fault.at_us, cause)
+            return True
         if self.takes(fault):
             memory.recovery, memory.fault = self._lost(cause, fault.at_us), fault
         elif memory.recovery is not None:

@@ -34,8 +34,8 @@ export class Controls {
     $("save").hidden = !can.has("save");
     $("speed-box").hidden = !can.has("speed");
     $("seek-box").hidden = !can.has("seek") || !scene.duration_s;
-    $("seek").max = scene.duration_s ?? 1;
     this.duration_s = scene.duration_s;
+    this.#setEnd(scene.duration_s);
   }
 
   state(network) {
@@ -53,6 +53,8 @@ export class Controls {
     }
     $("speed-text").textContent = speed(this.speed);
     $("speed").setAttribute("aria-valuetext", speed(this.speed));
+    if (atEnd) this.#setEnd(t_s); // all may be said before its time is over
+    else if (t_s > this.end_s) this.#setEnd(this.duration_s);
     if (!this.held) {
       $("seek").value = t_s;
       this.#showTime(t_s);
@@ -78,8 +80,13 @@ export class Controls {
     this.send({ do: "speed", value: SPEEDS[at] });
   }
 
+  #setEnd(t_s) {
+    this.end_s = t_s;
+    $("seek").max = t_s ?? 1;
+  }
+
   #showTime(t_s) {
-    const of = this.duration_s ? ` / ${whole(this.duration_s)}` : "";
+    const of = this.end_s ? ` / ${whole(this.end_s)}` : "";
     $("clock").textContent = `${clock(t_s, this.paused ? 6 : 3)}${of}`;
     $("seek").setAttribute("aria-valuetext", clock(t_s));
   }

@@ -203,7 +203,8 @@ function redraw() {
 
 function download(toml) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([toml], { type: "application/toml" }));
+  const own = toml.replaceAll(/[\u2068\u2069]/g, ""); // those marks are ours: scenarios have none
+  link.href = URL.createObjectURL(new Blob([own], { type: "application/toml" }));
   link.download = `${network.scene.name.replace(/[^\w-]+/g, "-") || "scenario"}.toml`;
   link.click();
   URL.revokeObjectURL(link.href);

@@ -88,7 +88,7 @@ export function showNumbers(network) {
       const whom = recovery.apart ? `${recovery.apart} cut off, no other `
         : /cable|link|^the PC /.test(recovery.cause) ? "no " : "no other ";
       const who = `${whom}${word}`;
-      show("recovery", "–", `${recovery.cause}: ${who} affected`, "");
+      show("recovery", "–", `${recovery.cause}: ${who} lost its way`, "");
     } else show("recovery", shown, more, look);
   }
   const isOnAir = network.kind === "radio" || network.scene.ways === false; // who hears has no way

@@ -9,6 +9,13 @@ import { PUT_OUT, off, offWords } from "./words.js";
 const FONT = "12px system-ui, sans-serif";
 const FEW = 400; // up to so many links names keep off, as far as there is room
 
+/** A field's value in words; units that declare no more than a kind of number say nothing here. */
+function inUnit(value, unit) {
+  if (unit === "flag") return value ? "yes" : "no";
+  const said = value.toLocaleString("en");
+  return ["", "number", "raw", "id"].includes(unit) ? said : `${said} ${unit}`;
+}
+
 /** Draws a network of which no more is known than what its nodes declare. */
 export class PlainView extends MeshView {
   constructor(network) {
@@ -37,7 +44,7 @@ export class PlainView extends MeshView {
     if (!now.node_up[i]) return off(this.network, i);
     const said = this.fields.map(({ name, unit }) => [name, now.fields?.[name]?.[i], unit]);
     const known = said.filter(([, value]) => value !== undefined && value !== null);
-    const facts = known.map((parts) => parts.join(" "));
+    const facts = known.map(([name, value, unit]) => `${name} ${inUnit(value, unit)}`);
     if (now.put_out[i]) facts.unshift(PUT_OUT);
     return facts.join(", ") || "nothing known";
   }

@@ -118,6 +118,27 @@ export function slanting(context) {
   return pattern;
 }
 
+/** Draws a hatched cell at a place. It is painted once: to stamp thousands is quicker than to fill
+ * as many with one colour; to fill and outline each with a pattern took up to 2.6 times that. */
+export function stamped(context, shape, pitch) {
+  const ratio = context.getTransform().a;
+  const side = Math.ceil(1.2 * pitch * ratio) + 4; // px of the screen; a hexagon is 1.13 high
+  const tile = new OffscreenCanvas(side, side);
+  const pen = tile.getContext("2d");
+  pen.scale(ratio, ratio);
+  const [middle, cell, under] = [side / 2 / ratio, new Path2D(), new Path2D()];
+  shape(under, middle, middle, 1.02 * pitch);
+  shape(cell, middle, middle, pitch);
+  pen.fillStyle = colours.ground;
+  pen.fill(under);
+  pen.fillStyle = slanting(pen);
+  pen.fill(cell);
+  stroke(pen, colours.soft, 1, cell);
+  const image = tile.transferToImageBitmap();
+  const at = (x) => Math.round(x * ratio - side / 2) / ratio; // between pixels it would blur
+  return (x, y) => context.drawImage(image, at(x), at(y), side / ratio, side / ratio);
+}
+
 /** Draw a path of lines. */
 export function stroke(context, colour, width, path, dash = []) {
   context.strokeStyle = colour;

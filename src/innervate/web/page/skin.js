@@ -4,7 +4,7 @@ import { distance } from "./pointer.js";
 import { LAYERS } from "./stage.js";
 import {
   Pieces, affected, affectedSample, boxRound, brick, cross, cutSample, flightSample, flights,
-  hexagon, middle, slanting, stroke, word,
+  hexagon, middle, slanting, stamped, stroke, word,
 } from "./shapes.js";
 import { PUT_OUT, off, offWord, plural } from "./words.js";
 
@@ -162,9 +162,13 @@ export class SkinView {
     const pieces = new Map();
     const under = new Pieces();
     const shape = stage.scale < BRICKS_PX ? brick : hexagon;
+    let stamp = null;
     for (const i of cells) {
       const [x, y] = [stage.x[i], stage.y[i]];
       if (x < -99 || y < -99 || x > stage.width + 99 || y > stage.height + 99) continue;
+      const isHatched = this.kinds[i] === "beyond";
+      if (isHatched) (stamp ??= stamped(context, shape, stage.scale))(x, y);
+      if (isHatched) continue;
       if (!pieces.has(this.kinds[i])) pieces.set(this.kinds[i], new Pieces());
       shape(pieces.get(this.kinds[i]).next(), x, y, stage.scale);
       shape(under.next(), x, y, stage.scale * 1.02);

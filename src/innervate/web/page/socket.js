@@ -1,4 +1,5 @@
 // The connection to the server; when it is lost the page tries again by itself.
+import { apart } from "./words.js";
 
 const REFUSED = 4403; // close code: not the token of this server
 const WAIT_MS = [250, 500, 1000, 2000];
@@ -37,7 +38,7 @@ export class Connection {
     });
     this.socket.addEventListener("message", (event) => {
       this.tries = 0;
-      this.onMessage(JSON.parse(event.data));
+      this.onMessage(JSON.parse(apart(event.data)));
     });
     this.socket.addEventListener("close", ({ code }) => {
       this.onChange(false, code === REFUSED);

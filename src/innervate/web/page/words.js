@@ -31,6 +31,7 @@ export function ago(s) {
 /** A value of a plot. */
 export function value(v, unit) {
   const size = Math.abs(v);
+  if (unit === "ms" && size >= 1000) return value(v / 1000, "s");
   const digits = size >= 100 || Number.isInteger(v) ? 0 : size >= 10 ? 1 : size >= 0.1 ? 2 : 3;
   const one = v === 1 ? unit.replace(/^(cell|frame|node)s$/, "$1") : unit;
   return `${v.toFixed(digits)}${one ? ` ${one}` : ""}`;
@@ -96,5 +97,13 @@ export function offWords(network) {
   const { kind, scene } = network;
   return scene.absent ? `${offWord(network)}, or ${absentWord(kind)}` : offWord(network);
 }
+
+// Words of letters from right to left, with the numbers between and behind them.
+const RIGHT = "\\u0590-\\u08ff\\ufb1d-\\ufdff\\ufe70-\\ufefc"
+  + "\\u{10800}-\\u{10fff}\\u{1e800}-\\u{1efff}";
+const TURNED = new RegExp(`[${RIGHT}](?:[${RIGHT}\\d ]*[${RIGHT}\\d])?`, "gu");
+
+/** A text in which names written from right to left turn nothing round that stands beside them. */
+export const apart = (text) => text.replace(TURNED, "\u2068$&\u2069");
 
 export const plural = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;

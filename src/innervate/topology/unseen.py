@@ -1,0 +1,21 @@
+"""Characters that nobody sees: they turn words behind them round, or make two names look alike."""
+
+import unicodedata
+
+# Unicode's general categories: controls; formats, which are marks of direction, joiners and spaces
+# of no width; halves of characters; separators of lines and paragraphs.
+_UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
+
+
+def unseen(text: str) -> str:
+    """The first such character in words, "U+202E (right-to-left override)"; "" if there is none.
+
+    Letters that are written from right to left are seen: they are allowed.
+    """
+    if text.isascii() and text.isprintable():
+        return ""
+    odd = next((char for char in text if unicodedata.category(char) in _UNSEEN), "")
+    if not odd:
+        return ""
+    name = unicodedata.name(odd, "").lower()
+    return f"U+{ord(odd):04X}{f' ({name})' if name else ''}"
