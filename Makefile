@@ -14,11 +14,23 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 
 BIN := .venv/bin
-# The environment is made again when pyproject.toml says something else, and only then. Its packages
-# are translated by all processors together, which pip would do by one; what is no Python of today
+# The environment is made again when pyproject.toml says something else, and only then. Its Python is
+# the first that is found, or another that is clearly faster: one that was built without profiles, as
+# pyenv does, takes 30 % longer for the same tests (docs/decisions/0077). Its packages are
+# translated by all processors together, which pip would do by one; what is no Python of today
 # (templates of packages) stays as it is.
 STAMP := .venv/stamp-$(shell cksum < pyproject.toml | cut -d ' ' -f 1)
 WORKERS ?= 2
+
+# A Python that is new enough says how long it takes for some lines, and where it is.
+define TIMED
+import sys, time, timeit, venv, ensurepip
+if sys.version_info >= (3, 11):
+    lines = "for number in range(50000): counts[number % 99] = str(number)"
+    took = timeit.repeat(lines, "counts = {}", time.process_time, 15, 1)
+    print(min(took), sys._base_executable)
+endef
+export TIMED
 
 # Tests start hundreds of processes: to translate the sources anew takes up to a second in each.
 unexport PYTHONDONTWRITEBYTECODE
@@ -38,22 +50,20 @@ help:
 
 $(STAMP):
 	@rm -f .venv/stamp-*
-	@if [ -n "$(PYTHON)" ]; then candidates="$(PYTHON)"; \
-	else candidates="python3 python python3.14 python3.13 python3.12 python3.11"; fi; \
-	new='import sys; sys.exit(sys.version_info < (3, 11))'; python=; \
-	for p in $$candidates; do \
-	  if "$$p" -c "$$new" 2>/dev/null; then python=$$(command -v "$$p"); break; fi; \
-	done; \
+	@candidates="$(or $(PYTHON),python3 python python3.14 python3.13 python3.12 python3.11)"; \
+	python=$$(type -ap $$candidates | \
+	  while read -r found; do "$$found" -c "$$TIMED" 2>/dev/null </dev/null || true; done | \
+	  awk 'NR == 1 || $$1 < 0.85 * least { least = $$1; sub(/^[^ ]* /, ""); python = $$0 } \
+	    END { print python }') || true; \
 	if command -v uv >/dev/null; then \
 	  echo "Setting up .venv with uv (once) ..."; \
 	  uv venv --quiet --allow-existing --python "$${python:->=3.11}" .venv; \
 	  uv pip install --quiet --python $(BIN)/python -e '.[all,dev]'; \
 	else \
 	  if [ -z "$$python" ]; then \
-	    echo "innervate needs Python 3.11 or newer; tried: $$candidates (choose with: make PYTHON=...)" >&2; exit 1; fi; \
-	  if ! "$$python" -c 'import venv, ensurepip' 2>/dev/null; then \
-	    echo "$$python has no venv module; install it (Debian, Ubuntu: apt install python3-venv)" >&2; exit 1; fi; \
-	  echo "Setting up .venv with pip (once, a minute or two) ..."; \
+	    echo "innervate needs Python 3.11 or newer with its venv module (Debian, Ubuntu: apt install python3-venv);" \
+	      "tried: $$candidates (choose with: make PYTHON=...)" >&2; exit 1; fi; \
+	  echo "Setting up .venv with $$python and pip (once, a minute or two) ..."; \
 	  "$$python" -m venv .venv; \
 	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e '.[all,dev]'; \
 	  $(BIN)/python -m compileall -qq -j 0 .venv/lib/python*/site-packages || true; \

@@ -64,13 +64,16 @@ class Player:
 
     async def play(self) -> None:
         """Play all; some scenarios have no end; LiveError if a node did not come up again."""
+        failed: list[BaseException] = []
         try:
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._play_events())
                 for other in self.stage.deployment.others(self.stage):
                     group.create_task(other)
         except* LiveError as errors:
-            raise errors.exceptions[0] from None
+            failed.extend(errors.exceptions)
+        if failed:  # raised in an `except*`, Python 3.11.2 would wrap it in another group
+            raise failed[0] from None
 
     async def _play_events(self) -> None:
         began = asyncio.get_running_loop().time()
