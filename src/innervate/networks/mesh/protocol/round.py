@@ -264,7 +264,7 @@ def is_listed(node, params, k):
     """1 if the neighbour in place k goes into our response."""
     if node.neighbour[k] == FREE or node.round_depth[k] == UNHEARD:
         return 0
-    if params.mode == TABLE_FREE and not is_uplink(node, k):
+    if params.mode == TABLE_FREE and not is_uplink(node, k, node.depth):
         return 0
     return not is_weak(node, params, k)
 

@@ -39,7 +39,7 @@ from innervate.networks.mesh.protocol.route import (
     planned,
     room_of,
 )
-from innervate.networks.mesh.protocol.upward import is_dim, uplink
+from innervate.networks.mesh.protocol.upward import best_below, is_dim, uplink
 
 FAILURES_MAX = 6
 TIMEOUTS = 4  # in one call: the outbox has to hold what comes of them
@@ -125,6 +125,8 @@ def send_up(node, params, now, i, out):
 def climb(node, params, now, i, out):
     """Choose an uplink; while all are suspect, wait and try them again."""
     who = uplink(node, params, i)
+    if who == NOBODY:
+        who = best_below(node, params, i, node.depth + 1)
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
         if node.q_fails[i] > FAILURES_MAX:
