@@ -123,9 +123,13 @@ def send_up(node, params, now, i, out):
 
 
 def climb(node, params, now, i, out):
-    """Choose an uplink; while all are suspect, wait and try them again."""
+    """Choose an uplink, else who is as near to the gateway as we; while all are suspect, wait.
+
+    By those a response passes where all uplinks hear us worse than we hear them (0080). Who had it
+    is on its path, so that it never turns round.
+    """
     who = uplink(node, params, i)
-    if who == NOBODY:
+    if who == NOBODY and params.retry:
         who = best_below(node, params, i, node.depth + 1)
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
