@@ -29,7 +29,14 @@ from innervate.networks.mesh.protocol.hop import (
     overdue,
 )
 from innervate.networks.mesh.protocol.link_quality import tries_for
-from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
+from innervate.networks.mesh.protocol.neighbours import (
+    DOUBT,
+    UNHEARD,
+    is_lively,
+    place_of,
+    suspect,
+    trust,
+)
 from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick, take_over
 from innervate.networks.mesh.protocol.route import (
     advance_route,
@@ -42,6 +49,7 @@ from innervate.networks.mesh.protocol.route import (
 from innervate.networks.mesh.protocol.upward import best_below, is_dim, uplink
 
 FAILURES_MAX = 6
+LAST_MAX = 10
 TIMEOUTS = 4  # in one call: the outbox has to hold what comes of them
 HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
 
@@ -126,21 +134,21 @@ def climb(node, params, now, i, out):
     """Choose an uplink, else who is as near to the gateway as we; while all are suspect, wait.
 
     By those a response passes where all uplinks hear us worse than we hear them (0080). Who had it
-    is on its path, so that it never turns round.
+    is on its path, so that it never turns round. In the end anybody may know a way.
     """
     who = uplink(node, params, i)
     if who == NOBODY and params.retry:
         who = best_below(node, params, i, node.depth + 1)
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
-        if node.q_fails[i] > FAILURES_MAX:
-            give_up(node, params, i, out)
-            return
-        trust(node, params)
-        clear_skipped(node, node.q_origin[i], node.q_seq[i])
-        who = uplink(node, params, i)
-        wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
-        node.q_due[i] = (now + wait) & MASK30
+        if node.q_fails[i] <= FAILURES_MAX:
+            trust(node, params)
+            clear_skipped(node, node.q_origin[i], node.q_seq[i])
+            who = uplink(node, params, i)
+            wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
+            node.q_due[i] = (now + wait) & MASK30
+        if who == NOBODY and params.retry:
+            who = best_below(node, params, i, UNHEARD)
         if who == NOBODY:
             give_up(node, params, i, out)
             return
@@ -172,7 +180,7 @@ def hop_failed(node, params, now, i, out):
     suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
     skip(node, node.q_origin[i], node.q_seq[i], failed)
     if is_upward(kind):
-        if node.q_fails[i] > FAILURES_MAX:
+        if node.q_fails[i] > (LAST_MAX if params.retry else FAILURES_MAX):
             give_up(node, params, i, out)
         else:
             climb(node, params, now, i, out)
