@@ -106,9 +106,7 @@ def take_place(node, rank, out):
         if node.q_state[i] == FREE:
             return i
         if node.q_state[i] == WAITS and node.q_rank[i] > rank:
-            if worst < 0 or node.q_rank[i] > node.q_rank[worst]:
-                worst = i
-            elif node.q_rank[i] == node.q_rank[worst] and came_after(node, i, worst):
+            if worst < 0 or is_before(node, worst, i):
                 worst = i
     if rank > CONTROL or worst < 0:
         return -1

@@ -30,7 +30,7 @@ from innervate.networks.mesh.protocol.neighbours import (
     place_of,
     random_neighbour,
 )
-from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge, measure_distances
+from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge
 from innervate.networks.mesh.protocol.upward import NONE, is_untried, uplink
 
 CALLS = 2  # a message is flooded in so many of its tries, the parities of which differ
@@ -234,8 +234,7 @@ def plan_route(node, params, i):
     first = find_hop(node, params, i, dest, room_of(node, params, i), 0)
     if first == NONE:
         return
-    measure_distances(node, params, i, dest, node.number, 0)
-    count = node.far[first] + 1
+    count = node.far[first] + 1  # as find_hop has measured it
     length = node.q_length[i]
     if length + count + 1 > room_of(node, params, i):
         return
