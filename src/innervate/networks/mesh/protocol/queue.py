@@ -73,9 +73,14 @@ def make_room(node, rank, out):
                 newest = i
     if newest < 0 or free_places(node) < rank:
         return 0
-    report(out, REPORT_DROPPED, node.q_origin[newest], node.q_seq[newest])
-    node.q_state[newest] = FREE
+    put_out(node, newest, out)
     return 1
+
+
+def put_out(node, i, out):
+    """The frame that waits in place i has to go, and what it brings does not arrive by it."""
+    report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
+    node.q_state[i] = FREE
 
 
 def came_after(node, i, j):
@@ -110,8 +115,7 @@ def take_place(node, rank, out):
                 worst = i
     if rank > CONTROL or worst < 0:
         return -1
-    report(out, REPORT_DROPPED, node.q_origin[worst], node.q_seq[worst])
-    node.q_state[worst] = FREE
+    put_out(node, worst, out)
     return worst
 
 
