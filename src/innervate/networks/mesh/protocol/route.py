@@ -300,24 +300,25 @@ def rewrite(node, params, i, failed):
     node.next[node.bank * params.width + node.q_dest[i]] = who
 
 
+def take_out(node, i, first, count):
+    """Take `count` bytes out of the payload of the packet in place i, from byte `first` on."""
+    node.q_length[i] = node.q_length[i] - count
+    for k in range(i * node.q_room + first, i * node.q_room + node.q_length[i]):
+        node.q_body[k] = node.q_body[k + count]
+
+
 def strip_route(node, i):
     """Take the source route out of the packet in place i."""
     if node.q_flags[i] & SOURCE_ROUTE:
-        count = node.q_body[i * node.q_room] + 1
-        for k in range(node.q_length[i] - count):
-            node.q_body[i * node.q_room + k] = node.q_body[i * node.q_room + k + count]
-        node.q_length[i] = node.q_length[i] - count
+        take_out(node, i, 0, node.q_body[i * node.q_room] + 1)
         node.q_flags[i] = node.q_flags[i] & ~SOURCE_ROUTE
 
 
 def advance_route(node, i):
     """The first node of the source route is the next hop: it is no longer in it."""
     if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * node.q_room] > 0:
-        count = node.q_body[i * node.q_room]
-        node.q_body[i * node.q_room] = count - 1
-        for k in range(1, node.q_length[i] - 1):
-            node.q_body[i * node.q_room + k] = node.q_body[i * node.q_room + k + 1]
-        node.q_length[i] = node.q_length[i] - 1
+        node.q_body[i * node.q_room] = node.q_body[i * node.q_room] - 1
+        take_out(node, i, 1, 1)
 
 
 def learn_failure(node, params, i, failed):
