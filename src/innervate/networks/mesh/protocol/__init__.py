@@ -257,7 +257,7 @@ Frames
 Flags: `ACK_WANTED = 1`, `END_TO_END = 2`, `FLOOD = 4`, to one recipient `ORDERED = 4`,
 `SOURCE_ROUTE = 8`, `DETOURED = 16`, `PRIORITY = 32`, `FIRST = 64`, of a response `WEAK = 64`,
 `PARITY = 128` (turns over with each retransmission). Addresses: `ALL = 255`, `MONITOR = 254`,
-`IDS = 254`, `NOBODY = -1`. Bit by bit: docs/wire.md.
+`IDS = 254`, `NOBODY = 255`. Bit by bit: docs/wire.md.
 
 Inputs and reports
 ==================

@@ -73,9 +73,14 @@ def make_room(node, rank, out):
                 newest = i
     if newest < 0 or free_places(node) < rank:
         return 0
-    report(out, REPORT_DROPPED, node.q_origin[newest], node.q_seq[newest])
-    node.q_state[newest] = FREE
+    put_out(node, newest, out)
     return 1
+
+
+def put_out(node, i, out):
+    """The frame that waits in place i has to go, and what it brings does not arrive by it."""
+    report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
+    node.q_state[i] = FREE
 
 
 def came_after(node, i, j):
@@ -106,14 +111,11 @@ def take_place(node, rank, out):
         if node.q_state[i] == FREE:
             return i
         if node.q_state[i] == WAITS and node.q_rank[i] > rank:
-            if worst < 0 or node.q_rank[i] > node.q_rank[worst]:
-                worst = i
-            elif node.q_rank[i] == node.q_rank[worst] and came_after(node, i, worst):
+            if worst < 0 or is_before(node, worst, i):
                 worst = i
     if rank > CONTROL or worst < 0:
         return -1
-    report(out, REPORT_DROPPED, node.q_origin[worst], node.q_seq[worst])
-    node.q_state[worst] = FREE
+    put_out(node, worst, out)
     return worst
 
 
@@ -220,8 +222,8 @@ def note_sent(node, now, i):
 def settle(node, params, now, sent, out):
     """The frame under way has left, or could not (sent = 0)."""
     i = node.busy
+    node.busy = -1
     if node.q_link_dst[i] == ALL:
-        node.busy = -1
         node.q_copies[i] = node.q_copies[i] - 1
         if node.q_copies[i] > 0:
             span = params.jitter_us
@@ -240,13 +242,12 @@ def settle(node, params, now, sent, out):
             if params.ack_adapt or params.hop_frames:
                 note_sent(node, now, i)
         if params.hop_frames:
-            node.busy = -1
             begin_wait(node, params, now, wait, i, out)
-            return
-        set_timer(out, ACK_WAIT, (now + wait) & MASK30)
+        else:
+            node.busy = i
+            set_timer(out, ACK_WAIT, (now + wait) & MASK30)
     else:
         node.q_state[i] = FREE
-        node.busy = -1
         tell_hop(node, i, out)
 
 
