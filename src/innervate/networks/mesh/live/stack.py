@@ -20,7 +20,7 @@ from innervate.networks.mesh.protocol.frames import inner, is_sound
 from innervate.networks.mesh.protocol.neighbours import FREE, is_strong, is_suspect, place_of
 from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.timeout import TICK_MAX_US
-from innervate.networks.mesh.protocol.upward import is_better, is_uplink
+from innervate.networks.mesh.protocol.upward import is_better, is_nearer
 
 CLASSES = (32, 64, 128, 254)
 OUTBOX = 160  # more than twice the frames that a queue can hold
@@ -257,7 +257,7 @@ class MeshStack:
             return []
         strong = is_strong(node, params, place_of(node, params, dest))
         tables = params.mode == const.TABLES
-        up = [k for k in range(params.places) if is_uplink(node, k)]
+        up = [k for k in range(params.places) if is_nearer(node, k, node.depth)]
         order = functools.cmp_to_key(lambda a, b: -1 if is_better(node, params, a, b) else 1)
         found = [
             dest if strong else FREE,

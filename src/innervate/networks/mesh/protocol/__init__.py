@@ -11,11 +11,11 @@ who hears whom, computes routes and hands them out; whoever does not answer is g
 
 *Discovery* [mesh 4]. Once a period the gateway floods a request. A node passes it on after a random
 wait, notes whom it heard, and responds once (A1), up the neighbours that advertised less depth
-(A2). A link counts if both directions were reported within three rounds, or a response has crossed
-it that no faint link brought (`WEAK`; decision 0052); but whom nobody heard in this round, of two
-that did before and responded, is gone (decision 0064). With `asks` the gateway asks those once more
-by name that others heard and that did not respond; nobody else responds (decision 0059). Who knows
-no round asks for it: neighbours say their requests again, it joins late (decision 0065).
+(A2), else by who is as near, in the end by anybody (0080). A link counts if both directions were
+reported within three rounds, or a response crossed it that no faint link brought (`WEAK`; 0052);
+but whom nobody heard in this round, of two that did before and responded, is gone (decision 0064).
+With `asks` the gateway asks those by name that others heard and that did not respond (0059). Who
+knows no round asks for it: neighbours say their requests again, it joins late (decision 0065).
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
 recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in acknowledged
@@ -329,8 +329,8 @@ Constants and settings
 |                                                | MTU of 64                                       |
 | `IN_A_ROW = 3`                                 | tries of a table, before it is the others' turn |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what passes through |
-| `FAILURES_MAX = 6`, `HOPS_MAX = 40`            | failed hops at a node, then a packet is         |
-|                                                | dropped: up; routed                             |
+| `FAILURES_MAX = 6`, `LAST_TRIES = 4`,          | failed hops at a node, then a packet up tries   |
+| `HOPS_MAX = 40`                                | anybody; then it is dropped; a routed one is    |
 | `LIVELY_TICKS = 2`                             | heard so lately, a missing ack is the channel's |
 |                                                | fault                                           |
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
