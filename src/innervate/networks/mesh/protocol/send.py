@@ -44,7 +44,7 @@ from innervate.networks.mesh.protocol.route import (
     planned,
     room_of,
 )
-from innervate.networks.mesh.protocol.upward import nearest, is_dim, uplink
+from innervate.networks.mesh.protocol.upward import best_below, is_dim, uplink
 
 FAILURES_MAX = 6
 LAST_TRIES = 4  # with anybody
@@ -130,7 +130,7 @@ def climb(node, params, now, i, out):
     """
     who = uplink(node, params, i)
     if who == NOBODY and params.retry:
-        who = nearest(node, params, i, node.depth + 1)
+        who = best_below(node, params, i, node.depth + 1)
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
         if node.q_fails[i] <= FAILURES_MAX:
@@ -140,7 +140,7 @@ def climb(node, params, now, i, out):
             wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
             node.q_due[i] = (now + wait) & MASK30
         if who == NOBODY and params.retry:
-            who = nearest(node, params, i, UNHEARD)
+            who = best_below(node, params, i, UNHEARD)
         if who == NOBODY:
             put_out(node, i, out)
             return

@@ -52,10 +52,10 @@ def uplink(node, params, i):
 
     Depths go down on the way, but for those of nodes that were switched on anew in this round.
     """
-    return nearest(node, params, i, node.depth)
+    return best_below(node, params, i, node.depth)
 
 
-def nearest(node, params, i, depth):
+def best_below(node, params, i, depth):
     """The best of who advertised less than this depth that neither had it nor failed, or NOBODY."""
     best = -1
     for k in range(params.places):
