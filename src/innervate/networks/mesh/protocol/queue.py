@@ -30,6 +30,7 @@ from innervate.networks.mesh.protocol.hop import (
     hop_wait,
     is_full,
 )
+from innervate.networks.mesh.protocol.neighbours import ask
 
 FREE = 0
 WAITS = 1
@@ -235,6 +236,8 @@ def settle(node, params, now, sent, out):
             node.q_state[i] = FREE
     elif node.q_flags[i] & ACK_WANTED or not sent:
         node.q_state[i] = UNACKED
+        if node.q_tries[i] == 0:
+            ask(node, params, node.q_link_dst[i])
         node.q_tries[i] = node.q_tries[i] + 1
         wait = 0
         if sent:
