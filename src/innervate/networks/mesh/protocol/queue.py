@@ -223,8 +223,8 @@ def note_sent(node, now, i):
 def settle(node, params, now, sent, out):
     """The frame under way has left, or could not (sent = 0)."""
     i = node.busy
-    node.busy = -1
     if node.q_link_dst[i] == ALL:
+        node.busy = -1
         node.q_copies[i] = node.q_copies[i] - 1
         if node.q_copies[i] > 0:
             span = params.jitter_us
@@ -245,12 +245,13 @@ def settle(node, params, now, sent, out):
             if params.ack_adapt or params.hop_frames:
                 note_sent(node, now, i)
         if params.hop_frames:
+            node.busy = -1
             begin_wait(node, params, now, wait, i, out)
-        else:
-            node.busy = i
-            set_timer(out, ACK_WAIT, (now + wait) & MASK30)
+            return
+        set_timer(out, ACK_WAIT, (now + wait) & MASK30)
     else:
         node.q_state[i] = FREE
+        node.busy = -1
         tell_hop(node, i, out)
 
 
