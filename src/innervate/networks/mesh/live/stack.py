@@ -17,7 +17,14 @@ from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.protocol.duplicates import ANEW
 from innervate.networks.mesh.protocol.frames import inner, is_sound
-from innervate.networks.mesh.protocol.neighbours import FREE, is_strong, is_suspect, place_of
+from innervate.networks.mesh.protocol.neighbours import (
+    DOUBT,
+    FREE,
+    SUSPECT,
+    is_strong,
+    is_suspect,
+    place_of,
+)
 from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.timeout import TICK_MAX_US
 from innervate.networks.mesh.protocol.upward import is_better, is_nearer
@@ -218,7 +225,9 @@ class MeshStack:
                     {
                         "node": who,
                         "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
-                        "suspect": bool(node.suspect[k]),  # until it is heard again
+                        "suspect": bool(
+                            node.suspect[k] & (SUSPECT | DOUBT)
+                        ),  # until it is heard again
                         "ports": self.places.get(who, []),
                     }
                 )

@@ -44,7 +44,8 @@ before something goes, and acks to one node go in one frame.
 the link. One that was heard in this tick is sent a frame the more often, the less it acknowledges.
 
 *Backoff.* Acks that are missing beyond what the links explain make for growing pauses of searches,
-then of all messages, never of alarms: a full channel heals (decision 0016).
+then of all messages, never of alarms: a full channel heals (decision 0016). What looks for a way
+there goes no further where its hop failed to who was heard meanwhile: it is sent again (0083).
 
 *Standby.* A standby that has no sign of the gateway's life until its second `guard_us` is over asks
 it. Each answer brings a part of the graph, until it has all. Questions in vain, more where answers
@@ -81,7 +82,7 @@ States
 |                                       | `UNACKED = 3`                                            |
 | message end to end, `wait_kind`       | `FREE`; else it waits for its ack                        |
 | neighbour, `suspect`                  | trusted; `SUSPECT = 1` avoided; `DOUBT = 2` not heard    |
-|                                       | since                                                    |
+|                                       | since; `SILENT = 4` not since the newest hop to it began |
 | robot, `outside`                      | `INSIDE = 0`; `SOON = 1` about to cross; `OUTSIDE = 2`   |
 | robot, at others, `raised`            | `RAISED_LOST = 1`; `RAISED_OUT = 2`; 4: its own alarm is |
 |                                       | given a tick                                             |
@@ -331,8 +332,7 @@ Constants and settings
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what passes through |
 | `FAILURES_MAX = 6`, `LAST_TRIES = 4`,          | failed hops at a node, then a packet up tries   |
 | `HOPS_MAX = 40`                                | anybody; then it is dropped; a routed one is    |
-| `LIVELY_TICKS = 2`                             | heard so lately, a missing ack is the channel's |
-|                                                | fault                                           |
+| `LIVELY_TICKS = 2`                             | heard so lately: a missing ack is the channel's |
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
 | `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
 |                                                | double                                          |
@@ -365,7 +365,7 @@ Constants and settings
 | `FREE = 255`, `UNHEARD = 255`, `NONE = 255`,   | nobody, nothing, not yet                        |
 | `NONE = -1`, `FAR = 255`, `NEVER = 255`        |                                                 |
 | `NOBODY_GAVE = 255`, `NO_OWNER = -1`,          | nobody, no message, no pause                    |
-| `NO_BACKOFF = -1`                              |                                                 |
+| `NO_BACKOFF = -1`, `ANYHOW = 2`                | ... whatever is suspected of a neighbour        |
 | `width`, `row`, `places`, `nodes`              | sizes of a capacity class, and of this network  |
 | `told`, `hop_acks`                             | the layer below says SENT; hops acknowledge, or |
 |                                                | SENT says so                                    |

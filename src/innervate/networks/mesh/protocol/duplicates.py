@@ -1,7 +1,6 @@
 """What is remembered of packets: delivered, forwarded, failed neighbours, bad neighbours."""
 
 from innervate.dialect.arith import HALF16, MASK16
-from innervate.dialect.rng import LOW15
 from innervate.networks.mesh.protocol.constants import ALL, PARITY, TABLES
 from innervate.networks.mesh.protocol.fields import FORWARDED, SKIPS, WINDOW_WORDS
 
@@ -73,13 +72,16 @@ def begin_window(node, params, origin, seq):
 
 def slide(node, base, ahead):
     """The window moves on by `ahead`; the packet that was newest is in it then."""
-    bit = 1
-    for _ in range(min(ahead, BITS * WINDOW_WORDS + 1)):
-        for k in range(WINDOW_WORDS):
-            word = node.window[base + k] << 1 | bit
-            node.window[base + k] = word & LOW15
-            bit = word >> BITS
-        bit = 0
+    for k in range(WINDOW_WORDS):
+        at = WINDOW_WORDS - 1 - k
+        word = 0
+        for b in range(BITS):
+            old = at * BITS + b - ahead
+            if old == -1:
+                word = word | (1 << b)
+            elif old >= 0 and node.window[base + old // BITS] & (1 << (old % BITS)):
+                word = word | (1 << b)
+        node.window[base + at] = word
 
 
 def age(node, params):

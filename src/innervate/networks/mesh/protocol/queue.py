@@ -30,6 +30,7 @@ from innervate.networks.mesh.protocol.hop import (
     hop_wait,
     is_full,
 )
+from innervate.networks.mesh.protocol.neighbours import ask
 
 FREE = 0
 WAITS = 1
@@ -222,8 +223,8 @@ def note_sent(node, now, i):
 def settle(node, params, now, sent, out):
     """The frame under way has left, or could not (sent = 0)."""
     i = node.busy
-    node.busy = -1
     if node.q_link_dst[i] == ALL:
+        node.busy = -1
         node.q_copies[i] = node.q_copies[i] - 1
         if node.q_copies[i] > 0:
             span = params.jitter_us
@@ -235,6 +236,8 @@ def settle(node, params, now, sent, out):
             node.q_state[i] = FREE
     elif node.q_flags[i] & ACK_WANTED or not sent:
         node.q_state[i] = UNACKED
+        if node.q_tries[i] == 0:
+            ask(node, params, node.q_link_dst[i])
         node.q_tries[i] = node.q_tries[i] + 1
         wait = 0
         if sent:
@@ -242,12 +245,13 @@ def settle(node, params, now, sent, out):
             if params.ack_adapt or params.hop_frames:
                 note_sent(node, now, i)
         if params.hop_frames:
+            node.busy = -1
             begin_wait(node, params, now, wait, i, out)
-        else:
-            node.busy = i
-            set_timer(out, ACK_WAIT, (now + wait) & MASK30)
+            return
+        set_timer(out, ACK_WAIT, (now + wait) & MASK30)
     else:
         node.q_state[i] = FREE
+        node.busy = -1
         tell_hop(node, i, out)
 
 

@@ -2,7 +2,7 @@
 
 from innervate.dialect.arith import MASK30
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.backoff import note_missed
+from innervate.networks.mesh.protocol.backoff import is_drowned, note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
@@ -258,5 +258,8 @@ def unanswered(node, params, now, i, out):
         failed = node.q_link_dst[i]
         if params.ack_adapt:
             note_failed(node, who, i)
+        if is_drowned(node, i, who):
+            put_out(node, i, out)
+            return
         hop_failed(node, params, now, i, out)
         turn_away(node, params, failed, out)
