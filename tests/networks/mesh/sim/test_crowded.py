@@ -3,6 +3,7 @@
 import pytest
 
 from innervate.networks.mesh.protocol.backoff import (
+    DROWNED_TRIES,
     STRAIN_FREE,
     STRAIN_HEAVY,
     STRAIN_MAX,
@@ -313,25 +314,33 @@ def test_what_pauses(strain, rank, kind, flags, held):
 
 
 SOUGHT = END_TO_END | DETOURED
-DROWNED = [  # strain, suspect, kind, flags -> it goes no further
-    (STRAIN_FREE + 1, 0, DATA, SOUGHT, 1),
-    (STRAIN_FREE + 1, 0, E2E_ACK, DETOURED, 1),
-    (STRAIN_FREE, 0, DATA, SOUGHT, 0),
-    (STRAIN_FREE + 1, SILENT, DATA, SOUGHT, 0),
-    (STRAIN_FREE + 1, DOUBT, DATA, SOUGHT, 1),  # it failed before, and was heard since
-    (STRAIN_FREE + 1, 0, DATA, END_TO_END, 0),
-    (STRAIN_FREE + 1, 0, DATA, DETOURED, 0),  # nobody sends it again
-    (STRAIN_FREE + 1, 0, E2E_ACK, 0, 0),
-    (STRAIN_FREE + 1, 0, ALARM, SOUGHT, 0),
-    (STRAIN_FREE + 1, 0, RESPONSE, SOUGHT, 0),
-    (STRAIN_FREE + 1, 0, TABLE, SOUGHT, 0),
+DROWNED = [  # strain, suspect, tries, kind, flags -> the search ends here
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, DATA, SOUGHT, 1),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, E2E_ACK, DETOURED, 1),
+    (STRAIN_FREE, 0, DROWNED_TRIES, DATA, SOUGHT, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES - 1, DATA, SOUGHT, 0),
+    (STRAIN_FREE + 1, SILENT, DROWNED_TRIES, DATA, SOUGHT, 0),
+    (
+        STRAIN_FREE + 1,
+        DOUBT,
+        DROWNED_TRIES,
+        DATA,
+        SOUGHT,
+        1,
+    ),  # it failed before, and was heard since
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, DATA, END_TO_END, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, DATA, DETOURED, 0),  # nobody sends it again
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, E2E_ACK, 0, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, ALARM, SOUGHT, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, RESPONSE, SOUGHT, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, TABLE, SOUGHT, 0),
 ]
 
 
-@pytest.mark.parametrize(("strain", "suspect", "kind", "flags", "drowned"), DROWNED)
-def test_what_drowns(strain, suspect, kind, flags, drowned):
+@pytest.mark.parametrize(("strain", "suspect", "tries", "kind", "flags", "drowned"), DROWNED)
+def test_what_drowns(strain, suspect, tries, kind, flags, drowned):
     node = settled(2, [(0, 1)]).nodes[0]
-    node.suspect[0] = suspect
+    node.suspect[0], node.q_tries[0] = suspect, tries
     node.strain, node.q_kind[0], node.q_flags[0] = strain, kind, flags
     assert is_drowned(node, 0, 0) == drowned
     assert not is_drowned(node, 0, -1), "of who is in the table no more nothing is known"
@@ -340,7 +349,7 @@ def test_what_drowns(strain, suspect, kind, flags, drowned):
 @pytest.mark.parametrize("heard", [True, False])
 def test_a_search_in_a_full_channel_ends_at_who_lives_and_goes_round_who_does_not(heard):
     """What node 1 does not acknowledge another gets; if that is silent, too, all others."""
-    bench = settled(9, STAR)
+    bench = settled(9, STAR, transmissions=DROWNED_TRIES)
     node = bench.nodes[0]
     bench.lost = lambda frame, to: 0 in (frame.link_src, to)
     node.strain = STRAIN_MAX - 1

@@ -45,7 +45,7 @@ the link. One that was heard in this tick is sent a frame the more often, the le
 
 *Backoff.* Acks that are missing beyond what the links explain make for growing pauses of searches,
 then of all messages, never of alarms: a full channel heals (decision 0016). What looks for a way
-there goes no further where its hop failed to who was heard meanwhile: it is sent again (0083).
+there goes no further where many tries of a hop to who was heard failed: it is sent again (0083).
 
 *Standby.* A standby that has no sign of the gateway's life until its second `guard_us` is over asks
 it. Each answer brings a part of the graph, until it has all. Questions in vain, more where answers
@@ -334,8 +334,8 @@ Constants and settings
 | `HOPS_MAX = 40`                                | anybody; then it is dropped; a routed one is    |
 | `LIVELY_TICKS = 2`                             | heard so lately: a missing ack is the channel's |
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
-| `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
-|                                                | double                                          |
+| `STRAIN_MAX = 176`, `PER_DOUBLING = 16`,       | searches, then messages pause; how fast pauses  |
+| `DROWNED_TRIES = 8`                            | double; 0083: tries of a hop, then a search ends|
 | `ALL_ACKED = 255`, `RATIO_MIN = 64`,           | shares of transmissions acknowledged: all; the  |
 | `POOR_MIN = 32`, `SMOOTHING = 3`,              | least believed, of a loud link, of a faint one; |
 | `MISSES_MAX = 31`                              | an eighth of what is new                        |

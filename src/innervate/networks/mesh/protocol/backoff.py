@@ -32,6 +32,7 @@ PER_DOUBLING = 16
 STRAIN_MAX = 176
 LONGEST_US = 65_536  # before it is doubled
 NO_BACKOFF = -1
+DROWNED_TRIES = 8  # of a hop: where fewer are made at each, the next neighbour costs little
 
 
 def note_missed(node, params, now, k):
@@ -69,12 +70,13 @@ def is_held(node, i):
 def is_drowned(node, i, k):
     """1 if a full channel keeps from the neighbour in place k a message that looks for a way.
 
-    Who was heard since the hop began lives. Another way leads through the same channel, and looking
-    for it is what fills that; the origin sends the message once more, or asks for its ack.
+    Who was heard since the hop began lives, and so many tries in vain are the channel's. Another
+    way leads through the same one, and looking for it is what fills that; the origin sends the
+    message once more, or asks for its ack.
     """
     if k < 0 or node.suspect[k] & SILENT or node.strain <= STRAIN_FREE:
         return 0
-    if not node.q_flags[i] & DETOURED:
+    if not node.q_flags[i] & DETOURED or node.q_tries[i] < DROWNED_TRIES:
         return 0
     kind = node.q_kind[i]
     return kind == E2E_ACK or (kind == DATA and node.q_flags[i] & END_TO_END != 0)
