@@ -13,6 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
     END_TO_END,
     FLOOD,
     LOUDEST,
+    NOBODY,
     ORDERED,
     PARITY,
     RANDOM,
@@ -24,7 +25,7 @@ from innervate.networks.mesh.protocol.constants import (
 from innervate.networks.mesh.protocol.fields import FORWARDED
 from innervate.networks.mesh.protocol.neighbours import SUSPECT, place_of
 from innervate.networks.mesh.protocol.queue import enqueue
-from innervate.networks.mesh.protocol.route import NONE, planned
+from innervate.networks.mesh.protocol.route import planned
 from tests.networks.mesh.net import Net, line, ring
 
 # 3 - 2 - 1 - 0 - 5, with a dead end at every node of the way.
@@ -68,7 +69,7 @@ def test_all_on_the_way_know_both_ends_and_all_others_the_origin():
     bench.send(3, 5)
     bench.run(SPAN_US)
     to_3 = [planned(node, bench.params, 3) for node in bench.nodes]
-    assert to_3 == [1, 2, 3, NONE, 3, 0, 2, 1, 0]
+    assert to_3 == [1, 2, 3, NOBODY, 3, 0, 2, 1, 0]
     assert [planned(bench.nodes[i], bench.params, 5) for i in (3, 2, 1, 0)] == [2, 1, 0, 5]
     bench.sent.clear()
     bench.send(3, 5)
@@ -172,7 +173,7 @@ def test_a_flood_goes_on_at_any_moment_and_before_messages():
     assert {node.q_rank[i] for node, i in zip(bench.nodes[1:8], first, strict=True)} == {CONTROL}
 
 
-@pytest.mark.parametrize(("on_demand", "left"), [(1, NONE), (0, 1)])
+@pytest.mark.parametrize(("on_demand", "left"), [(1, NOBODY), (0, 1)])
 def test_a_way_that_fails_is_forgotten(on_demand, left):
     """What comes next is flooded, and does not wait until the neighbour is trusted again."""
     bench = silent(line(4))
@@ -206,7 +207,7 @@ def test_by_the_documents_rules_a_neighbour_is_looked_for_too(failover):
     bench = Net(9, COMB, on_demand=1, failover=failover)
     bench.lost = lambda frame, to: frame.kind == TABLE
     bench.run(3_000_000)
-    assert planned(bench.nodes[3], bench.params, 2) == NONE
+    assert planned(bench.nodes[3], bench.params, 2) == NOBODY
     bench.send(3, 2)
     bench.run(bench.now + SPAN_US)
     assert [i for _, i, _ in bench.delivered] == [2]
@@ -225,7 +226,7 @@ def test_who_has_a_table_that_leaves_the_recipient_out_does_not_flood():
     bench.run(5_000_000)
     bench.sent.clear()
     node = bench.nodes[3]
-    node.next[node.bank * bench.params.width + 5] = NONE
+    node.next[node.bank * bench.params.width + 5] = NOBODY
     bench.send(3, 5)
     bench.run(bench.now + SPAN_US)
     assert node.version
@@ -286,7 +287,7 @@ def test_the_gateway_writes_ways_and_does_not_look_for_them():
     bench = Net(9, COMB, mode=TABLE_FREE, on_demand=1)
     bench.run(5_000_000)
     bench.sent.clear()
-    bench.nodes[0].next[4] = NONE
+    bench.nodes[0].next[4] = NOBODY
     bench.send(0, 4)
     bench.run(bench.now + SPAN_US)
     assert sent(bench, DATA) == [(0, 1), (1, 2), (2, 3), (3, 4)]

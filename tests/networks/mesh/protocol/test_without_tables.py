@@ -12,6 +12,7 @@ from innervate.networks.mesh.protocol.constants import (
     E2E_ACK,
     END_TO_END,
     MESSAGES,
+    NOBODY,
     RANDOM,
     REQUEST,
     RESPONSE,
@@ -28,7 +29,7 @@ from innervate.networks.mesh.protocol.jobs import pump
 from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.queue import enqueue
 from innervate.networks.mesh.protocol.round import on_request, queued_request
-from innervate.networks.mesh.protocol.route import NONE, learn_way, planned
+from innervate.networks.mesh.protocol.route import learn_way, planned
 from innervate.networks.mesh.protocol.timeout import timeout
 from tests.networks.mesh.bench import Bench, Frame
 from tests.networks.mesh.net import Net
@@ -108,7 +109,9 @@ def brought(bench, to, origin, sender):
     return planned(bench.nodes[to], bench.params, origin)
 
 
-@pytest.mark.parametrize(("failover", "learned"), [(SEARCH, 7), (ALTERNATE, NONE), (RANDOM, NONE)])
+@pytest.mark.parametrize(
+    ("failover", "learned"), [(SEARCH, 7), (ALTERNATE, NOBODY), (RANDOM, NOBODY)]
+)
 def test_ways_are_learned_where_packets_search_for_theirs(failover, learned):
     """The document's rules know what the gateway said, and no more."""
     assert brought(Bench(9, COMB, failover=failover), 1, 3, 7) == learned
@@ -120,7 +123,7 @@ def test_what_a_table_says_stands():
     bench.run(SETTLED)
     assert bench.nodes[1].version
     assert brought(bench, 1, 3, 7) == 2
-    bench.nodes[1].next[bench.nodes[1].bank * bench.params.width + 3] = NONE
+    bench.nodes[1].next[bench.nodes[1].bank * bench.params.width + 3] = NOBODY
     assert [brought(bench, 1, 3, sender) for sender in (7, 2)] == [7, 7], "whom it leaves out"
 
 

@@ -2,7 +2,14 @@
 
 import pytest
 
-from innervate.networks.mesh.protocol.backoff import STRAIN_HEAVY, STRAIN_MAX, is_held
+from innervate.networks.mesh.protocol.backoff import (
+    DROWNED_TRIES,
+    STRAIN_FREE,
+    STRAIN_HEAVY,
+    STRAIN_MAX,
+    is_drowned,
+    is_held,
+)
 from innervate.networks.mesh.protocol.constants import (
     ACK,
     ALARM,
@@ -11,6 +18,7 @@ from innervate.networks.mesh.protocol.constants import (
     DATA,
     DETOURED,
     E2E_ACK,
+    END_TO_END,
     MESSAGES,
     NO_ACK,
     NO_ROOM,
@@ -35,7 +43,7 @@ from innervate.networks.mesh.protocol.duplicates import (
     is_unreachable,
     mark_bad,
 )
-from innervate.networks.mesh.protocol.neighbours import DOUBT, SUSPECT
+from innervate.networks.mesh.protocol.neighbours import DOUBT, SILENT, SUSPECT
 from innervate.networks.mesh.protocol.retransmission import SEARCH_BACKOFF_MAX
 from innervate.networks.mesh.protocol.send import most_tries
 from tests.networks.mesh.bench import Bench
@@ -303,3 +311,53 @@ def test_what_pauses(strain, rank, kind, flags, held):
     node = settled(2, [(0, 1)]).nodes[0]
     node.strain, node.q_rank[0], node.q_kind[0], node.q_flags[0] = strain, rank, kind, flags
     assert is_held(node, 0) == held
+
+
+SOUGHT = END_TO_END | DETOURED
+DROWNED = [  # strain, suspect, tries, kind, flags -> the search ends here
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, DATA, SOUGHT, 1),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, E2E_ACK, DETOURED, 1),
+    (STRAIN_FREE, 0, DROWNED_TRIES, DATA, SOUGHT, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES - 1, DATA, SOUGHT, 0),
+    (STRAIN_FREE + 1, SILENT, DROWNED_TRIES, DATA, SOUGHT, 0),
+    (
+        STRAIN_FREE + 1,
+        DOUBT,
+        DROWNED_TRIES,
+        DATA,
+        SOUGHT,
+        1,
+    ),  # it failed before, and was heard since
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, DATA, END_TO_END, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, DATA, DETOURED, 0),  # nobody sends it again
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, E2E_ACK, 0, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, ALARM, SOUGHT, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, RESPONSE, SOUGHT, 0),
+    (STRAIN_FREE + 1, 0, DROWNED_TRIES, TABLE, SOUGHT, 0),
+]
+
+
+@pytest.mark.parametrize(("strain", "suspect", "tries", "kind", "flags", "drowned"), DROWNED)
+def test_what_drowns(strain, suspect, tries, kind, flags, drowned):
+    node = settled(2, [(0, 1)]).nodes[0]
+    node.suspect[0], node.q_tries[0] = suspect, tries
+    node.strain, node.q_kind[0], node.q_flags[0] = strain, kind, flags
+    assert is_drowned(node, 0, 0) == drowned
+    assert not is_drowned(node, 0, -1), "of who is in the table no more nothing is known"
+
+
+@pytest.mark.parametrize("heard", [True, False])
+def test_a_search_in_a_full_channel_ends_at_who_lives_and_goes_round_who_does_not(heard):
+    """What node 1 does not acknowledge another gets; if that is silent, too, all others."""
+    bench = settled(9, STAR, transmissions=DROWNED_TRIES)
+    node = bench.nodes[0]
+    bench.lost = lambda frame, to: 0 in (frame.link_src, to)
+    node.strain = STRAIN_MAX - 1
+    bench.send(0, 1)
+    while not bench.of(REPORT_EXPIRED):
+        if heard:
+            node.suspect = [k & ~SILENT for k in node.suspect]
+        bench.run(bench.now + 1_000)
+    asked = {f.link_dst for _, i, f in bench.sent if i == 0 and f.kind == DATA}
+    assert 1 in asked
+    assert len(asked) == (2 if heard else 8)

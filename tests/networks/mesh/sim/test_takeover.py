@@ -11,12 +11,13 @@ from innervate.networks.mesh.protocol.constants import (
     DATA,
     GRAPH,
     LOUDEST,
+    NOBODY,
     RANDOM,
     REPORT_GATEWAY,
     RESPONSE,
     TABLE,
 )
-from innervate.networks.mesh.protocol.route import NONE, planned
+from innervate.networks.mesh.protocol.route import planned
 from innervate.networks.mesh.protocol.standby import IN_VAIN, SPARE_HOPS, TOLERANCE_MAX
 from innervate.networks.mesh.sim.simulate import simulate
 from tests.networks.mesh.net import Net, geometric, line, ring
@@ -102,7 +103,7 @@ def test_all_keep_their_tables_as_those_of_who_takes_over_until_its_next_round()
     heir = net.nodes[3]
     assert {(n.version, n.table_epoch) for n in net.nodes[1:]} == {(heir.version, heir.epoch)}
     assert ways(net) == before
-    assert {planned(node, net.params, 0) for node in net.nodes[1:]} == {NONE}
+    assert {planned(node, net.params, 0) for node in net.nodes[1:]} == {NOBODY}
     assert not tables(net)
     assert not [f for _, _, f in net.sent if f.kind == RESPONSE]
     net.run(died + 14_000_000)

@@ -17,10 +17,17 @@ from innervate.networks.mesh.protocol import fields as fields
 from innervate.networks.mesh.protocol import node as mesh
 from innervate.networks.mesh.protocol.duplicates import ANEW
 from innervate.networks.mesh.protocol.frames import inner, is_sound
-from innervate.networks.mesh.protocol.neighbours import FREE, is_strong, is_suspect, place_of
+from innervate.networks.mesh.protocol.neighbours import (
+    DOUBT,
+    FREE,
+    SUSPECT,
+    is_strong,
+    is_suspect,
+    place_of,
+)
 from innervate.networks.mesh.protocol.route import alternate, planned
 from innervate.networks.mesh.protocol.timeout import TICK_MAX_US
-from innervate.networks.mesh.protocol.upward import is_better, is_uplink
+from innervate.networks.mesh.protocol.upward import is_better, is_nearer
 
 CLASSES = (32, 64, 128, 254)
 OUTBOX = 160  # more than twice the frames that a queue can hold
@@ -218,7 +225,9 @@ class MeshStack:
                     {
                         "node": who,
                         "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
-                        "suspect": bool(node.suspect[k]),  # until it is heard again
+                        "suspect": bool(
+                            node.suspect[k] & (SUSPECT | DOUBT)
+                        ),  # until it is heard again
                         "ports": self.places.get(who, []),
                     }
                 )
@@ -257,7 +266,7 @@ class MeshStack:
             return []
         strong = is_strong(node, params, place_of(node, params, dest))
         tables = params.mode == const.TABLES
-        up = [k for k in range(params.places) if is_uplink(node, k)]
+        up = [k for k in range(params.places) if is_nearer(node, k, node.depth)]
         order = functools.cmp_to_key(lambda a, b: -1 if is_better(node, params, a, b) else 1)
         found = [
             dest if strong else FREE,

@@ -11,11 +11,11 @@ who hears whom, computes routes and hands them out; whoever does not answer is g
 
 *Discovery* [mesh 4]. Once a period the gateway floods a request. A node passes it on after a random
 wait, notes whom it heard, and responds once (A1), up the neighbours that advertised less depth
-(A2). A link counts if both directions were reported within three rounds, or a response has crossed
-it that no faint link brought (`WEAK`; decision 0052); but whom nobody heard in this round, of two
-that did before and responded, is gone (decision 0064). With `asks` the gateway asks those once more
-by name that others heard and that did not respond; nobody else responds (decision 0059). Who knows
-no round asks for it: neighbours say their requests again, it joins late (decision 0065).
+(A2), else by who is as near, in the end by anybody (0080). A link counts if both directions were
+reported within three rounds, or a response crossed it that no faint link brought (`WEAK`; 0052);
+but whom nobody heard in this round, of two that did before and responded, is gone (decision 0064).
+With `asks` the gateway asks those by name that others heard and that did not respond (0059). Who
+knows no round asks for it: neighbours say their requests again, it joins late (decision 0065).
 
 *Tables.* By breadth-first search the gateway makes for each node a next hop and an alternate per
 recipient; alternates are loop-free (RFC 5286, 3.3). They go out source-routed, in acknowledged
@@ -44,7 +44,8 @@ before something goes, and acks to one node go in one frame.
 the link. One that was heard in this tick is sent a frame the more often, the less it acknowledges.
 
 *Backoff.* Acks that are missing beyond what the links explain make for growing pauses of searches,
-then of all messages, never of alarms: a full channel heals (decision 0016).
+then of all messages, never of alarms: a full channel heals (decision 0016). What looks for a way
+there goes no further where many tries of a hop to who was heard failed: it is sent again (0083).
 
 *Standby.* A standby that has no sign of the gateway's life until its second `guard_us` is over asks
 it. Each answer brings a part of the graph, until it has all. Questions in vain, more where answers
@@ -81,7 +82,7 @@ States
 |                                       | `UNACKED = 3`                                            |
 | message end to end, `wait_kind`       | `FREE`; else it waits for its ack                        |
 | neighbour, `suspect`                  | trusted; `SUSPECT = 1` avoided; `DOUBT = 2` not heard    |
-|                                       | since                                                    |
+|                                       | since; `SILENT = 4` not since the newest hop to it began |
 | robot, `outside`                      | `INSIDE = 0`; `SOON = 1` about to cross; `OUTSIDE = 2`   |
 | robot, at others, `raised`            | `RAISED_LOST = 1`; `RAISED_OUT = 2`; 4: its own alarm is |
 |                                       | given a tick                                             |
@@ -257,7 +258,7 @@ Frames
 Flags: `ACK_WANTED = 1`, `END_TO_END = 2`, `FLOOD = 4`, to one recipient `ORDERED = 4`,
 `SOURCE_ROUTE = 8`, `DETOURED = 16`, `PRIORITY = 32`, `FIRST = 64`, of a response `WEAK = 64`,
 `PARITY = 128` (turns over with each retransmission). Addresses: `ALL = 255`, `MONITOR = 254`,
-`IDS = 254`, `NOBODY = -1`. Bit by bit: docs/wire.md.
+`IDS = 254`, `NOBODY = 255`. Bit by bit: docs/wire.md.
 
 Inputs and reports
 ==================
@@ -329,13 +330,12 @@ Constants and settings
 |                                                | MTU of 64                                       |
 | `IN_A_ROW = 3`                                 | tries of a table, before it is the others' turn |
 | `PLACES_RESERVED = 3`                          | of the gateway's queue, for what passes through |
-| `FAILURES_MAX = 6`, `HOPS_MAX = 40`            | failed hops at a node, then a packet is         |
-|                                                | dropped: up; routed                             |
-| `LIVELY_TICKS = 2`                             | heard so lately, a missing ack is the channel's |
-|                                                | fault                                           |
+| `FAILURES_MAX = 6`, `LAST_TRIES = 4`,          | failed hops at a node, then a packet up tries   |
+| `HOPS_MAX = 40`                                | anybody; then it is dropped; a routed one is    |
+| `LIVELY_TICKS = 2`                             | heard so lately: a missing ack is the channel's |
 | `STRAIN_FREE = 48`, `STRAIN_HEAVY = 112`,      | decision 0016: quarters of acks missing before  |
-| `STRAIN_MAX = 176`, `PER_DOUBLING = 16`        | searches, then messages pause; how fast pauses  |
-|                                                | double                                          |
+| `STRAIN_MAX = 176`, `PER_DOUBLING = 16`,       | searches, then messages pause; how fast pauses  |
+| `DROWNED_TRIES = 8`                            | double; 0083: tries of a hop, then a search ends|
 | `ALL_ACKED = 255`, `RATIO_MIN = 64`,           | shares of transmissions acknowledged: all; the  |
 | `POOR_MIN = 32`, `SMOOTHING = 3`,              | least believed, of a loud link, of a faint one; |
 | `MISSES_MAX = 31`                              | an eighth of what is new                        |
@@ -365,7 +365,7 @@ Constants and settings
 | `FREE = 255`, `UNHEARD = 255`, `NONE = 255`,   | nobody, nothing, not yet                        |
 | `NONE = -1`, `FAR = 255`, `NEVER = 255`        |                                                 |
 | `NOBODY_GAVE = 255`, `NO_OWNER = -1`,          | nobody, no message, no pause                    |
-| `NO_BACKOFF = -1`                              |                                                 |
+| `NO_BACKOFF = -1`, `ANYHOW = 2`                | ... whatever is suspected of a neighbour        |
 | `width`, `row`, `places`, `nodes`              | sizes of a capacity class, and of this network  |
 | `told`, `hop_acks`                             | the layer below says SENT; hops acknowledge, or |
 |                                                | SENT says so                                    |

@@ -9,7 +9,14 @@ are silent do not count (they are dead, not drowned out), and alarms never wait.
 
 from innervate.dialect.arith import MASK30, after
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.constants import ALARMS, DATA, DETOURED, E2E_ACK, POSITION
+from innervate.networks.mesh.protocol.constants import (
+    ALARMS,
+    DATA,
+    DETOURED,
+    E2E_ACK,
+    END_TO_END,
+    POSITION,
+)
 from innervate.networks.mesh.protocol.link_quality import (
     UNIT,
     learn_ack,
@@ -17,6 +24,7 @@ from innervate.networks.mesh.protocol.link_quality import (
     note_miss,
     relief,
 )
+from innervate.networks.mesh.protocol.neighbours import SILENT
 
 STRAIN_FREE = 48  # quarters of acks that are missing: so many cost no pause
 STRAIN_HEAVY = 112  # from here on messages that know their way pause, too
@@ -24,6 +32,7 @@ PER_DOUBLING = 16
 STRAIN_MAX = 176
 LONGEST_US = 65_536  # before it is doubled
 NO_BACKOFF = -1
+DROWNED_TRIES = 8  # of a hop: where fewer are made at each, the next neighbour costs little
 
 
 def note_missed(node, params, now, k):
@@ -56,6 +65,21 @@ def is_held(node, i):
     if node.q_rank[i] == ALARMS or (kind != DATA and kind != E2E_ACK and kind != POSITION):
         return 0
     return (node.q_flags[i] & DETOURED != 0 and kind != E2E_ACK) or node.strain > STRAIN_HEAVY
+
+
+def is_drowned(node, i, k):
+    """1 if a full channel keeps from the neighbour in place k a message that looks for a way.
+
+    Who was heard since the hop began lives, and so many tries in vain are the channel's. Another
+    way leads through the same one, and looking for it is what fills that; the origin sends the
+    message once more, or asks for its ack.
+    """
+    if k < 0 or node.suspect[k] & SILENT or node.strain <= STRAIN_FREE:
+        return 0
+    if not node.q_flags[i] & DETOURED or node.q_tries[i] < DROWNED_TRIES:
+        return 0
+    kind = node.q_kind[i]
+    return kind == E2E_ACK or (kind == DATA and node.q_flags[i] & END_TO_END != 0)
 
 
 def end_backoff(node, now):

@@ -29,7 +29,7 @@ PARITY = 128  # turns over with every end-to-end retry
 # Addresses.
 ALL = 0xFF
 MONITOR = 0xFE  # the monitor; where none is configured, the gateway
-NOBODY = -1
+NOBODY = 255
 IDS = 254
 
 TTL = 48  # a search goes back over what it has gone; else the path bounds it

@@ -153,7 +153,7 @@ def neighbours(k):
         ("rssi", k, -512, 511, "dBm/4", "smoothed"),
         ("ack_ratio", k, 0, 255, "1/255", "of our transmissions to it that it acknowledged"),
         ("misses", k, 0, 31, "transmissions", "to it since it acknowledged one"),
-        ("suspect", k, 0, 3, "flags", "1 it does not answer, until `until`; 2 nor was heard since"),
+        ("suspect", k, 0, 7, "flags", "1 it does not answer, until `until`; 2, 4 not heard since"),
         ("until", k, 0, 65535, "ticks", "... then it is trusted again"),
         ("round_rssi", k, -128, 127, "dBm", "of its request in this round"),
         ("round_depth", k, 0, 255, "hops", "it advertised in this round; 255 not heard"),

@@ -15,6 +15,7 @@ HOP_FIRST = 4  # frames under way to a neighbour of which nothing is known
 # In `suspect`.
 SUSPECT = 1  # avoided for a while
 DOUBT = 2  # not heard since: one transmission is enough to ask
+SILENT = 4  # not heard since the newest hop to it began
 
 
 def clear_neighbours(node, params):
@@ -95,6 +96,13 @@ def suspect(node, params, now, who, planned, out):
         report(out, REPORT_SUSPECT, who, planned)
 
 
+def ask(node, params, who):
+    """A hop to `who` begins: is it heard before we know what became of it?"""
+    k = place_of(node, params, who)
+    if k >= 0:
+        node.suspect[k] = node.suspect[k] | SILENT
+
+
 def ticks_until(node, params, now):
     """The first tick that is suspect_us away or more is so many from the newest."""
     late = (now - node.tick_at) & MASK30
@@ -115,7 +123,7 @@ def is_suspect(node, params, who):
 def trust(node, params):
     """End all suspicions; who was not heard since stays in DOUBT."""
     for k in range(params.places):
-        node.suspect[k] = node.suspect[k] & DOUBT
+        node.suspect[k] = node.suspect[k] & ~SUSPECT
 
 
 def sweep(node, params):

@@ -189,16 +189,14 @@ def fill_around(gate, params, s, main):
 
     Safe only because packets carry their path.
     """
-    missing = 0
+    measured = 0
     for d in range(params.nodes):
         if gate.next[d] == main and gate.alt[d] == NONE and d != main:
-            missing = 1
-    if not missing:
-        return
-    measure(gate, params, s, main)
-    for d in range(params.nodes):
-        if gate.next[d] == main and gate.alt[d] == NONE and d != main and gate.far[d] != FAR:
-            gate.alt[d] = walk_back(gate, params, s, d, main)
+            if not measured:
+                measure(gate, params, s, main)
+                measured = 1
+            if gate.far[d] != FAR:
+                gate.alt[d] = walk_back(gate, params, s, d, main)
 
 
 def walk_back(gate, params, s, d, without):
@@ -207,18 +205,14 @@ def walk_back(gate, params, s, d, without):
     for _ in range(params.nodes):
         if gate.far[at] == 1:
             return at
-        best = NONE
+        nearer = NONE
         for k in range(list_neighbours(gate, params, at)):
             who = gate.neighbours[k]
-            if (
-                who != without
-                and gate.far[who] + 1 == gate.far[at]
-                and (best == NONE or who < best)
-            ):
-                best = who
-        if best == NONE:
+            if nearer == NONE and who != without and gate.far[who] + 1 == gate.far[at]:
+                nearer = who
+        if nearer == NONE:
             return NONE
-        at = best
+        at = nearer
     return NONE
 
 

@@ -30,6 +30,7 @@ from innervate.networks.mesh.protocol.hop import (
     hop_wait,
     is_full,
 )
+from innervate.networks.mesh.protocol.neighbours import ask
 
 FREE = 0
 WAITS = 1
@@ -73,9 +74,14 @@ def make_room(node, rank, out):
                 newest = i
     if newest < 0 or free_places(node) < rank:
         return 0
-    report(out, REPORT_DROPPED, node.q_origin[newest], node.q_seq[newest])
-    node.q_state[newest] = FREE
+    put_out(node, newest, out)
     return 1
+
+
+def put_out(node, i, out):
+    """The frame that waits in place i has to go, and what it brings does not arrive by it."""
+    report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
+    node.q_state[i] = FREE
 
 
 def came_after(node, i, j):
@@ -106,14 +112,11 @@ def take_place(node, rank, out):
         if node.q_state[i] == FREE:
             return i
         if node.q_state[i] == WAITS and node.q_rank[i] > rank:
-            if worst < 0 or node.q_rank[i] > node.q_rank[worst]:
-                worst = i
-            elif node.q_rank[i] == node.q_rank[worst] and came_after(node, i, worst):
+            if worst < 0 or is_before(node, worst, i):
                 worst = i
     if rank > CONTROL or worst < 0:
         return -1
-    report(out, REPORT_DROPPED, node.q_origin[worst], node.q_seq[worst])
-    node.q_state[worst] = FREE
+    put_out(node, worst, out)
     return worst
 
 
@@ -233,6 +236,8 @@ def settle(node, params, now, sent, out):
             node.q_state[i] = FREE
     elif node.q_flags[i] & ACK_WANTED or not sent:
         node.q_state[i] = UNACKED
+        if node.q_tries[i] == 0:
+            ask(node, params, node.q_link_dst[i])
         node.q_tries[i] = node.q_tries[i] + 1
         wait = 0
         if sent:

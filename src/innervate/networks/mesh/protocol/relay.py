@@ -41,14 +41,13 @@ def rank_of(frame):
 
 def relay(node, params, now, frame, out):
     """A routed packet for somebody else."""
-    returned = in_path(frame, node.number)
-    if not returned and record_packet(node, frame):
-        return
-    if returned and record_return(node, frame):
-        return
-    if returned:
+    if in_path(frame, node.number):
+        if record_return(node, frame):
+            return
         mark_bad(node, frame.link_src, frame.dest)
     else:
+        if record_packet(node, frame):
+            return
         learn_way(node, params, frame)
     i = take_over(node, now, rank_of(frame), frame, out)
     if i < 0:

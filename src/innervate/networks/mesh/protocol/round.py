@@ -27,7 +27,7 @@ from innervate.networks.mesh.protocol.neighbours import FREE, UNHEARD, place_of
 from innervate.networks.mesh.protocol.queue import WAITS, compose, drop, enqueue, kick
 from innervate.networks.mesh.protocol.send import send_up
 from innervate.networks.mesh.protocol.table import activate, keep_table
-from innervate.networks.mesh.protocol.upward import is_uplink, is_weak
+from innervate.networks.mesh.protocol.upward import is_nearer, is_weak
 
 NOTHING = 0
 LOOK_AGAIN = 1
@@ -264,7 +264,7 @@ def is_listed(node, params, k):
     """1 if the neighbour in place k goes into our response."""
     if node.neighbour[k] == FREE or node.round_depth[k] == UNHEARD:
         return 0
-    if params.mode == TABLE_FREE and not is_uplink(node, k):
+    if params.mode == TABLE_FREE and not is_nearer(node, k, node.depth):
         return 0
     return not is_weak(node, params, k)
 

@@ -22,7 +22,6 @@ from innervate.networks.mesh.protocol.constants import (
 )
 from innervate.networks.mesh.protocol.duplicates import forget_bad, forwarded_at, is_bad, is_skipped
 from innervate.networks.mesh.protocol.neighbours import (
-    FREE,
     count_neighbours,
     is_strong,
     is_suspect,
@@ -30,9 +29,10 @@ from innervate.networks.mesh.protocol.neighbours import (
     place_of,
     random_neighbour,
 )
-from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge, measure_distances
-from innervate.networks.mesh.protocol.upward import NONE, is_untried, uplink
+from innervate.networks.mesh.protocol.search import add_failed, find_hop, is_edge
+from innervate.networks.mesh.protocol.upward import is_untried, uplink
 
+ANYHOW = 2  # for `bad`
 CALLS = 2  # a message is flooded in so many of its tries, the parities of which differ
 
 
@@ -55,7 +55,7 @@ def learn_way(node, params, frame):
     forget_bad(node, frame.link_src, frame.origin)
     if params.on_demand or (params.mode == TABLES and params.failover == SEARCH):
         at = node.bank * params.width + frame.origin
-        if node.version == 0 or node.next[at] == NONE:
+        if node.version == 0 or node.next[at] == NOBODY:
             node.next[at] = frame.link_src
 
 
@@ -65,7 +65,12 @@ def is_usable(node, params, i, who):
 
 
 def is_fit(node, params, i, who, bad):
-    """1 if `who` may be next, and gave back packets for this recipient before as `bad` says."""
+    """1 if `who` may be next, and gave back packets for this recipient before as `bad` says.
+
+    ANYHOW: whoever is untried, whatever we suspect.
+    """
+    if bad == ANYHOW:
+        return is_untried(node, i, who)
     return is_usable(node, params, i, who) and is_bad(node, who, node.q_dest[i]) == bad
 
 
@@ -73,7 +78,7 @@ def loudest_fit(node, params, i, bad):
     """The loudest of the neighbours that may be next, or NOBODY."""
     best = -1
     for k in range(params.places):
-        if node.neighbour[k] != FREE and (best < 0 or node.rssi[k] > node.rssi[best]):
+        if best < 0 or node.rssi[k] > node.rssi[best]:
             if is_fit(node, params, i, node.neighbour[k], bad):
                 best = k
     if best < 0:
@@ -96,9 +101,9 @@ def search(node, params, i, bad):
     who = alternate(node, params, dest)
     if is_fit(node, params, i, who, bad):
         return who
-    if dest == node.gateway or planned(node, params, dest) == NONE:
+    if dest == node.gateway or planned(node, params, dest) == NOBODY:
         who = uplink(node, params, i)
-        if who != NOBODY and is_fit(node, params, i, who, bad):
+        if is_fit(node, params, i, who, bad):
             return who
     if params.failover != SEARCH:
         return NOBODY
@@ -106,21 +111,20 @@ def search(node, params, i, bad):
 
 
 def giver(node, i):
-    """Who had the packet in place i before it came here first, or NOBODY at its origin.
+    """Who had the packet in place i before it came here first, or NOBODY.
 
     Its path says so where we have forgotten it, unless that had come back to somebody before.
     """
-    if node.q_origin[i] == node.number:
-        return NOBODY
     kind = node.q_kind[i] | ((node.q_flags[i] & PARITY) >> 1)
     at = forwarded_at(node, node.q_origin[i], node.q_seq[i], kind)
-    if at >= 0 and node.done_kind[at] == kind and node.done_from[at] != NONE:
+    if at >= 0 and node.done_kind[at] == kind and node.done_from[at] != NOBODY:
         return node.done_from[at]
+    before = NOBODY
     for k in range(node.q_path_len[i]):
-        if node.q_path[i * PATH_MAX + k] == node.number:
-            if k == 0:
-                return NOBODY
-            return node.q_path[i * PATH_MAX + k - 1]
+        who = node.q_path[i * PATH_MAX + k]
+        if who == node.number:
+            return before
+        before = who
     return NOBODY
 
 
@@ -138,21 +142,19 @@ def named(node, params, i):
     return NOBODY
 
 
-def last_resort(node, params, i):
-    """At the origin, before the packet is dropped: a neighbour that did not answer some other one.
+def give_back(node, params, i):
+    """Who gave us the packet in place i, first or last; at its origin anybody is the last resort.
 
-    Three lost frames would keep who has but one neighbour silent until the suspicion ends.
+    Three lost frames would else keep who has but one neighbour silent until the suspicion ends.
     """
-    best = -1
-    for k in range(params.places):
-        if node.neighbour[k] != FREE and is_untried(node, i, node.neighbour[k]):
-            if node.neighbour[k] == planned(node, params, node.q_dest[i]):
-                return node.neighbour[k]
-            if best < 0 or node.rssi[k] > node.rssi[best]:
-                best = k
-    if best < 0:
-        return NOBODY
-    return node.neighbour[best]
+    if node.q_origin[i] == node.number:
+        return loudest_fit(node, params, i, ANYHOW)
+    who = giver(node, i)
+    if is_skipped(node, node.q_origin[i], node.q_seq[i], who):
+        who = node.q_from[i]
+        if is_skipped(node, node.q_origin[i], node.q_seq[i], who):
+            who = NOBODY
+    return who
 
 
 def seek(node, params, i):
@@ -162,14 +164,8 @@ def seek(node, params, i):
         who = search(node, params, i, 1)
     if who == NOBODY and params.failover == SEARCH:
         who = named(node, params, i)
-    if who == NOBODY and params.failover == SEARCH:
-        who = giver(node, i)
-        if who != NOBODY and is_skipped(node, node.q_origin[i], node.q_seq[i], who):
-            who = node.q_from[i]
-            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):
-                who = NOBODY
-    if who == NOBODY and params.failover == SEARCH and node.q_origin[i] == node.number:
-        who = last_resort(node, params, i)
+        if who == NOBODY:
+            who = give_back(node, params, i)
     return who
 
 
@@ -202,7 +198,7 @@ def choose_by_graph(node, params, i):
         return dest
     if node.version:
         who = find_hop(node, params, i, dest, room_of(node, params, i), 1)
-        if who != NONE:
+        if who != NOBODY:
             return who
     return seek(node, params, i)
 
@@ -232,10 +228,9 @@ def plan_route(node, params, i):
     if dest >= params.nodes:
         return
     first = find_hop(node, params, i, dest, room_of(node, params, i), 0)
-    if first == NONE:
+    if first == NOBODY:
         return
-    measure_distances(node, params, i, dest, node.number, 0)
-    count = node.far[first] + 1
+    count = node.far[first] + 1  # as find_hop has measured it
     length = node.q_length[i]
     if length + count + 1 > room_of(node, params, i):
         return
@@ -271,7 +266,7 @@ def is_wanted(node, params, i):
         return 0
     if node.q_flags[i] & ORDERED or node.wait_tries[owner] > CALLS:
         return 0
-    if dest == node.gateway or dest == node.gone or planned(node, params, dest) != NONE:
+    if dest == node.gateway or dest == node.gone or planned(node, params, dest) != NOBODY:
         return 0
     if params.mode == TABLES and params.failover < ALTERNATE:
         return 1  # these rules know nothing but tables
@@ -287,10 +282,8 @@ def choose_hop(node, params, i):
     if params.failover >= ALTERNATE:
         return choose_by_search(node, params, i)
     who = planned(node, params, node.q_dest[i])
-    if who == NONE and node.q_dest[i] == node.gateway:
+    if who == NOBODY and node.q_dest[i] == node.gateway:
         return uplink(node, params, i)
-    if who == NONE:
-        return NOBODY
     return who
 
 
@@ -304,34 +297,35 @@ def rewrite(node, params, i, failed):
             who = random_neighbour(node, params, failed, spared, draw(node, count))
     elif params.failover == LOUDEST:
         who = loudest(node, params, failed, spared)
-    node.next[node.bank * params.width + node.q_dest[i]] = NONE if who == NOBODY else who
+    node.next[node.bank * params.width + node.q_dest[i]] = who
+
+
+def take_out(node, i, first, count):
+    """Take `count` bytes out of the payload of the packet in place i, from byte `first` on."""
+    node.q_length[i] = node.q_length[i] - count
+    for k in range(i * node.q_room + first, i * node.q_room + node.q_length[i]):
+        node.q_body[k] = node.q_body[k + count]
 
 
 def strip_route(node, i):
     """Take the source route out of the packet in place i."""
     if node.q_flags[i] & SOURCE_ROUTE:
-        count = node.q_body[i * node.q_room] + 1
-        for k in range(node.q_length[i] - count):
-            node.q_body[i * node.q_room + k] = node.q_body[i * node.q_room + k + count]
-        node.q_length[i] = node.q_length[i] - count
+        take_out(node, i, 0, node.q_body[i * node.q_room] + 1)
         node.q_flags[i] = node.q_flags[i] & ~SOURCE_ROUTE
 
 
 def advance_route(node, i):
     """The first node of the source route is the next hop: it is no longer in it."""
     if node.q_flags[i] & SOURCE_ROUTE and node.q_body[i * node.q_room] > 0:
-        count = node.q_body[i * node.q_room]
-        node.q_body[i * node.q_room] = count - 1
-        for k in range(1, node.q_length[i] - 1):
-            node.q_body[i * node.q_room + k] = node.q_body[i * node.q_room + k + 1]
-        node.q_length[i] = node.q_length[i] - 1
+        node.q_body[i * node.q_room] = node.q_body[i * node.q_room] - 1
+        take_out(node, i, 1, 1)
 
 
 def learn_failure(node, params, i, failed):
     """Neighbour `failed` failed for the packet in place i; lost tables rewrite none."""
     found = params.on_demand and node.version == 0
     if found and planned(node, params, node.q_dest[i]) == failed:
-        node.next[node.bank * params.width + node.q_dest[i]] = NONE
+        node.next[node.bank * params.width + node.q_dest[i]] = NOBODY
     if params.mode == TABLE_FREE:
         strip_route(node, i)
     if params.mode != 0:

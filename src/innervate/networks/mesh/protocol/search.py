@@ -18,11 +18,14 @@ def is_edge(node, params, a, b):
 
 def set_edge(node, params, a, b, there):
     """The graph has a link a-b, or not."""
+    set_half(node, params, a, b, there)
+    set_half(node, params, b, a, there)
+
+
+def set_half(node, params, a, b, there):
+    """In the row of node a."""
     at = a * params.row + b // BITS
     bit = 1 << (b % BITS)
-    node.edges[at] = node.edges[at] | bit if there else node.edges[at] & ~bit
-    at = b * params.row + a // BITS
-    bit = 1 << (a % BITS)
     node.edges[at] = node.edges[at] | bit if there else node.edges[at] & ~bit
 
 

@@ -1,9 +1,8 @@
 """A packet goes on: its next hop is chosen, and another when that does not answer."""
 
 from innervate.dialect.arith import MASK30
-from innervate.dialect.outbox import report
 from innervate.dialect.rng import draw
-from innervate.networks.mesh.protocol.backoff import note_missed
+from innervate.networks.mesh.protocol.backoff import is_drowned, note_missed
 from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     ALARMS,
@@ -11,7 +10,6 @@ from innervate.networks.mesh.protocol.constants import (
     DATA,
     END_TO_END,
     NOBODY,
-    REPORT_DROPPED,
     RESPONSE,
     SEARCH,
     TABLE,
@@ -29,8 +27,15 @@ from innervate.networks.mesh.protocol.hop import (
     overdue,
 )
 from innervate.networks.mesh.protocol.link_quality import tries_for
-from innervate.networks.mesh.protocol.neighbours import DOUBT, is_lively, place_of, suspect, trust
-from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, drop, kick, take_over
+from innervate.networks.mesh.protocol.neighbours import (
+    DOUBT,
+    UNHEARD,
+    is_lively,
+    place_of,
+    suspect,
+    trust,
+)
+from innervate.networks.mesh.protocol.queue import UNACKED, WAITS, kick, put_out, take_over
 from innervate.networks.mesh.protocol.route import (
     advance_route,
     choose_hop,
@@ -39,17 +44,12 @@ from innervate.networks.mesh.protocol.route import (
     planned,
     room_of,
 )
-from innervate.networks.mesh.protocol.upward import is_dim, uplink
+from innervate.networks.mesh.protocol.upward import best_below, is_dim, uplink
 
 FAILURES_MAX = 6
+LAST_TRIES = 4  # with anybody
 TIMEOUTS = 4  # in one call: the outbox has to hold what comes of them
 HOPS_MAX = 40  # failures of a routed packet at a node: every neighbour once, and some to spare
-
-
-def give_up(node, params, i, out):
-    """Nobody can take the packet in place i."""
-    report(out, REPORT_DROPPED, node.q_origin[i], node.q_seq[i])
-    drop(node, params, i)
 
 
 def spread(node, params, now, rank, frame, out):
@@ -74,7 +74,7 @@ def enter(node, params, i, out):
     if node.q_ttl[i] > 0 and room_of(node, params, i) > node.q_length[i] and add_hop(node, i):
         node.q_ttl[i] = node.q_ttl[i] - 1
         return 1
-    give_up(node, params, i, out)
+    put_out(node, i, out)
     return 0
 
 
@@ -111,7 +111,7 @@ def send_on(node, params, now, i, out):
         if is_wanted(node, params, i):
             return 1
     if not aim(node, params, i, out):
-        give_up(node, params, i, out)
+        put_out(node, i, out)
         return 0
     return 1
 
@@ -123,20 +123,26 @@ def send_up(node, params, now, i, out):
 
 
 def climb(node, params, now, i, out):
-    """Choose an uplink; while all are suspect, wait and try them again."""
+    """Choose an uplink, else who is as near to the gateway as we; while all are suspect, wait.
+
+    By those a response passes where all uplinks hear us worse than we hear them (0080). Who had it
+    is on its path, so that it never turns round. In the end anybody may know a way.
+    """
     who = uplink(node, params, i)
+    if who == NOBODY and params.retry:
+        who = best_below(node, params, i, node.depth + 1)
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
-        if node.q_fails[i] > FAILURES_MAX:
-            give_up(node, params, i, out)
-            return
-        trust(node, params)
-        clear_skipped(node, node.q_origin[i], node.q_seq[i])
-        who = uplink(node, params, i)
-        wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
-        node.q_due[i] = (now + wait) & MASK30
+        if node.q_fails[i] <= FAILURES_MAX:
+            trust(node, params)
+            clear_skipped(node, node.q_origin[i], node.q_seq[i])
+            who = uplink(node, params, i)
+            wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
+            node.q_due[i] = (now + wait) & MASK30
+        if who == NOBODY and params.retry:
+            who = best_below(node, params, i, UNHEARD)
         if who == NOBODY:
-            give_up(node, params, i, out)
+            put_out(node, i, out)
             return
     pass_up(node, params, i, who)
 
@@ -166,15 +172,15 @@ def hop_failed(node, params, now, i, out):
     suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
     skip(node, node.q_origin[i], node.q_seq[i], failed)
     if is_upward(kind):
-        if node.q_fails[i] > FAILURES_MAX:
-            give_up(node, params, i, out)
+        if node.q_fails[i] > FAILURES_MAX + LAST_TRIES * params.retry:
+            put_out(node, i, out)
         else:
             climb(node, params, now, i, out)
     else:
         learn_failure(node, params, i, failed)
         lasts = params.retry and kind != TABLE and node.q_fails[i] <= HOPS_MAX
         if not (lasts and not is_stale(node, params, now, i) and aim(node, params, i, out)):
-            give_up(node, params, i, out)
+            put_out(node, i, out)
 
 
 def is_stale(node, params, now, i):
@@ -252,5 +258,8 @@ def unanswered(node, params, now, i, out):
         failed = node.q_link_dst[i]
         if params.ack_adapt:
             note_failed(node, who, i)
+        if is_drowned(node, i, who):
+            put_out(node, i, out)
+            return
         hop_failed(node, params, now, i, out)
         turn_away(node, params, failed, out)

@@ -1,4 +1,7 @@
-"""Towards the gateway without tables: over those who advertised less depth [mesh 4 UPWARD]."""
+"""Towards the gateway without tables: over those who advertised less depth [mesh 4 UPWARD].
+
+Where none of these hears us, `send.climb` asks for others (decision 0080).
+"""
 
 from innervate.networks.mesh.protocol.constants import NOBODY
 from innervate.networks.mesh.protocol.duplicates import is_skipped
@@ -30,11 +33,11 @@ def is_better(node, params, a, b):
     return node.round_rssi[a] > node.round_rssi[b]
 
 
-def is_uplink(node, k):
-    """1 if the neighbour in place k advertised less depth than ours in this round."""
+def is_nearer(node, k, depth):
+    """1 if the neighbour in place k advertised less than this depth in this round."""
     if node.neighbour[k] == FREE or node.round_depth[k] == UNHEARD:
         return 0
-    return node.round_depth[k] < node.depth
+    return node.round_depth[k] < depth
 
 
 def is_untried(node, i, who):
@@ -49,9 +52,14 @@ def uplink(node, params, i):
 
     Depths go down on the way, but for those of nodes that were switched on anew in this round.
     """
+    return best_below(node, params, i, node.depth)
+
+
+def best_below(node, params, i, depth):
+    """The best of who advertised less than this depth that neither had it nor failed, or NOBODY."""
     best = -1
     for k in range(params.places):
-        if is_uplink(node, k) and not node.suspect[k] & SUSPECT:
+        if is_nearer(node, k, depth) and not node.suspect[k] & SUSPECT:
             who = node.neighbour[k]
             if is_untried(node, i, who):
                 if params.faint <= params.min_rssi and who == node.parent:

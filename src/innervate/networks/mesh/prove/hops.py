@@ -28,7 +28,6 @@ KEPT = (
 )
 UNREACHABLE = {
     ("search", "if params.failover != SEARCH:", True): "search is what is proved",
-    ("last_resort", "planned(node, params, node.q_dest[i]):", True): "`named` has asked it before",
 }
 TWICE = "a packet comes back twice"
 ONCE = "a packet that came back is not taken back again"

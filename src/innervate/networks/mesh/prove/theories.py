@@ -52,8 +52,7 @@ MUTANTS = planted(
      "    if who == NONE or was_at(node, i, who):\n        return 0\n",
      "    if who == NONE:\n        return 0\n"),
     ("who failed for a packet is asked again",
-     "            if who == NONE or is_skipped(node, node.q_origin[i], node.q_seq[i], who):\n",
-     "            if who == NONE:\n"),
+     "q_seq[i], who):\n            who = NOBODY\n", "q_seq[i], 0):\n            who = who\n"),
     ("who transmits a packet is not in its path",
      "    node.q_path_len[i] = count + 1\n", "    node.q_path_len[i] = count\n"),
 )  # fmt: skip
