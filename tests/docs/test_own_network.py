@@ -69,7 +69,7 @@ def test_every_step_on_the_channel(alone, plain, capfd):
 
 
 def test_every_step_over_a_field(alone, plain, capfd):
-    assert played(parts()[2], capfd) == 8
+    assert played(parts()[2], capfd) == 9
 
 
 def played(text, capfd):

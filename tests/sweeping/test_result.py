@@ -188,8 +188,10 @@ def test_a_figure_of_what_no_run_has_is_said_and_all_else_is_there(four, capsys)
     ('scenario = "four.toml"\n[[plot]]\nx = "a"\ny = "b"\nkind = "heat"', SweepError,
      r"plan.toml: \[\[plot\]\] 0: a heat map has two axes, x and by"),
     (f'scenario = "four.toml"\n{2 * PLOT}', SweepError, 'plot.. 1: another is called "p", too'),
-    ('scenario = "four.toml"\n[[plot]]\nx = "a"\ny = "b"\nname = "a\\n"', ScenarioError,
+    ('scenario = "four.toml"\n[[plot]]\nx = "a"\ny = "b"\nname = "a/b"', ScenarioError,
      r"plot\.0\.name must be a file's name without its ending"),
+    ('scenario = "four.toml"\n[[plot]]\nx = "a"\ny = "b"\nname = "a\\n"', ScenarioError,
+     r"plan.toml:5: plot\.0\.name holds U\+000A"),
 ])  # fmt: skip
 def test_mistakes_in_plan_files(four, text, error, message):
     Path("plan.toml").write_text(text)

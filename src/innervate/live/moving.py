@@ -6,11 +6,10 @@ from types import SimpleNamespace
 from typing import Any
 
 from innervate.live.deployment import Pairs, Stage, Table, ask, sleep_until
-from innervate.scenario.declared.field import RSSI50_CDB
 from innervate.scenario.declared.moving import Placed
 from innervate.scenario.robots import Walk, errs, position_cm
 from innervate.topology import astray, placement
-from innervate.topology.placement import Point
+from innervate.topology.placement import RSSI50_CDB, Point
 
 LOOKED_US = 100_000  # so often it is looked who hears whom
 

@@ -11,6 +11,7 @@ from typing import Protocol
 
 UNHEARD = -32_768  # in `rssi_cdb`: no signal at all
 UNREACHABLE = -1  # in `distances`: there is no way
+RSSI50_CDB = -9_500  # of networks of one's own: half of the frames are received at -95 dBm
 STEP_CDB = 10  # reception is tabulated in steps of 0.1 dB
 ONE_Q15 = 32_768  # a chance of 1
 NEAREST_CM = 100  # closer than 1 m the path loss is that of 1 m

@@ -9,8 +9,9 @@ import numpy as np
 from innervate.analysis.spread import spread
 from innervate.scenario.actions.action import Action
 from innervate.scenario.actions.field import ACTIONS, CUT, HARM, KILL, RESTORE, REVIVE, TABLE
-from innervate.scenario.declared.field import RSSI50_CDB, Fault
+from innervate.scenario.declared.field import Fault
 from innervate.sim.field.states import ALIVE, OFF
+from innervate.topology.placement import RSSI50_CDB
 from innervate.web.channel_view import ChannelView
 from innervate.web.engine import Engine
 from innervate.web.errors import Refused

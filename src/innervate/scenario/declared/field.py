@@ -21,11 +21,11 @@ from innervate.scenario.keys import Micros, Table, above_0, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source
 from innervate.topology import placement
+from innervate.topology.placement import RSSI50_CDB
 from innervate.trace.streams import stream
 from innervate.wire.frames import Codec
 
 NODES_MAX = 254
-RSSI50_CDB = -9_500  # half of the frames are received at -95 dBm
 GOOD_CDB = 300  # a good link is so much louder: 95 % are received
 LEAST = 0.01  # who receives less than that of a node's frames is out of its reach
 PAIRS = ("cut", "restore")

@@ -8,7 +8,7 @@ import numpy as np
 from innervate.dialect import rng
 from innervate.kernel import records
 from innervate.network import Network, access_of
-from innervate.scenario.declared.field import RSSI50_CDB, in_reach
+from innervate.scenario.declared.field import in_reach
 from innervate.scenario.declared.moving import placed_of
 from innervate.sim import heard
 from innervate.sim.channel.world import Heap
@@ -30,6 +30,7 @@ from innervate.sim.tables import (
     timed,
     uniform,
 )
+from innervate.topology.placement import RSSI50_CDB
 
 OUTBOX = 16
 PLACES_PER_NODE = 4

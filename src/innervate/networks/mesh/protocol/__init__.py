@@ -185,7 +185,7 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            |                                 | `transmissions`                  |                |
 | UNACKED    | ... the last of them            | `hop_failed`: `suspect`, `aim`   | WAITS          |
 |            |                                 | at another                       |                |
-| ...        | ... and nobody is left          | `give_up`                        | FREE           |
+| ...        | ... and nobody is left          | `put_out`                        | FREE           |
 | no entry   | `MESSAGE`                       | `on_message`: `buffer_sent`,     | waits          |
 |            |                                 | `send_buffered`                  |                |
 | waits      | `E2E_ACK`                       | `take`, `on_end_ack`:            | FREE           |
