@@ -91,7 +91,7 @@ def suspect(node, params, now, who, planned, out):
     """`who` did not acknowledge: avoid it for a while, or until it is heard."""
     k = place_of(node, params, who)
     if k >= 0:
-        node.suspect[k] = SUSPECT | DOUBT
+        node.suspect[k] = node.suspect[k] | SUSPECT | DOUBT
         node.until[k] = (node.ticks + ticks_until(node, params, now)) & MASK16
         report(out, REPORT_SUSPECT, who, planned)
 
@@ -120,6 +120,12 @@ def is_suspect(node, params, who):
     return who == node.gone or (k >= 0 and node.suspect[k] & SUSPECT)
 
 
+def is_silent(node, params, who):
+    """1 if the neighbour `who` was not heard since the newest hop to it began."""
+    k = place_of(node, params, who)
+    return k >= 0 and node.suspect[k] & SILENT != 0
+
+
 def trust(node, params):
     """End all suspicions; who was not heard since stays in DOUBT."""
     for k in range(params.places):
@@ -132,7 +138,7 @@ def sweep(node, params):
     for k in range(params.places):
         if node.neighbour[k] != FREE:
             if node.suspect[k] & SUSPECT and is_over(node, k):
-                node.suspect[k] = DOUBT
+                node.suspect[k] = node.suspect[k] & ~SUSPECT
             if ((node.ticks - node.heard[k]) & 65535) > most:
                 node.neighbour[k] = FREE
 

@@ -31,6 +31,7 @@ from innervate.networks.mesh.protocol.neighbours import (
     DOUBT,
     UNHEARD,
     is_lively,
+    is_silent,
     place_of,
     suspect,
     trust,
@@ -126,10 +127,12 @@ def climb(node, params, now, i, out):
     """Choose an uplink, else who is as near to the gateway as we; while all are suspect, wait.
 
     By those a response passes where all uplinks hear us worse than we hear them (0080). Who had it
-    is on its path, so that it never turns round. In the end anybody may know a way.
+    is on its path, so that it never turns round. In the end anybody may know a way; but not to a
+    gateway beside us of which we hear nothing, which may be dead.
     """
     who = uplink(node, params, i)
-    if who == NOBODY and params.retry:
+    aside = params.retry and not is_silent(node, params, node.gateway)
+    if who == NOBODY and aside:
         who = best_below(node, params, i, node.depth + 1)
     if who == NOBODY:
         node.q_fails[i] = node.q_fails[i] + 1
@@ -139,7 +142,7 @@ def climb(node, params, now, i, out):
             who = uplink(node, params, i)
             wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
             node.q_due[i] = (now + wait) & MASK30
-        if who == NOBODY and params.retry:
+        if who == NOBODY and aside:
             who = best_below(node, params, i, UNHEARD)
         if who == NOBODY:
             put_out(node, i, out)
