@@ -138,7 +138,7 @@ def sweep(node, params):
     for k in range(params.places):
         if node.neighbour[k] != FREE:
             if node.suspect[k] & SUSPECT and is_over(node, k):
-                node.suspect[k] = node.suspect[k] & ~SUSPECT
+                node.suspect[k] = DOUBT
             if ((node.ticks - node.heard[k]) & 65535) > most:
                 node.neighbour[k] = FREE
 

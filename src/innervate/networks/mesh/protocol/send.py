@@ -126,28 +126,38 @@ def send_up(node, params, now, i, out):
 def climb(node, params, now, i, out):
     """Choose an uplink, else who is as near to the gateway as we; while all are suspect, wait.
 
-    By those a response passes where all uplinks hear us worse than we hear them (0080). Who had it
-    is on its path, so that it never turns round. In the end anybody may know a way; but not to a
-    gateway beside us of which we hear nothing, which may be dead.
+    In the end anybody may know a way.
     """
-    who = uplink(node, params, i)
-    aside = params.retry and not is_silent(node, params, node.gateway)
-    if who == NOBODY and aside:
-        who = best_below(node, params, i, node.depth + 1)
-    if who == NOBODY:
-        node.q_fails[i] = node.q_fails[i] + 1
-        if node.q_fails[i] <= FAILURES_MAX:
-            trust(node, params)
-            clear_skipped(node, node.q_origin[i], node.q_seq[i])
-            who = uplink(node, params, i)
-            wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
-            node.q_due[i] = (now + wait) & MASK30
-        if who == NOBODY and aside:
-            who = best_below(node, params, i, UNHEARD)
+    who = NOBODY
+    if node.q_fails[i] <= FAILURES_MAX:
+        who = uplink(node, params, i)
         if who == NOBODY:
-            put_out(node, i, out)
-            return
-    pass_up(node, params, i, who)
+            who = beside(node, params, i, node.depth + 1)
+        if who == NOBODY:
+            node.q_fails[i] = node.q_fails[i] + 1
+            if node.q_fails[i] <= FAILURES_MAX:
+                trust(node, params)
+                clear_skipped(node, node.q_origin[i], node.q_seq[i])
+                who = uplink(node, params, i)
+                wait = (params.jitter_us >> 1) + draw(node, params.jitter_us + 1)
+                node.q_due[i] = (now + wait) & MASK30
+    if who == NOBODY and node.q_fails[i] <= FAILURES_MAX + LAST_TRIES:
+        who = beside(node, params, i, UNHEARD)
+    if who == NOBODY:
+        put_out(node, i, out)
+    else:
+        pass_up(node, params, i, who)
+
+
+def beside(node, params, i, depth):
+    """Who is less deep than that, though it may be no uplink, for the packet in place i (0080).
+
+    So a response goes round where all uplinks hear us worse than we hear them. Who had it is on its
+    path, and is not asked. A gateway in reach of which we hear nothing may be dead: NOBODY.
+    """
+    if not params.retry or is_silent(node, params, node.gateway):
+        return NOBODY
+    return best_below(node, params, i, depth)
 
 
 def pass_up(node, params, i, who):
@@ -175,10 +185,7 @@ def hop_failed(node, params, now, i, out):
     suspect(node, params, now, failed, planned(node, params, node.q_dest[i]) == failed, out)
     skip(node, node.q_origin[i], node.q_seq[i], failed)
     if is_upward(kind):
-        if node.q_fails[i] > FAILURES_MAX + LAST_TRIES * params.retry:
-            put_out(node, i, out)
-        else:
-            climb(node, params, now, i, out)
+        climb(node, params, now, i, out)
     else:
         learn_failure(node, params, i, failed)
         lasts = params.retry and kind != TABLE and node.q_fails[i] <= HOPS_MAX
