@@ -119,8 +119,8 @@ def test_standby_or_posts(monkeypatch, capsys, tmp_path):
     assert len(shares) == 6
     for row, (letter, _routed, search, graph) in enumerate(shares):
         assert search >= 80
-        # Of eight alarms two that are late are too many. Where nobody is dead, at first, all may come
-        # by the letter, too.
+        # Of eight alarms two that are late are too many. Where nobody is dead, at first, all may
+        # come by the letter, too.
         assert letter < 80 <= graph or (row % 3 == 0 and letter <= graph)
     assert sum(letter for letter, *_ in shares) < 50 * len(shares)
     without, with_one = (
