@@ -25,7 +25,8 @@ KINDS = ("processes", "threads", "here")
 _CONNECT_S = 10
 _ASK_EVERY_S = 2.0
 WORKERS_MAX = 1024
-_STARTS = 2
+_STARTS = 4
+_AGAIN_S = 0.1  # a server that was killed is taken for a living one until it is gone
 # A process cannot be begun: it, or the server that it would be forked from, died; no room for it.
 _NOT_BEGUN = (BrokenExecutor, EOFError, OSError)
 
@@ -85,7 +86,8 @@ class Pool(Engine):
 
     def _start(self) -> Executor:
         """A pool that works; found out now, lest every run be taken for one that kills workers."""
-        for _ in range(_STARTS):
+        for start in range(_STARTS):
+            time.sleep(_AGAIN_S if start else 0)
             pool = self._make()
             try:
                 with self._starting():
