@@ -10,6 +10,8 @@ import inspect
 from innervate.dialect.loops import calls
 
 MOST_ROUNDS = 1_000_000  # of a loop, each time that it is begun
+AT_ONCE_MOST = 1_000  # times that a node may set timers for now, or the past, at one reading
+AGAIN = "sets a timer that is due at once, again and again: time stands still"
 _ERROR = ".EndlessLoop"  # names that no source can have
 _COUNT = ".rounds"
 

@@ -17,7 +17,7 @@ from innervate.live.moving import follow, tell
 from innervate.live.nodefile import Loaded
 from innervate.network import networks
 from innervate.scenario.actions import ON_LINKS
-from innervate.scenario.declared.moving import met, placed_of
+from innervate.scenario.declared.moving import met, placed_of, walkers_of
 
 RSSI = -50  # of every frame that comes over UDP, dBm
 
@@ -79,7 +79,7 @@ class FieldDeployment(Deployment):
     def layout(self) -> tuple[list[str], Pairs]:
         """Nodes by number; pairs that hear at least half of each other's frames, some time."""
         names = [f"n{i}" for i in range(self.plan.nodes)]
-        return names, sorted({(min(pair), max(pair)) for pair in met(self.plan)})
+        return names, met(self.plan.nodes, self.plan.good, walkers_of(self.plan))
 
     def check(self, cables: str, sealed: bool) -> None:
         """Refuse serial cables, which join two ends each."""

@@ -14,21 +14,36 @@ from innervate.topology.placement import RSSI50_CDB, Point
 LOOKED_US = 100_000  # so often it is looked who hears whom
 
 
+class Errors:
+    """By how much a robot is wrong about its place: sample by sample what a simulation has."""
+
+    def __init__(self, plan: Any, walk: Walk) -> None:
+        self._walk = SimpleNamespace(**errs(walk, plan.seed, plan.sample_us)._asdict())
+        self._samples = 0
+
+    def at(self, sample: int) -> Point:
+        """Of a sample, from 0 on, and not before the last one that was asked for; cm."""
+        if not self._walk.noise:
+            return 0, 0
+        while self._samples <= sample:
+            astray.err(self._walk, astray.normal_table())
+            self._samples += 1
+        x, y = (astray.centimetres(self._walk.noise, off)
+                for off in (self._walk.off_x, self._walk.off_y))  # fmt: skip
+        return x, y
+
+
 def told(plan: Any, walk: Walk, placed: Placed) -> Iterator[tuple[int, Table]]:
     """When a robot is told where it is, us, and the request; what stands and is sure only once."""
-    err = SimpleNamespace(**errs(walk, plan.seed, plan.sample_us)._asdict())
-    for at_us in range(0, plan.duration_us, plan.sample_us):
-        x, y = position_cm(walk, at_us)
-        if err.noise:
-            astray.err(err, astray.normal_table())
-            x += astray.centimetres(err.noise, err.off_x)
-            y += astray.centimetres(err.noise, err.off_y)
+    errors = Errors(plan, walk)
+    for sample, at_us in enumerate(range(0, plan.duration_us, plan.sample_us)):
+        (x, y), (dx, dy) = position_cm(walk, at_us), errors.at(sample)
         item = {
-            "x": within(x / placed.unit_cm, placed.x),
-            "y": within(y / placed.unit_cm, placed.y),
+            "x": within((x + dx) / placed.unit_cm, placed.x),
+            "y": within((y + dy) / placed.unit_cm, placed.y),
         }
         yield at_us, {"do": "input", "kind": placed.kind, "item": item}
-        if at_us >= walk.points[-1][0] and not err.noise:
+        if at_us >= walk.points[-1][0] and not walk.noise_um:
             return
 
 

@@ -3,8 +3,8 @@
 from types import FrameType
 
 from innervate.dialect.arith import HALF30, MASK30
+from innervate.dialect.bounded import AGAIN, AT_ONCE_MOST
 from innervate.folders import NetworkError
-from innervate.verify.standing import AGAIN, AT_ONCE_MOST
 
 
 class Timers:

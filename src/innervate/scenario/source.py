@@ -101,9 +101,8 @@ def check_plain(source: Source, value: Any, key: Key = ()) -> None:
         for part, inner in value.items():
             if not isinstance(part, str):
                 raise source.error(key, f"{name} has a key that is no string: {shown(part)}")
-            if odd := unseen(part):
-                message = f"a key of {name} holds {odd}, which nobody sees; leave it out"
-                raise source.error(key, message)
+            if wrong := unseen(part):
+                raise source.error(key, f"a key of {name} {wrong}")
             check_plain(source, inner, (*key, part))
     elif isinstance(value, list | tuple):
         for index, inner in enumerate(value):
@@ -111,8 +110,8 @@ def check_plain(source: Source, value: Any, key: Key = ()) -> None:
     elif isinstance(value, str):
         if any("\ud800" <= char <= "\udfff" for char in value):
             raise source.error(key, f"{name} holds half a character; write whole ones")
-        if odd := unseen(value):
-            raise source.error(key, f"{name} holds {odd}, which nobody sees; leave it out")
+        if wrong := unseen(value):
+            raise source.error(key, f"{name} {wrong}")
     elif isinstance(value, bool) or value is None:
         return
     elif isinstance(value, int):

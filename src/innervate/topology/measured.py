@@ -194,8 +194,8 @@ def _unnameable(name: str) -> str:
     """Why nobody can be called so in a scenario, on a terminal and in a report; "" if one can."""
     if not name.strip():
         return "is empty; name it"
-    if odd := unseen(name):
-        return f"holds {odd}, which nobody sees; leave it out"
+    if wrong := unseen(name):
+        return wrong
     return f"is longer than {NAME_MAX} characters; shorten it" if len(name) > NAME_MAX else ""
 
 

@@ -8,7 +8,9 @@ _UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 
 
 def unseen(text: str) -> str:
-    """The first such character in words, "U+202E (right-to-left override)"; "" if there is none.
+    """What is wrong with a text by the first such character; "" if it has none.
+
+    "holds U+202E (right-to-left override), which nobody sees; leave it out".
 
     Letters that are written from right to left are seen: they are allowed.
     """
@@ -18,4 +20,5 @@ def unseen(text: str) -> str:
     if not odd:
         return ""
     name = unicodedata.name(odd, "").lower()
-    return f"U+{ord(odd):04X}{f' ({name})' if name else ''}"
+    what = f"U+{ord(odd):04X}{f' ({name})' if name else ''}"
+    return f"holds {what}, which nobody sees; leave it out"

@@ -89,9 +89,8 @@ def read_links(path: Path, pattern: str) -> list[Link]:
         some += ", ..." if len(links) > 3 else ""
         message = f'no link of {path.name} matches "{pattern}"; it has {len(links)}: {some}'
         raise TopologyError(message, "links")
-    if odd := next(filter(None, map(unseen, names)), ""):
-        message = f"the name of a link of {path.name} holds {odd}, which nobody sees; leave it out"
-        raise TopologyError(message, "urdf")
+    if wrong := next(filter(None, map(unseen, names)), ""):
+        raise TopologyError(f"the name of a link of {path.name} {wrong}", "urdf")
     twice = next((name for name in names if links.count(name) > 1), None)
     if twice is not None:
         message = f'{path.name} has {links.count(twice)} links called "{twice}"; name them apart'

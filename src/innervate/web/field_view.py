@@ -10,6 +10,7 @@ from innervate.analysis.spread import spread
 from innervate.scenario.actions.action import Action
 from innervate.scenario.actions.field import ACTIONS, CUT, HARM, KILL, RESTORE, REVIVE, TABLE
 from innervate.scenario.declared.field import Fault
+from innervate.scenario.declared.moving import met, walkers_of
 from innervate.sim.field.states import ALIVE, OFF
 from innervate.topology.placement import RSSI50_CDB
 from innervate.web.channel_view import ChannelView
@@ -31,7 +32,7 @@ class FieldView(ChannelView):
 
     def __init__(self, engine: Engine, history: History) -> None:
         super().__init__(engine, history)
-        self.moving = {walk.node for walk in self.plan.walks}
+        self.moving = walkers_of(self.plan)
         self.links = Links(self.plan.nodes, self.plan.good, self.moving)
 
     def scene(self) -> dict[str, Any]:
@@ -99,9 +100,8 @@ class Links:
     def __init__(
         self, count: int, good: Sequence[tuple[int, int]], moving: AbstractSet[int]
     ) -> None:
-        met = {(min(i, j), max(i, j)) for i in moving for j in range(count) if i != j}
         self.count = count
-        self.pairs: list[tuple[int, int]] = sorted({*good, *met})
+        self.pairs = met(count, good, moving)
         self._ends = np.array(self.pairs, np.int64).reshape(-1, 2)
         self._wanders = np.array([bool(moving & set(pair)) for pair in self.pairs], np.bool_)
 

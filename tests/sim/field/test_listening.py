@@ -18,7 +18,7 @@ def world_of():
     prob = [0, 9, 9, 0, 9, 0, 9, 9, 0, 0, 0, 0, 0, 0, 0, 0]
     run = {"nodes": NODES, "room": ROOM, "rows": 0, "row_limit": 10, "deliveries": 0, "trail": 0,
            "delivery_limit": 10, "trail_limit": 10, "taps": 0, "tap_limit": 10, "broken": 0,
-           "sense": 50}  # fmt: skip
+           "sense": 50, "moving": 0}  # fmt: skip
     places = NODES * ROOM
     return Of(
         run=[Of(**run)], counters=[0] * heard.COUNTERS, prob=prob,

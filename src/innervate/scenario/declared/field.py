@@ -318,7 +318,8 @@ def describe(plan: Any) -> str:
         *moving.lines(plan),
         f"  protocol   {params}",
     ]
-    found = warnings(plan, moving.met(plan), plan.scenario.model.start_us)
+    pairs_met = moving.met(plan.nodes, plan.good, moving.walkers_of(plan))
+    found = warnings(plan, pairs_met, plan.scenario.model.start_us)
     own = shared.own_events(plan, ACTIONS)
     return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 

@@ -1,6 +1,6 @@
 """Robots of networks over a field that have no keys of their own."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Annotated, Any, NamedTuple
 
 from innervate.dialect.folder import UNITS
@@ -74,11 +74,17 @@ def placed_of(fields: Any) -> Placed | None:
     return Placed(fields.PLACED, UNITS[unit], x, y)
 
 
-def met(plan: Any) -> list[tuple[int, int]]:
-    """Pairs that may hear each other: those that do at the start, and a robot and anybody."""
-    return list(plan.good) + [
-        (walk.node, node) for walk in plan.walks for node in range(plan.nodes) if node != walk.node
-    ]
+def met(
+    count: int, good: Iterable[tuple[int, int]], moving: Iterable[int]
+) -> list[tuple[int, int]]:
+    """Pairs (a < b) that may hear each other: those that do at first, and a robot and anybody."""
+    robots_with = {(min(i, j), max(i, j)) for i in moving for j in range(count) if i != j}
+    return sorted({*good, *robots_with})
+
+
+def walkers_of(plan: Any) -> set[int]:
+    """Which nodes of a plan move."""
+    return {walk.node for walk in plan.walks}
 
 
 def lines(plan: Any) -> Iterator[str]:

@@ -50,9 +50,10 @@ def record_sent(world, place, time, length, receivers):
     air = world.air[place]
     if air.state != ON_AIR:
         return
-    in_reach = reach_of(world, air.node)  # robots come and go while it is on the air
-    world.counters[counts.SENT] += in_reach - air.receivers
-    air.receivers = in_reach
+    if world.run[0].moving:  # robots come and go while it is on the air
+        in_reach = reach_of(world, air.node)
+        world.counters[counts.SENT] += in_reach - air.receivers
+        air.receivers = in_reach
     if time < air.end:
         world.counters[counts.BROKEN_OFF] += air.receivers
         return

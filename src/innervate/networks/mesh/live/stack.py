@@ -43,6 +43,11 @@ TOO_LONG = "longer than our MTU"
 Params = plain.make("Params", fields.PARAMS)
 
 
+def is_avoided(node: Any, k: int) -> bool:
+    """Whether the neighbour in place k did not answer, and was not heard since."""
+    return bool(node.suspect[k] & (SUSPECT | DOUBT))
+
+
 class MeshStack:
     """One node of a mesh; a robot moves, has a fence and tells where it is.
 
@@ -225,9 +230,7 @@ class MeshStack:
                     {
                         "node": who,
                         "quality": round(min(1.0, self.acked[who] / asked), 4) if asked else None,
-                        "suspect": bool(
-                            node.suspect[k] & (SUSPECT | DOUBT)
-                        ),  # until it is heard again
+                        "suspect": is_avoided(node, k),
                         "ports": self.places.get(who, []),
                     }
                 )

@@ -11,11 +11,11 @@ from typing import Any
 
 from innervate.dialect.arith import MASK16
 from innervate.networks.mesh.live.long import Long, Maker
-from innervate.networks.mesh.live.stack import MeshStack
+from innervate.networks.mesh.live.stack import MeshStack, is_avoided
 from innervate.networks.mesh.protocol.constants import ALL, CONTROL, END_TO_END, OWN, PRIORITY
 from innervate.networks.mesh.protocol.duplicates import UNREACHABLE
 from innervate.networks.mesh.protocol.messages import resolve
-from innervate.networks.mesh.protocol.neighbours import DOUBT, SUSPECT, place_of
+from innervate.networks.mesh.protocol.neighbours import place_of
 from innervate.networks.mesh.protocol.retransmission import (
     AHEAD_MAX,
     FREE,
@@ -226,5 +226,5 @@ class Places:
         node = self._node
         if dest in self._gone:
             k = place_of(node, self._params, dest)
-            return k < 0 or bool(node.suspect[k] & (SUSPECT | DOUBT))
+            return k < 0 or is_avoided(node, k)
         return not self._is_calm and bool(is_in_vain(node, dest, (node.seq + 1) & MASK16))

@@ -4,14 +4,13 @@ import asyncio
 import json
 from itertools import pairwise
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 from innervate.live.deployment import sleep_until
 from innervate.live.errors import LiveError
+from innervate.live.moving import Errors
 from innervate.networks.mesh.scenario.plan import Point
-from innervate.scenario.robots import Walk, errs, position_cm
-from innervate.topology import astray
+from innervate.scenario.robots import Walk, position_cm
 
 ANSWER_S = 5.0
 STANDING_S = 0.5
@@ -25,25 +24,6 @@ def place_at(way: Walk, time_us: int) -> tuple[Point, Point]:
             took_s = (t1 - t0) / 1e6
             speed = ((x1 - x0) / took_s, (y1 - y0) / took_s)
     return position_cm(way, time_us), speed
-
-
-class Errors:
-    """By how much a robot is wrong about its place: sample by sample what a simulation has."""
-
-    def __init__(self, plan: Any, way: Walk) -> None:
-        self._walk = SimpleNamespace(**errs(way, plan.seed, plan.sample_us)._asdict())
-        self._samples = 0
-
-    def at(self, sample: int) -> Point:
-        """Of a sample, from 0 on, and not before the last one that was asked for; cm."""
-        if not self._walk.noise:
-            return 0, 0
-        while self._samples <= sample:
-            astray.err(self._walk, astray.normal_table())
-            self._samples += 1
-        x, y = (astray.centimetres(self._walk.noise, off)
-                for off in (self._walk.off_x, self._walk.off_y))  # fmt: skip
-        return x, y
 
 
 async def walk(plan: Any, way: Walk, where: Path) -> None:
