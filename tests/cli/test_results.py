@@ -8,6 +8,7 @@ import pytest
 from innervate.cli import errors, exporting, proving, sweeping
 from innervate.prove.theory import Outcome, Theory
 from innervate.sweeping import make_plan
+from innervate.sweeping import words as sentences
 from innervate.sweeping.result import Sweep
 
 
@@ -19,7 +20,7 @@ from innervate.sweeping.result import Sweep
 )  # fmt: skip
 def test_a_mean_in_words_and_of_how_many_runs_if_not_of_all(runs, count, low, high, words):
     row = {"runs": runs, "mean": 17.2, "low": low, "high": high}
-    assert sweeping.mean_words(row, count) == words
+    assert sentences.mean_words(row, count) == words
 
 
 def test_settings_stand_in_the_table_as_in_a_file_and_long_ones_without_their_middle():
@@ -58,11 +59,11 @@ def test_runs_that_are_not_well_are_counted_with_the_first_of_each_kind():
     rows = [{"point": 0, "stations": 2, "seed": 40 + i, "headline.level": level, "x": 1.0,
              "headline.text": f"{level} {i}"} for i, level in enumerate(levels)]  # fmt: skip
     made = swept(1, *rows)
-    assert sweeping.headline_lines(made) == [
+    assert sentences.headline_lines(made) == [
         "2 of 5 runs: degraded; the first, point 0 with seed 41: degraded 1",
         "1 of 5 runs: down; the first, point 0 with seed 42: down 2",
     ]
-    assert sweeping.headline_lines(swept(1, {"point": 0, "x": 1.0})) == []
+    assert sentences.headline_lines(swept(1, {"point": 0, "x": 1.0})) == []
 
 
 def checked(name, goals=1, refuted=(), reached=(), wall_s=0.25):

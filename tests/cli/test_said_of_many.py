@@ -8,8 +8,9 @@ from types import SimpleNamespace
 import polars
 import pytest
 
-from innervate.cli import comparing, errors, sweeping, verifying
+from innervate.cli import comparing, errors, verifying
 from innervate.running import fuzz
+from innervate.sweeping import words
 
 
 @pytest.mark.parametrize(("by", "code"), [(("a", "b"), 0), (("a", ""), 1), (("", ""), 1)])
@@ -37,16 +38,16 @@ def failed(*reasons):
 
 
 def test_reasons_why_runs_failed_are_counted_the_most_frequent_first():
-    assert sweeping.failed_lines(failed()) == []
-    assert sweeping.failed_lines(failed("cold", "hot", "hot")) == [
+    assert words.failed_lines(failed()) == []
+    assert words.failed_lines(failed("cold", "hot", "hot")) == [
         "3 of 6 runs failed:", "  2 x hot", "  1 x cold",
     ]  # fmt: skip
-    many = [f"r{i}" for i in range(sweeping.REASONS_MAX + 2)]
-    lines = sweeping.failed_lines(failed(*many))
-    assert lines[1:-1] == [f"  1 x {one}" for one in many[: sweeping.REASONS_MAX]]
+    many = [f"r{i}" for i in range(words.REASONS_MAX + 2)]
+    lines = words.failed_lines(failed(*many))
+    assert lines[1:-1] == [f"  1 x {one}" for one in many[: words.REASONS_MAX]]
     assert lines[-1] == "  ... and 2 other reasons, see results.parquet"
-    exact = sweeping.failed_lines(failed(*many[:-2]))
-    assert exact[-1] == f"  1 x {many[sweeping.REASONS_MAX - 1]}"
+    exact = words.failed_lines(failed(*many[:-2]))
+    assert exact[-1] == f"  1 x {many[words.REASONS_MAX - 1]}"
 
 
 def test_long_comparisons_end_and_long_keys_do_not_push_values_away(capsys):

@@ -5,7 +5,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from innervate.plot import sweeps
-from innervate.plot.sweeps import Shown, draw, label
+from innervate.plot.sweeps import Shown, draw
+from innervate.plot.words import label
 
 COLUMNS = {
     "k": [3, 1, 3, 1, 3, 2],

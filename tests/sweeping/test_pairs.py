@@ -3,8 +3,7 @@
 import polars
 import pytest
 
-from innervate.cli import sweeping
-from innervate.sweeping import SweepError, make_plan
+from innervate.sweeping import SweepError, make_plan, words
 from innervate.sweeping.result import SHOWN, SHOWN_MAX, Sweep
 from tests.sweeping.test_plan import SKIN
 
@@ -66,7 +65,7 @@ def test_points_without_a_value_of_what_until_names_are_said():
     plan = make_plan(SKIN, vary={"protocol.k": [2, 3]}, until=("x.ci=5%", "list.y.ci=1"))
     made = Sweep(plan, made.results, made.timings)
     assert made.without_value() == {"x": [0], "list.y": [0, 1]}
-    assert sweeping.never_lines(made) == [
+    assert words.never_lines(made) == [
         "--until x: no run of point 0 has a value of it, so that there is no interval",
         "--until list.y: no run of points 0, 1 has a value of it, so that there is no interval",
     ]

@@ -106,7 +106,7 @@ def test_a_terminal_shows_a_table_with_the_means(four):
     assert process.returncode == 0
     assert "four: 40 of 40 runs done" in text
     assert re.search(r"protocol\.k=2 +20/20 done +[\d.]+ \+- [\d.]+", text)
-    assert "Written: sweeps/four/results.parquet" in out
+    assert "Written: sweeps/four/report.html" in out
 
 
 class Clock:

@@ -173,7 +173,7 @@ def test_a_figure_of_what_no_run_has_is_said_and_all_else_is_there(four, capsys)
                                  f'protocol.k = [2, 3]\n{plot}')  # fmt: skip
     assert main(["sweep", "plan.toml", "--workers", "1", "--out", "out"]) == 1
     out, err = capsys.readouterr()
-    assert out.endswith("Written: out/results.parquet\n")
+    assert out.endswith("Written: out/report.html\n")
     assert 'plot-0 is not drawn: there is no column "recoveries.routed_ms"' in err
 
 
@@ -205,7 +205,7 @@ def test_mistakes_in_plan_files(four, text, error, message):
 def test_a_plans_name_leads_to_no_other_folder(four, name, folder, capsys):
     Path("plan.toml").write_text(f'scenario = "four.toml"\nname = "{name}"\n')
     assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
-    assert capsys.readouterr().out.endswith(f"Written: sweeps/{folder}/results.parquet\n")
+    assert capsys.readouterr().out.endswith(f"Written: sweeps/{folder}/report.html\n")
 
 
 def test_the_command_tells_mistakes_in_one_line(four, capsys):

@@ -17,12 +17,12 @@ import pytest
 
 import innervate
 from innervate.cli import main
-from innervate.cli.sweeping import headline_lines
 from innervate.scenario import ScenarioError
 from innervate.sweeping import SweepError, engines
 from innervate.sweeping.flat import flat
 from innervate.sweeping.jobs import Jobs
 from innervate.sweeping.sweep import _writing
+from innervate.sweeping.words import headline_lines
 from tests.sweeping.conftest import TIMEOUT_S, environment, start, until
 
 VARY = {"protocol.k": [2, 4]}

@@ -12,7 +12,6 @@ from innervate import folders
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.cli.options import SizeOptions
-from innervate.cli.sweeping import failed_lines
 from innervate.network import networks
 
 
@@ -36,6 +35,8 @@ def size(robot: Robot, /, *, options: Annotated[SizeOptions, Parameter(name="*")
         robot: A URDF file, or package:NAME/ROBOT like package:icub-models/iCubGenova02.
         options: What is asked of its skin, and how often it is tried.
     """
+    from innervate.sweeping.words import failed_lines
+
     sizing = next(one.sizing for one in networks().values() if one.has("sizing"))
     question = {
         "urdf": robot, "links": options.links, "rates_hz": tuple(options.rate or [250.0]),

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from innervate.analysis.headline import LEVELS
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.cli.options import SweepOptions
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 
 POINTS_MAX = 40
 CELL_MAX = 40  # letters of a setting
-REASONS_MAX = 5
 TORN_MAX = 5
 
 
@@ -55,7 +53,7 @@ def sweep(
             print(line)
         for path in drawn:
             print(f"Drawn: {path}")
-        print(f"Written: {folder / 'results.parquet'}")
+        print(f"Written: {folder / 'report.html'}")
     if done.others:
         kept = number_of(done.others, "other run")
         errors.say(f"{folder} keeps {kept}, too, which these tables do not show; whoever asks for "
@@ -98,6 +96,8 @@ def draw_plots(done: Sweep, folder: Path) -> list[Path]:
 
 def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     """The means of every point in columns, and what failed."""
+    from innervate.sweeping import words
+
     shown = done.to_show(wanted)
     heads = [*done.plan.keys, "runs", *shown]
     rows = [heads]
@@ -108,14 +108,14 @@ def result_lines(done: Sweep, wanted: tuple[str, ...] = ()) -> list[str]:
     for point in done.plan.points[:POINTS_MAX]:
         cells = [_cell(value) for value in point.columns.values()]
         count = counts.get(point.index, 0)
-        means = [mean_words(figures.get((point.index, name)), count) for name in shown]
+        means = [words.mean_words(figures.get((point.index, name)), count) for name in shown]
         rows.append([*cells, str(count), *means])
     widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
     lines = ["  ".join(f"{c:>{w}}" for c, w in zip(row, widths, strict=True)) for row in rows]
     more = len(done.plan.points) - POINTS_MAX
     if more > 0:
         lines.append(f"... and {more} more points")
-    return lines + never_lines(done) + headline_lines(done) + failed_lines(done)
+    return lines + words.never_lines(done) + words.headline_lines(done) + words.failed_lines(done)
 
 
 def record(done: Sweep, wanted: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -123,6 +123,7 @@ def record(done: Sweep, wanted: tuple[str, ...] = ()) -> dict[str, Any]:
 
     Figures are those wanted, or all; each with its mean, the interval's ends, and of how many runs.
     """
+    from innervate.sweeping import words
     from innervate.sweeping.tables import reasons
 
     points: list[dict[str, Any]] = [
@@ -135,64 +136,11 @@ def record(done: Sweep, wanted: tuple[str, ...] = ()) -> dict[str, Any]:
     for row in done.points(there).iter_rows(named=True) if there else ():
         figures = {key: row[key] for key in ("runs", "mean", "low", "high")}
         points[row["point"]]["figures"][row["measure"]] = figures
-    levels = done.results["headline.level"] if "headline.level" in done.results.columns else ()
     return {
         "name": done.plan.name, "complete": done.complete, "runs": done.results.height,
         "failed": reasons(done.failed),
-        "headlines": {level: list(levels).count(level) for level in LEVELS}, "points": points,
+        "headlines": words.levels(done), "points": points,
     }  # fmt: skip
-
-
-def never_lines(done: Sweep) -> list[str]:
-    """Which measures of --until have no value at some points, so that these end without one."""
-    lines = []
-    for measure, points in done.without_value().items():
-        some = ", ".join(map(str, points[:REASONS_MAX]))
-        more = f" and {len(points) - REASONS_MAX} more" if len(points) > REASONS_MAX else ""
-        where = f" of point{'s' if len(points) > 1 else ''} {some}{more}"
-        lines.append(f"--until {measure}: no run{where if len(done.plan.points) > 1 else ''} has a "
-                     "value of it, so that there is no interval")  # fmt: skip
-    return lines
-
-
-def headline_lines(done: Sweep) -> list[str]:
-    """How many runs are not well, by their headlines, with the first of each level."""
-    table = done.results
-    if "headline.level" not in table.columns:
-        return []
-    lines = []
-    for level in LEVELS[1:]:
-        found = table.filter(table["headline.level"] == level)
-        if found.height:
-            first = found.row(0, named=True)
-            lines.append(
-                f"{found.height} of {table.height} runs: {level}; the first, point "
-                f"{first['point']} with seed {first['seed']}: {first['headline.text']}"
-            )
-    return lines
-
-
-def failed_lines(done: Sweep) -> list[str]:
-    """How many runs failed, and why."""
-    from innervate.sweeping.tables import reasons
-
-    if not done.failed.height:
-        return []
-    counts = list(reasons(done.failed).items())
-    lines = [f"{done.failed.height} of {done.results.height} runs failed:"]
-    lines += [f"  {count} x {reason}" for reason, count in counts[:REASONS_MAX]]
-    if len(counts) > REASONS_MAX:
-        lines.append(f"  ... and {len(counts) - REASONS_MAX} other reasons, see results.parquet")
-    return lines
-
-
-def mean_words(row: dict[str, Any] | None, count: int) -> str:
-    """Mean and half the interval's width, and of how many if not of all: "17.2 +- 0.6 of 3"."""
-    if row is None or not row["runs"]:
-        return "-"
-    half = (row["high"] - row["low"]) / 2
-    width = f" +- {half:.2g}" if row["runs"] > 1 else ""
-    return f"{row['mean']:.4g}{width}" + (f" of {row['runs']}" if row["runs"] < count else "")
 
 
 def _cell(value: Any) -> str:

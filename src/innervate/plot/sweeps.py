@@ -1,7 +1,6 @@
 """Figures of a sweep: means over a setting with bands, runs as dots, heat maps."""
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any, NamedTuple
@@ -14,6 +13,7 @@ from matplotlib.legend import Legend
 
 from innervate.analysis.intervals import Interval, mean_interval
 from innervate.plot import style
+from innervate.plot.words import averages, label
 
 KINDS = ("band", "heat")
 LINES_MAX = 8
@@ -28,8 +28,6 @@ READABLE = 4.5  # contrast of small text with its ground, at least
 WRITTEN_MAX = 60  # squares of a heat map that have their number written in them
 GAP = Interval(math.nan, math.nan, math.nan)
 Columns = Mapping[str, Sequence[Any]]
-# What a measure's ending means, for axes.
-UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": "slots"}
 
 
 class Shown(NamedTuple):
@@ -80,25 +78,11 @@ def _notes(columns: Columns, shown: Shown, over: Mapping[str, int]) -> list[str]
     """What a figure does not show by itself: over what means are taken, lines that are left out."""
     notes = []
     if over:
-        several = ", ".join(f"{count} values of {key}" for key, count in over.items())
-        often = set(Counter(columns.get("point", ())).values())
-        alike = "all varied alike" if len(often) < 2 else "by how often each of them was run"
-        notes.append(f"means over {several}, {alike}")
+        notes.append(averages(over, columns.get("point", ())))
     count = len(_values(columns, shown.by))
     if shown.kind != "heat" and count > LINES_MAX:
         notes.append(f"the first {LINES_MAX} of {count} values of {shown.by}")
     return notes
-
-
-def label(name: str) -> str:
-    """A column in words: "recoveries.routed_ms" is "recoveries routed (ms)"."""
-    parts = name.split(".")
-    last = parts[-1]
-    for ending, unit in UNITS.items():
-        if last.endswith(ending):
-            parts[-1] = last.removesuffix(ending)
-            return f"{' '.join(parts).replace('_', ' ')} ({unit})"
-    return " ".join(parts).replace("_", " ")
 
 
 def _bands(ax: Axes, columns: Columns, x: str, y: str, by: str) -> None:

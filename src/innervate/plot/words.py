@@ -1,10 +1,14 @@
 """Numbers of any run in plain words, for people."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from innervate.analysis.words import figure_words as figure_words
 from innervate.analysis.words import share_words as share_words
+
+# What a measure's ending means, for axes.
+UNITS = {"_ms": "ms", "_s": "s", "_us": "us", "_hz": "Hz", "_m": "m", "_slots": "slots"}
 
 
 def headline_line(found: Mapping[str, object]) -> str:
@@ -47,3 +51,25 @@ def count_words(value: float) -> str:
     if abs(value) >= 1e6:
         return f"{value / 1e6:.4g} M"
     return f"{round(value):,}" if abs(value) >= 10 else f"{value:g}"
+
+
+def label(name: str) -> str:
+    """A column in words, its unit at the end: "latency_ms.p50" is "latency p50 (ms)"."""
+    parts, of = name.split("."), ""
+    for i, part in enumerate(parts):
+        for ending, unit in UNITS.items():
+            if part.endswith(ending):
+                parts[i], of = part.removesuffix(ending), f" ({unit})"
+                break
+    return " ".join(parts).replace("_", " ") + of
+
+
+def averages(over: Mapping[str, int], points: Iterable[int]) -> str:
+    """Over what means are taken: how many values of each key, and how often each was run.
+
+    `points` has the point of every run.
+    """
+    several = ", ".join(f"{count} values of {key}" for key, count in over.items())
+    alike = len(set(Counter(points).values())) < 2
+    how = "all varied alike" if alike else "by how often each of them was run"
+    return f"means over {several}, {how}"

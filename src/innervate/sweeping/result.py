@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from html import escape
 from importlib import import_module
 from itertools import product
 from pathlib import Path
@@ -81,9 +80,18 @@ class Sweep:
         return to_pandas(self.results)
 
     def _repr_html_(self) -> str:
-        """In a notebook: how much there is, and the means of its figures with their intervals."""
-        points = self.points(self.to_show()) if self.measures else self.results
-        return f"<p>{escape(repr(self))}</p>{points._repr_html_()}"
+        """In a notebook: what its runs came to, the means as pictures and of every point."""
+        room: Any = import_module("innervate.sweeping.report")
+        return str(room.in_cell(self))
+
+    def report(self, wanted: Sequence[str] = ()) -> str:
+        """Its page as HTML, one file that needs nothing else: headline, means, runs not well.
+
+        Args:
+            wanted: the measures that pictures are of; those of to_show() if left out.
+        """
+        room: Any = import_module("innervate.sweeping.report")
+        return str(room.render(self, wanted))
 
     def to_show(self, wanted: Sequence[str] = ()) -> list[str]:
         """The measures that somebody sees first: all those wanted, valued or not; or a few."""
@@ -227,9 +235,9 @@ class Sweep:
         columns = self.results.to_dict(as_series=False)
         return room.draw(columns, room.Shown(x, y, by, kind, title), over)
 
-    def averaged(self, x: str, by: str = "") -> dict[str, int]:
-        """Over what else a figure of x and by takes its means: varied keys, how many values."""
-        shown = [key for key in (x, by) if key in self.plan.keys]
+    def averaged(self, *axes: str) -> dict[str, int]:
+        """Over what else than its axes a figure takes its means: varied keys, how many values."""
+        shown = [key for key in axes if key in self.plan.keys]
         found: dict[str, int] = {}
         for key in self.plan.keys:
             values: dict[tuple[Any, ...], set[str]] = {}

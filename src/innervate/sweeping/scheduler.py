@@ -87,7 +87,8 @@ class Scheduler:
         self._progress = progress or (lambda scheduler: None)
         rules = [(f"--until {rule}", rule.measure) for rule in plan.until]
         self._numbers = [*rules, *(("--show", measure) for measure in seen.show)]
-        self._measures = tuple(dict.fromkeys([*(name for _, name in self._numbers), *seen.follow]))
+        self.wanted = tuple(dict.fromkeys(name for _, name in self._numbers))
+        self._measures = tuple(dict.fromkeys([*self.wanted, *seen.follow]))
         drawn = [(f"[[plot]] {number}", plot) for number, plot in enumerate(plan.plots)]
         self._numbers += [(where, plot.y) for where, plot in drawn]
         self._named = [*self._numbers, *((w, n) for w, plot in drawn for n in (plot.x, plot.by))]

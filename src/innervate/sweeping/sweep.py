@@ -32,6 +32,7 @@ from innervate.trace.provenance import checkout
 
 REPEAT_UNTIL = 1000  # repeats at most, with `until`, if nobody says
 BATCH = 10
+PAGE = "report.html"
 CHECKED_MAX = 20  # points looked at before the first run, for one that is valid
 Vary = Iterable[str] | Mapping[str | tuple[str, ...], Any]
 Progress = Callable[[Scheduler], None]
@@ -164,7 +165,7 @@ def _run_plan(scheduler: Scheduler, jobs: Jobs, folder: Path | None) -> Sweep:
     finally:
         done = _result(scheduler.plan, jobs, scheduler)
         if folder is not None:
-            _write(done, folder)
+            _write(done, folder, scheduler.wanted)
     return done
 
 
@@ -325,8 +326,8 @@ def _torn(plan: SweepPlan, jobs: Jobs) -> tuple[str, ...]:
     )
 
 
-def _write(done: Sweep, folder: Path) -> None:
-    """Write the tables, and what is known of where they come from."""
+def _write(done: Sweep, folder: Path, wanted: tuple[str, ...]) -> None:
+    """Write the tables, the page with the measures that are wanted, where all that comes from."""
     commit, modified = checkout()
     written = planfile.dump(done.plan).encode()
     origin = done.provenance | {
@@ -338,6 +339,7 @@ def _write(done: Sweep, folder: Path) -> None:
         tables.write(done.points(), folder / tables.POINTS)
         text = json.dumps(origin, indent=2, ensure_ascii=False)
         tables.write_bytes(text.encode() + b"\n", folder / "provenance.json")
+        tables.write_bytes(done.report(wanted).encode(), folder / PAGE)
     done.written = folder
 
 

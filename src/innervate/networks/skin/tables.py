@@ -4,7 +4,7 @@ from innervate.trace.tables import TIME, Column, Table
 
 _CELL = Column("cell", "Int32", "cell", "who")
 
-ROUTES = Table("routes", "a cell changed its parent port", (
+ROUTES = Table("routes", "a cell changed its parent port (a restart forgets it without a row)", (
     TIME, _CELL,
     Column("old", "Int8", "port", "parent port before; -1 none"),
     Column("new", "Int8", "port", "parent port after; -1 none"),
