@@ -90,6 +90,7 @@ def test_an_interrupted_sweep_is_not_well_however_its_runs_are():
         ({K: range(2, 13), HZ: range(50, 60)}, K, (HZ,)),
         ({RULE: ["paper", "strict"], "protocol.balancing": [True, False]}, "", ()),
         ({(K, HZ): [(2, 50), (3, 100)]}, K, ()),
+        ({K: [3], RULE: ["paper", "strict"]}, "", ()),
         ({}, "", ()),
     ],
 )
@@ -118,6 +119,12 @@ def test_means_over_what_makes_no_line_are_told():
     assert f"Means over 3 values of {RULE}, all varied alike; 95 % intervals" in page
     vary = {HZ: range(50, 60), K: range(2, 10)}
     assert f"The first 6 of 8 values of {K}." in render(swept(vary))
+
+
+def test_values_of_several_kinds_make_lines():
+    place = [{"row": 0, "column": 0, "port": "W"}]
+    page = render(swept({K: [2, 3], "interface": [place, 7]}))
+    assert len(re.findall('class="mean l[01]" d=', page)) == 2
 
 
 def test_of_texts_there_is_a_row_for_each_point():

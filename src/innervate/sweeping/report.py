@@ -156,16 +156,23 @@ def _picture(done: Sweep, name: str, table: polars.DataFrame, chosen: Axes) -> s
 
 def _lines(done: Sweep, name: str, table: polars.DataFrame, chosen: Axes) -> list[means.Line]:
     """A line for each of the first values of `by`; one without means where no run has any."""
+    runs = _by_point(name, table)
     lines = []
     for values in _values(done, chosen.by)[: means.LINES_MAX]:
         called = _called_line(chosen.by, values)
-        same = [polars.col(key) == value for key, value in zip(chosen.by, values, strict=True)]
-        groups = dict(table.filter(*same).group_by(chosen.x).agg(polars.col(name)).iter_rows())
+        groups: dict[float, list[float]] = {}
+        for point in done.plan.points:
+            if tuple(point.columns[key] for key in chosen.by) == values and point.index in runs:
+                groups.setdefault(point.columns[chosen.x], []).extend(runs[point.index])
         lines.append(means.Line(called, [
             _mean(float(at), groups[at], f"{chosen.x} {shown(at)}{called and ', '}{called}")
             for at in sorted(groups)
         ]))  # fmt: skip
     return lines
+
+
+def _by_point(name: str, table: polars.DataFrame) -> dict[int, list[float]]:
+    return dict(table.group_by("point").agg(polars.col(name)).iter_rows())
 
 
 def _called_line(keys: tuple[str, ...], values: tuple[Any, ...]) -> str:
@@ -175,7 +182,7 @@ def _called_line(keys: tuple[str, ...], values: tuple[Any, ...]) -> str:
 
 def _rows(done: Sweep, name: str, table: polars.DataFrame) -> list[tuple[str, means.Mean]]:
     """A row for each of the first points with a value."""
-    groups = dict(table.group_by("point").agg(polars.col(name)).iter_rows())
+    groups = _by_point(name, table)
     return [
         (_called(point.columns), _mean(0.0, groups[point.index], point.label))
         for point in done.plan.points[: means.ROWS_MAX] if point.index in groups
