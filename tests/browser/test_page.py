@@ -153,6 +153,17 @@ def test_every_control_has_a_name_and_is_reached_by_tab(look, skin):
     click(page, OTHER, "link, up")
 
 
+def test_the_tab_key_goes_as_the_eye_does(look, skin):
+    """From the tools above the map to the map, and on to what stands below it."""
+    page = look(skin)
+    tops = page.evaluate(
+        "() => [...document.querySelectorAll('#view select, #view button, #stage')]"
+        ".filter((e) => e.offsetParent).map((e) => e.getBoundingClientRect().top)"
+    )
+    assert len(tops) > 4
+    assert tops == sorted(tops)
+
+
 READ_ALOUD = """() => {
   const all = (selector) => [...document.querySelectorAll(selector)];
   const name = (one) => one.id || one.className || one.tagName;
