@@ -1,11 +1,9 @@
 """A sweep's page: one HTML file with its headline, means as pictures and as a table, its runs."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import polars
 
@@ -15,12 +13,11 @@ from innervate.kernel.words import number_of
 from innervate.plot import charts, means, notebook, page, report
 from innervate.plot.svg import clean
 from innervate.plot.words import averages, label
+from innervate.sweeping import tables
 from innervate.sweeping.planfile import dump
+from innervate.sweeping.result import LEVEL, Sweep
 from innervate.sweeping.vary import shown
 from innervate.sweeping.words import headline, mean_words, never_lines
-
-if TYPE_CHECKING:
-    from innervate.sweeping.result import Sweep
 
 VALUES_MAX = 12  # of a key that are named
 STYLE = "section>h3{margin-top:1.4em}pre.command{margin:.4em 0;white-space:pre-wrap}"
@@ -213,11 +210,12 @@ def _legend(done: Sweep, chosen: Axes) -> str:
 def _points(done: Sweep, measures: Sequence[str]) -> str:
     """The table of the points, as the command shows it, with what their runs came to."""
     head = [*map(escape, done.plan.keys), "runs", "headlines", *map(escape, map(label, measures))]
-    table = done.points(measures).iter_rows(named=True) if measures else ()
-    figures = {(row["point"], row["measure"]): row for row in table}
+    points = done.plan.points[: page.ROWS_MAX]
+    table = tables.points(done.results, points, measures, LEVEL)
+    figures = {(row["point"], row["measure"]): row for row in table.iter_rows(named=True)}
     came = _came(done)
     rows = []
-    for point in done.plan.points[: page.ROWS_MAX]:
+    for point in points:
         runs = came.get(point.index, Counter())
         told = [_mean_words(figures.get((point.index, name)), runs.total()) for name in measures]
         levels = ", ".join(f"{count:,} {level}" for level, count in runs.most_common())
