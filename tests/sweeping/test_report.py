@@ -65,8 +65,18 @@ def test_the_headline_is_the_worst_run_and_counts_all(levels, level, text):
     page = render(made)
     assert f"<h1>{text}</h1>" in page
     assert f">{level}</p>" in page
-    listed = [f"Point {i}, {K}={2 + i}: 1 {one}" for i, one in enumerate(levels) if one != "ok"]
+    worst_first = ("failed", "down", "no data", "degraded")
+    listed = [f"Point {i}, {K}={2 + i}: 1 {one}" for worst in worst_first
+              for i, one in enumerate(levels) if one == worst]  # fmt: skip
     assert re.findall(r"<h3>(Point [^<]*)</h3>", page) == listed
+
+
+def test_of_many_points_that_are_not_well_the_first_are_open():
+    page = render(of_levels(*["degraded"] * 43, "down"))
+    shown, folded = page.split("<summary>39 more</summary>")
+    assert re.findall(r"<h3>Point (\d+),", shown) == ["43", "0", "1", "2", "3"]
+    assert len(re.findall(r"<h3>Point", folded)) == 35
+    assert "And 4 more, in results.parquet." in folded
 
 
 def test_an_interrupted_sweep_is_not_well_however_its_runs_are():

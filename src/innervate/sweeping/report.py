@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import polars
 
-from innervate.analysis.headline import OK, part_of
+from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, part_of
 from innervate.analysis.intervals import mean_interval
 from innervate.kernel.words import number_of
 from innervate.plot import charts, means, notebook, page, report
@@ -20,8 +20,10 @@ from innervate.sweeping.vary import shown
 from innervate.sweeping.words import headline, mean_words, never_lines
 
 VALUES_MAX = 12  # of a key that are named
-STYLE = "section>h3{margin-top:1.4em}pre.command{margin:.4em 0;white-space:pre-wrap}"
-GROUPS_MAX = 20  # of runs that are not well, by their points
+STYLE = "h3:not(figure h3){margin-top:1.4em}pre.command{margin:.4em 0;white-space:pre-wrap}"
+FAILED = "failed"
+WORST = (FAILED, DOWN, NO_DATA, DEGRADED)
+GROUPS_OPEN, GROUPS_MAX = 5, 40  # of runs that are not well, by their points
 NAME_LETTERS = 30
 
 
@@ -235,32 +237,39 @@ def _came(done: Sweep) -> dict[int, Counter[str]]:
 
 
 def _levels(done: Sweep) -> polars.DataFrame:
-    """The results with what each run came to as `level`: of its headline, or "failed"."""
+    """The results with what each run came to as `level`: of its headline, or that it failed."""
     table = done.results
     known = polars.col("headline.level") if "headline.level" in table.columns else polars.lit(None)
-    return table.with_columns(level=known.fill_null("failed"))
+    return table.with_columns(level=known.fill_null(FAILED))
 
 
 def _not_well(done: Sweep) -> str:
-    """The points at which runs failed or are not ok: how many, and the first of them."""
+    """The points at which runs failed or are not ok, worst first: how many, the first of them."""
     table = _levels(done).filter(polars.col("level") != OK)
     groups = table.group_by("point", "level", maintain_order=True)
-    first = groups.agg(polars.len().alias("count"), polars.all().first())
-    parts = []
-    for row in first.head(GROUPS_MAX).iter_rows(named=True):
-        point = done.plan.points[row["point"]]
-        where = f"Point {point.index}" + (f", {point.label}" if point.label else "")
-        said = row["reason"] if row["level"] == "failed" else row["headline.text"]
-        parts += [
-            page.element("h3", f"{where}: {row['count']:,} {row['level']}"),
-            page.element("p", f"The first: {said}"),
-            page.element("pre", row["command"], "command"),
-        ]
-    if not parts:
+    first = groups.agg(polars.len().alias("count"), polars.all().first()).to_dicts()
+    first.sort(key=lambda row: WORST.index(row["level"]))
+    if not first:
         return ""
-    more = first.height - GROUPS_MAX
-    parts += [page.element("p", f"And {more:,} more, in results.parquet.", "note")] * (more > 0)
-    return page.element("p", "Each command runs it again, in this folder.", "note") + "".join(parts)
+    parts = [page.element("p", "Each command runs it again, in this folder.", "note")]
+    parts += [_group(done, row) for row in first[:GROUPS_OPEN]]
+    rest = [_group(done, row) for row in first[GROUPS_OPEN:GROUPS_MAX]]
+    more = len(first) - GROUPS_MAX
+    rest += [page.element("p", f"And {more:,} more, in results.parquet.", "note")] * (more > 0)
+    parts += [page.details(f"{len(first) - GROUPS_OPEN:,} more", "".join(rest))] * bool(rest)
+    return "".join(parts)
+
+
+def _group(done: Sweep, row: Mapping[str, Any]) -> str:
+    """Runs of a point that came to the same: `row` is the first of them, with their `count`."""
+    point = done.plan.points[row["point"]]
+    where = f"Point {point.index}" + (f", {point.label}" if point.label else "")
+    said = row["reason"] if row["level"] == FAILED else row["headline.text"]
+    return (
+        page.element("h3", f"{where}: {row['count']:,} {row['level']}")
+        + page.element("p", f"The first: {said}")
+        + page.element("pre", row["command"], "command")
+    )
 
 
 def _again(done: Sweep) -> str:
