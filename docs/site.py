@@ -6,6 +6,7 @@ A hook of MkDocs; `make docs` runs it.
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,7 @@ def on_files(files: Any, config: Any) -> Any:
     examples = sorted(path for path in (ROOT / "examples").iterdir() if path.is_file())
     for path in examples:
         made[f"examples/{path.name}"] = path.read_text(encoding="utf-8")
-    listed = "".join(f"- [{path.name}]({path.name})\n" for path in examples)
+    listed = "".join(f"- [{path.name}]({path.name}): {about(path)}\n" for path in examples)
     made["examples/index.md"] = f"# Examples\n\n{listed}"
     for path in sorted((ROOT / "examples" / "notebooks").glob("*.ipynb")):
         text = path.read_text(encoding="utf-8")
@@ -53,6 +54,13 @@ def on_files(files: Any, config: Any) -> Any:
     for name, text in made.items():
         files.append(File.generated(config, name, content=text))
     return files
+
+
+def about(example: Path) -> str:
+    """The first sentence of an example, which says what it shows."""
+    begun = example.read_text(encoding="utf-8").removeprefix('"""').removeprefix("# ")
+    words = " ".join(begun.partition("\n\n")[0].replace("\n# ", "\n").split())
+    return re.split(r"(?<=[.?]) ", words)[0]
 
 
 def notebook_page(name: str, cells: list[Any]) -> str:

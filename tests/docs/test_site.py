@@ -39,6 +39,13 @@ def test_every_page_is_there_and_every_link_leads_somewhere(site):
         assert (site / page.relative_to(ROOT / "docs").with_suffix(".html")).is_file(), page.name
 
 
+def test_every_example_says_what_it_shows(site):
+    said = (site / "examples" / "index.html").read_text(encoding="utf-8")
+    told = dict(re.findall(r'<li><a href="[^"]*">([^<]*)</a>: ([^<]{20,200}[.?])</li>', said))
+    assert told["beacon-rate.toml"] == "Which beacon rate is worth its bandwidth?"
+    assert set(told) == {path.name for path in (ROOT / "examples").iterdir() if path.is_file()}
+
+
 def test_every_command_is_described(site):
     said = (site / "commands.html").read_text(encoding="utf-8")
     for name in app:
