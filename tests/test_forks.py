@@ -200,6 +200,12 @@ if __name__ == "__main__":
     sys.exit({status})
 """
 
+AHEAD = """
+import sys, time
+time.sleep(2)  # longer than the test
+open(f"{sys.argv[1]}/made_ahead", "x").close()
+"""
+
 
 @pytest.mark.parametrize(("status", "said"), [
     (0, "1 passed"), (3, "Exit: python -m tests.loops ended with 3"),
@@ -208,12 +214,14 @@ def test_loops_come_first(tmp_path, status, said):
     (tmp_path / "tests").mkdir()
     loops = LOOPS.format(status=status)
     (tmp_path / "tests" / "loops.py").write_text(loops)
+    (tmp_path / "tests" / "ahead.py").write_text(AHEAD)
     suite = {
         "test_it.py": "def test_it():\n    assert open('loops').read() == '7, read 0 0, read 1 0'\n"
     }
     process = begin(tmp_path, suite, "--forks", "1", "--loops", "7")
     assert said in process.communicate(timeout=60)[0]
     assert process.returncode == bool(status)
+    assert (tmp_path / "left" / "made_ahead").exists()  # it is waited for at the end
 
 
 @pytest.mark.parametrize(("free", "flags", "lies_there"), [
