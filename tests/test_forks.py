@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from tests.conftest import ROOM, is_roomy
+from tests.fixtures.forks import in_order
 
 SUITE = {
     "test_one.py": """
@@ -72,6 +73,17 @@ def test_waits(left):
     open("begun", "w").close()
     time.sleep(60)
 """
+}
+SWALLOWS = {
+    "test_waits.py": WAITS["test_waits.py"].replace(
+        "    time.sleep(60)",
+        """
+    try:
+        time.sleep(60)
+    except KeyboardInterrupt:
+        time.sleep(60)
+""",
+    )
 }
 
 
@@ -146,9 +158,10 @@ def test_it_ends_at_the_first_that_fails(tmp_path):
     assert (tmp_path / "gone").exists()
 
 
-@pytest.mark.parametrize("more", [{}, SLOW], ids=["", "as a worker begins"])
-def test_ctrl_c_ends_it_and_tears_down(tmp_path, more):
-    process = begin(tmp_path, WAITS | more, "--forks", "2")
+@pytest.mark.parametrize("suite", [WAITS, WAITS | SLOW, SWALLOWS],
+                         ids=["", "as a worker begins", "which a test swallows"])  # fmt: skip
+def test_ctrl_c_ends_it_and_tears_down(tmp_path, suite):
+    process = begin(tmp_path, suite, "--forks", "2")
     while not (tmp_path / "begun").exists():
         assert process.poll() is None
         time.sleep(0.01)
@@ -157,6 +170,17 @@ def test_ctrl_c_ends_it_and_tears_down(tmp_path, more):
     assert process.returncode == pytest.ExitCode.INTERRUPTED
     assert "KeyboardInterrupt" in said
     assert (tmp_path / "torn_down").exists()
+
+
+def test_the_last_files_are_short_ones():
+    paths = [Path("tests", folder, f"test_{number}.py")
+             for folder in ("live", "networks/skin") for number in range(50)]  # fmt: skip
+    found = in_order(paths)
+    assert sorted(found) == sorted(paths)
+    short = ["networks" in path.parts for path in found]
+    assert all(short[-25:])
+    assert {True, False} == set(short[:20])
+    assert found[:10] != sorted(found[:10])
 
 
 LOOPS = """
@@ -176,6 +200,12 @@ if __name__ == "__main__":
     sys.exit({status})
 """
 
+AHEAD = """
+import sys, time
+time.sleep(2)  # longer than the test
+open(f"{sys.argv[1]}/made_ahead", "x").close()
+"""
+
 
 @pytest.mark.parametrize(("status", "said"), [
     (0, "1 passed"), (3, "Exit: python -m tests.loops ended with 3"),
@@ -184,12 +214,14 @@ def test_loops_come_first(tmp_path, status, said):
     (tmp_path / "tests").mkdir()
     loops = LOOPS.format(status=status)
     (tmp_path / "tests" / "loops.py").write_text(loops)
+    (tmp_path / "tests" / "ahead.py").write_text(AHEAD)
     suite = {
         "test_it.py": "def test_it():\n    assert open('loops').read() == '7, read 0 0, read 1 0'\n"
     }
     process = begin(tmp_path, suite, "--forks", "1", "--loops", "7")
     assert said in process.communicate(timeout=60)[0]
     assert process.returncode == bool(status)
+    assert (tmp_path / "left" / "made_ahead").exists()  # it is waited for at the end
 
 
 @pytest.mark.parametrize(("free", "flags", "lies_there"), [

@@ -21,6 +21,7 @@ from innervate.dialect import bounded, clocks, counted, sends
 from innervate.dialect import folder as checks
 from innervate.dialect.checker import functions_of
 from innervate.dialect.source import numbers_of, reached
+from innervate.dialect.trees import every_node
 
 NETWORK_FILE = "network.py"
 MEDIA_ON_AIR = ("channel", "field")
@@ -195,7 +196,7 @@ def sources(folder: Path, network: Any) -> list[Path]:
             tree = ast.parse(path.read_text(encoding="utf-8"))
         except (SyntaxError, ValueError):
             continue
-        for node in ast.walk(tree):
+        for node in every_node(tree):
             if isinstance(node, ast.ImportFrom):
                 module = (node.module or "").rpartition(f"{folder.name}.")[2]
                 is_folder = not module or (module == folder.name and not node.level)

@@ -23,6 +23,7 @@ ABOUT = {
     "folder.py",
     "sends.py",
     "counted.py",
+    "trees.py",
 }  # read files, so import what that takes
 PYTHON = {"plain.py", "__init__.py", *ABOUT}  # about protocols, in full Python
 

@@ -8,9 +8,16 @@ import pytest
 
 from innervate.dialect import source
 from innervate.dialect.checker import with_numbers
+from innervate.dialect.trees import every_node
 
 CELL = "innervate.networks.skin.protocol.cell"
 MESH = "innervate.networks.mesh.protocol.node"
+
+
+@pytest.mark.parametrize("file", [source.__file__, __file__])
+def test_a_tree_is_walked_as_python_does(file):
+    tree = ast.parse(Path(file).read_text(encoding="utf-8"))
+    assert every_node(tree) == list(ast.walk(tree))
 
 
 def test_functions_come_callees_first_with_all_that_they_call():

@@ -25,13 +25,14 @@ def build(folder, config):
     )
 
 
+def make(folder):
+    done = build(folder, ROOT / "mkdocs.yml")
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    def make(folder):
-        done = build(folder, ROOT / "mkdocs.yml")
-        assert done.returncode == 0, done.stderr
-
-    return made_once(tmp_path_factory, "site", make)
+    return made_once(tmp_path_factory, "site", make)  # or tests/ahead.py has made it
 
 
 def test_every_page_is_there_and_every_link_leads_somewhere(site):

@@ -1,5 +1,6 @@
 """A protocol as C: what compilers say of it, what it says of itself, and what is refused."""
 
+import ast
 import re
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ import pytest
 import innervate
 from boards.roles import roles
 from innervate.cli import main
+from innervate.dialect import source
 from innervate.firmware import library
 from innervate.firmware.emit import Library
 from innervate.firmware.errors import FirmwareError, Refused
@@ -34,6 +36,19 @@ COMPILERS = {
                "--specs=picolibc.specs"],
 }  # fmt: skip
 ROLES = ["skin", "radio", "csma", "mesh"]
+
+
+def test_what_c_leaves_out_stays_where_proofs_read_it():
+    texts, made = library_of("skin", []).texts(), library_of("skin", []).role
+    assert made.noted
+
+    def read():
+        return [ast.dump(one.node) for one in source.functions(made.entry, shared=True).values()]
+
+    before = read()
+    assert any(f"attr='{name}', ctx=Store()" in text for text in before for name in made.noted)
+    assert not any(name in text for name in made.noted for text in texts.values())
+    assert read() == before
 
 
 @pytest.fixture(scope="module")

@@ -314,7 +314,7 @@ def twin(
         declared: of every record its declaration; that of "frame" is the outbox's frames', too.
         change: a mistake to plant in the formula, to see that it differs.
     """
-    stage = Stage(functions(entry, change=change), declared.get("frame", ()), ROOM)
+    stage = Stage(functions(entry, change=change, shared=True), declared.get("frame", ()), ROOM)
     records = {name: stage.record(name, one) for name, one in declared.items()}
 
     def given(arg: Any) -> Any:

@@ -8,6 +8,7 @@ import ast
 import inspect
 
 from innervate.dialect.loops import calls
+from innervate.dialect.trees import every_node
 
 MOST_ROUNDS = 1_000_000  # of a loop, each time that it is begun
 AT_ONCE_MOST = 1_000  # times that a node may set timers for now, or the past, at one reading
@@ -63,7 +64,7 @@ class _Counter(ast.NodeTransformer):
     def visit_For(self, node):
         self.generic_visit(node)
         given = ast.Tuple(node.iter.args, ast.Load())
-        names = [one for one in ast.walk(given) if isinstance(one, ast.Name)]
+        names = [one for one in every_node(given) if isinstance(one, ast.Name)]
         if calls(given) or all(one.id.isupper() for one in names):
             return node
         self.count += 1

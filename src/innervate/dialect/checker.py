@@ -6,6 +6,7 @@ CONTRIBUTING.md has the dialect. A source is read, not run.
 import ast
 
 from innervate.dialect import loops
+from innervate.dialect.trees import every_node
 
 PACKAGE = "innervate.dialect"
 BUILTINS = {"abs", "max", "min", "range"}
@@ -91,7 +92,7 @@ def functions_of(tree):
 
 def imports_of(tree, package=PACKAGE):
     """(module, name bound here) of every import; relative ones are of `package`."""
-    for node in ast.walk(tree):
+    for node in every_node(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name, alias.asname or alias.name
@@ -145,7 +146,7 @@ def with_numbers(tree):
 
 def _attributes(node):
     """The names behind a dot in an expression."""
-    return {part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute)}
+    return {part.attr for part in every_node(node) if isinstance(part, ast.Attribute)}
 
 
 class Checker:
@@ -158,11 +159,11 @@ class Checker:
         self.known = known | {function.name for function in functions_of(self.tree)}
         imports = imports_of(self.tree, home or PACKAGE)
         self.imported = {name for module, name in imports if is_ours(module, home)}
-        self.own = {node.id for node in ast.walk(self.tree)
+        self.own = {node.id for node in every_node(self.tree)
                     if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}  # fmt: skip
-        self.own |= {node.arg for node in ast.walk(self.tree) if isinstance(node, ast.arg)}
+        self.own |= {node.arg for node in every_node(self.tree) if isinstance(node, ast.arg)}
         self.parents = {
-            child: node for node in ast.walk(self.tree) for child in ast.iter_child_nodes(node)
+            child: node for node in every_node(self.tree) for child in ast.iter_child_nodes(node)
         }
 
     def complain(self, node, what):
@@ -215,7 +216,7 @@ class Checker:
             if len(names) != len(node.targets) or names != [name.upper() for name in names]:
                 self.complain(node, "a module constant is a name in capitals; what changes is a "
                                     "field of the state")  # fmt: skip
-            if any(isinstance(part, ast.Call) for part in ast.walk(node.value)):
+            if any(isinstance(part, ast.Call) for part in every_node(node.value)):
                 self.complain(node, "a module constant calls nothing; write the number")
 
     def check_Assign(self, node):
@@ -223,8 +224,8 @@ class Checker:
         name, and nothing is called: C and proofs read it once for each.
         """
         if len(node.targets) > 1 and self.parents[node] is not self.tree:
-            is_call = any(isinstance(part, ast.Call) for part in ast.walk(node))
-            is_place = any(isinstance(part, ast.Subscript) for part in ast.walk(node.value))
+            is_call = any(isinstance(part, ast.Call) for part in every_node(node))
+            is_place = any(isinstance(part, ast.Subscript) for part in every_node(node.value))
             given = set().union(*map(_attributes, node.targets))
             is_variable = any(isinstance(target, ast.Name) for target in node.targets)
             if is_call or is_place or is_variable or given & _attributes(node.value):
@@ -335,7 +336,7 @@ class Checker:
         """No function calls itself, directly or by others."""
         functions = {function.name: function for function in functions_of(self.tree)}
         calls = {
-            name: {part.func.id for part in ast.walk(function)
+            name: {part.func.id for part in every_node(function)
                    if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)}
             & set(functions)
             for name, function in functions.items()

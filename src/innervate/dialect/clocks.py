@@ -9,6 +9,7 @@ import ast
 
 from innervate.dialect.arith import MASK16, MASK30
 from innervate.dialect.folder import Finding
+from innervate.dialect.trees import every_node
 
 ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
@@ -30,10 +31,10 @@ def of_clocks(path, tables, params=frozenset()):
     for name, _length, _low, high, *_ in tables:
         most[name] = min(most.get(name, high), high)
     found = []
-    for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for function in every_node(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(function, ast.FunctionDef):
             has_now = "now" in {argument.arg for argument in function.args.args}
-            for part in ast.walk(function):
+            for part in every_node(function):
                 wrong = (has_now and _by_size(part)) or _by_sequence(part, most, has_now)
                 wrong = wrong or _by_wait(part, function, params)
                 if wrong:
@@ -98,7 +99,7 @@ def _is_wait(part, function, params, above=frozenset()):
     if isinstance(part, ast.Name):
         if part.id.isupper() or part.id in above:
             return True
-        given = [one.value for one in ast.walk(function)
+        given = [one.value for one in every_node(function)
                  if isinstance(one, (ast.Assign, ast.AugAssign))
                  and part.id in {getattr(to, "id", "") for to in _targets(one)}]  # fmt: skip
         inside = above | {part.id}

@@ -2,6 +2,8 @@
 
 import ast
 
+from innervate.dialect.trees import every_node
+
 PUTS = {"put", "send", "set_timer", "deliver", "report"}
 NEVER = -1  # there is no such way
 
@@ -63,7 +65,7 @@ def _of(node, functions, constants):
 
 def _of_expression(node, functions, constants):
     total = 0
-    for part in ast.walk(node):
+    for part in every_node(node):
         if isinstance(part, ast.Call):
             name = part.func.attr if isinstance(part.func, ast.Attribute) else part.func.id
             if name in PUTS:

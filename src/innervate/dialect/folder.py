@@ -7,6 +7,7 @@ import ast
 from difflib import get_close_matches
 
 from innervate.dialect.checker import broken_rules, functions_of, with_numbers
+from innervate.dialect.trees import every_node
 
 MOST = (1 << 30) - 1
 OUTBOX = {"action", "count", "frame", "limit", "overflow"}  # what an outbox has
@@ -123,7 +124,7 @@ def of_numbers(path, known):
         known: names of those that there are, "kinds.DATA".
     """
     return [Finding(path, part.lineno, f"{part.id} is no whole number of that module")
-            for part in ast.walk(parsed(path))
+            for part in every_node(parsed(path))
             if isinstance(part, ast.Name) and "." in part.id and part.id not in known]  # fmt: skip
 
 
@@ -142,11 +143,11 @@ def _pairs(target, value):
 
 def number(node, known):
     """The value of an expression over numbers and names that are known; None if it is none."""
-    names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+    names = {part.id for part in every_node(node) if isinstance(part, ast.Name)}
     odd = (ast.Call, ast.Attribute, ast.Lambda, ast.Subscript)
     if any(known.get(name) is None for name in names):
         return None
-    if any(isinstance(part, odd) for part in ast.walk(node)):
+    if any(isinstance(part, odd) for part in every_node(node)):
         return None
     try:
         value = eval(compile(ast.Expression(node), "constant", "eval"), {}, dict(known))
@@ -273,7 +274,7 @@ def _lines_of(path):
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             table = node.targets[0].id
             found[table, ""] = node.lineno
-            for part in ast.walk(node.value):
+            for part in every_node(node.value):
                 if isinstance(part, ast.Tuple) and part.elts:
                     first = part.elts[0]
                     if isinstance(first, ast.Constant) and isinstance(first.value, str):
@@ -350,10 +351,10 @@ def of_uses(path, declared, timers, arrays=frozenset()):
     """
     tree = parsed(path)
     constants, found = constants_of(tree), []
-    modules = {alias.asname or alias.name for node in ast.walk(tree)
+    modules = {alias.asname or alias.name for node in every_node(tree)
                if isinstance(node, (ast.Import, ast.ImportFrom))
                for alias in node.names}  # fmt: skip
-    for part in ast.walk(tree):
+    for part in every_node(tree):
         if isinstance(part, ast.Attribute) and part.attr not in declared | OUTBOX:
             if not (isinstance(part.value, ast.Name) and part.value.id in modules):
                 near = "".join(f'; did you mean "{one}"?'
@@ -374,5 +375,5 @@ def of_uses(path, declared, timers, arrays=frozenset()):
 
 def called(node):
     """Names of the functions that are called in a piece of source."""
-    return {part.func.id for part in ast.walk(node)
+    return {part.func.id for part in every_node(node)
             if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)}  # fmt: skip

@@ -7,6 +7,7 @@ import ast
 from itertools import chain
 
 from innervate.dialect.held import possible
+from innervate.dialect.trees import every_node
 
 PURE = {"abs", "max", "min"}
 WAYS = 64  # ways through a block that are told apart
@@ -26,7 +27,7 @@ def endless(loop):
     tests = {id(test): test for test in [loop.test, *(one for exit in exits for one in exit)]}
     looked = [_looked_at(test) for test in tests.values()]
     names, records = (set().union(*some) for some in zip(*looked, strict=True))
-    inside = [part for statement in loop.body for part in ast.walk(statement)]
+    inside = [part for statement in loop.body for part in every_node(statement)]
     assigned, touched = _changed(inside)
     if names & assigned or any(_overlap(a, b) for a in records for b in touched):
         return ""
@@ -72,7 +73,7 @@ def _idle_ways(statements):
 def calls(node):
     """True if something is called that may change what it is handed."""
     return any(isinstance(part, ast.Call) and getattr(part.func, "id", "") not in PURE
-               for part in ast.walk(node))  # fmt: skip
+               for part in every_node(node))  # fmt: skip
 
 
 def _exits_of(statements, tests=()):
@@ -89,7 +90,7 @@ def _exits_of(statements, tests=()):
             for side in (statement.body, statement.orelse):
                 yield from _exits_of(side, (*tests, statement.test))
         elif isinstance(statement, (ast.For, ast.While)):
-            if any(isinstance(part, ast.Return) for part in ast.walk(statement)):
+            if any(isinstance(part, ast.Return) for part in every_node(statement)):
                 yield None
 
 
@@ -109,15 +110,15 @@ def _field(part):
 
 def _looked_at(test):
     """Names of numbers, and of records or their fields, that a condition looks at."""
-    inner = {id(part.value) for part in ast.walk(test)
+    inner = {id(part.value) for part in every_node(test)
              if isinstance(part, (ast.Attribute, ast.Subscript))}  # fmt: skip
-    calls = [part for part in ast.walk(test) if isinstance(part, ast.Call)]
+    calls = [part for part in every_node(test) if isinstance(part, ast.Call)]
     handed = {id(one) for part in calls for one in part.args}
     called = {id(part.func) for part in calls}
-    names = [part for part in ast.walk(test) if isinstance(part, ast.Name)]
+    names = [part for part in every_node(test) if isinstance(part, ast.Name)]
     numbers = {one.id for one in names if id(one) not in inner | called}
     inside = (ast.Attribute, ast.Subscript)
-    looked = [one for one in ast.walk(test) if isinstance(one, inside) or id(one) in handed]
+    looked = [one for one in every_node(test) if isinstance(one, inside) or id(one) in handed]
     return numbers, set(map(_field, looked)) - {None}
 
 

@@ -5,6 +5,7 @@ import ast
 from innervate.dialect.access import REPORT_DELIVERED, REPORT_LEFT
 from innervate.dialect.checker import functions_of
 from innervate.dialect.folder import NOTED, Finding, called, constants_of, number, parsed
+from innervate.dialect.trees import every_node
 
 
 def of_channel(paths):
@@ -21,7 +22,7 @@ def of_channel(paths):
 
 
 def _names(node):
-    return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+    return {part.id for part in every_node(node) if isinstance(part, ast.Name)}
 
 
 LATER = "only over cables a frame leaves later; send it from on_timer"
@@ -33,7 +34,7 @@ def of_delays(paths, what=LATER):
     for path in paths:
         tree = parsed(path)
         constants = constants_of(tree)
-        for part in ast.walk(tree):
+        for part in every_node(tree):
             is_sent = isinstance(part, ast.Call) and getattr(part.func, "id", "") == "send"
             if is_sent and len(part.args) > 2 and number(part.args[2], constants) != 0:
                 found.append(Finding(path, part.lineno, what))
@@ -79,7 +80,7 @@ def of_kinds(paths, layouts):
 
 def _renamed(tree, constants):
     """Constants by other names that a file gives them, or their modules: `import sizes as s`."""
-    renamed = [(alias.name.rpartition(".")[2], alias.asname) for node in ast.walk(tree)
+    renamed = [(alias.name.rpartition(".")[2], alias.asname) for node in every_node(tree)
                if isinstance(node, (ast.Import, ast.ImportFrom))
                for alias in node.names if alias.asname]  # fmt: skip
     return {f"{here}{name[len(there):]}": value for there, here in renamed
@@ -88,7 +89,7 @@ def _renamed(tree, constants):
 
 def _set_in(function):
     """(assignment, name of the record, field) of every field that a function sets."""
-    for part in ast.walk(function):
+    for part in every_node(function):
         target = part.targets[0] if isinstance(part, ast.Assign) else None
         target = target.value if isinstance(target, ast.Subscript) else target
         if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name):
@@ -97,7 +98,7 @@ def _set_in(function):
 
 def _sent_here(function):
     """What a function calls frames that it sends, where it calls nothing else so."""
-    named = [(part.targets[0].id, part.value) for part in ast.walk(function)
+    named = [(part.targets[0].id, part.value) for part in every_node(function)
              if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)]  # fmt: skip
     others = {name for name, value in named
               if not (isinstance(value, ast.Subscript) and "send" in called(value))}  # fmt: skip
@@ -108,24 +109,24 @@ def _without_kind(path, function, frames, layouts):
     """Frames of a function that nobody gives a kind."""
     if 0 in layouts:
         return []
-    fields = {id(part.value) for part in ast.walk(function) if isinstance(part, ast.Attribute)}
-    on = {part.id for part in ast.walk(function) if isinstance(part, ast.Name)
+    fields = {id(part.value) for part in every_node(function) if isinstance(part, ast.Attribute)}
+    on = {part.id for part in every_node(function) if isinstance(part, ast.Name)
           and isinstance(part.ctx, ast.Load) and id(part) not in fields}  # fmt: skip
     return [Finding(path, part.lineno, f"{part.targets[0].id} is sent without a kind; set one")
-            for part in ast.walk(function) if isinstance(part, ast.Assign)
+            for part in every_node(function) if isinstance(part, ast.Assign)
             and getattr(part.targets[0], "id", None) in frames - on]  # fmt: skip
 
 
 def _sent_names(functions):
     """By function, what it calls frames that are sent: its own, and those that it is handed."""
     sent = {
-        function.name: {part.targets[0].id for part in ast.walk(function)
+        function.name: {part.targets[0].id for part in every_node(function)
                         if isinstance(part, ast.Assign) and isinstance(part.targets[0], ast.Name)
                         and "send" in called(part.value)}
         for function in functions
     }  # fmt: skip
     arguments = {function.name: [one.arg for one in function.args.args] for function in functions}
-    calls = [(function.name, call) for function in functions for call in ast.walk(function)
+    calls = [(function.name, call) for function in functions for call in every_node(function)
              if getattr(getattr(call, "func", None), "id", "") in arguments]  # fmt: skip
     for _ in functions:  # as far as a frame can be handed on
         for name, call in calls:

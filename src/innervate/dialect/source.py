@@ -11,6 +11,7 @@ from functools import lru_cache
 from types import ModuleType
 
 from innervate.dialect.checker import with_numbers
+from innervate.dialect.trees import every_node
 
 # (old, new): a text that stands once in the sources, and what is read in its place.
 Change = tuple[str, str]
@@ -37,7 +38,7 @@ class Function:
         self.node = node
         self.module = module.__name__
         self.path = module.__file__ or ""
-        used = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+        used = {part.id for part in every_node(node) if isinstance(part, ast.Name)}
         self.constants = {
             name: value for name, value in numbers.items() if "." not in name or name in used
         }

@@ -2,6 +2,7 @@
 
 import ast
 
+from innervate.dialect.trees import every_node
 from innervate.firmware.facts import Facts
 from innervate.firmware.program import BUILTINS, OUT, Made, Program, array_of
 from innervate.firmware.records import Field, name_of
@@ -182,7 +183,7 @@ class Expressions:
         calls = self.made.calls
         return any(
             isinstance(inner, ast.Call) and inner in calls and bool(calls[inner].changed)
-            for inner in ast.walk(node)
+            for inner in every_node(node)
         )
 
     def check_order(self, node: ast.AST, *parts: ast.expr) -> None:
@@ -203,11 +204,11 @@ class Expressions:
 
     def _calls(self, node: ast.AST) -> dict[ast.Call, Made]:
         calls = self.made.calls
-        return {n: calls[n] for n in ast.walk(node) if isinstance(n, ast.Call) and n in calls}
+        return {n: calls[n] for n in every_node(node) if isinstance(n, ast.Call) and n in calls}
 
     def _reads(self, node: ast.AST) -> set[str]:
         """Names of fields that an expression looks at."""
-        parts = (inner for inner in ast.walk(node) if isinstance(inner, ast.Attribute | ast.Name))
+        parts = (inner for inner in every_node(node) if isinstance(inner, ast.Attribute | ast.Name))
         own = set[str]().union(*(array_of(self.made, part) for part in parts))
         return own.union(*(made.reads for made in self._calls(node).values()))
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 from typing import NamedTuple
 
+from innervate.dialect.trees import every_node
 from innervate.firmware.program import Made, Program, Type
 
 
@@ -30,7 +31,7 @@ ALL, NATURAL, NONE = Fact(True, True), Fact(True, False), Fact(False, False)
 def _telling(made: Made) -> list[ast.AST]:
     """What of a function says something of numbers."""
     told = (ast.Assign, ast.AugAssign, ast.For, ast.Return, ast.Call)
-    return [node for node in ast.walk(made.function.node) if isinstance(node, told)]
+    return [node for node in every_node(made.function.node) if isinstance(node, told)]
 
 
 class Facts:

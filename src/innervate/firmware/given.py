@@ -3,6 +3,8 @@
 import ast
 from collections.abc import Iterable, Iterator, Set
 
+from innervate.dialect.trees import every_node
+
 Given = Set[str] | None  # the variables with a value on every way; None = there is no way here
 
 
@@ -72,7 +74,7 @@ def _is_true(test: ast.expr) -> bool:
 
 
 def _names(node: ast.AST) -> Iterator[ast.Name]:
-    return (inner for inner in ast.walk(node) if isinstance(inner, ast.Name))
+    return (inner for inner in every_node(node) if isinstance(inner, ast.Name))
 
 
 def _stored(node: ast.AST) -> Iterator[str]:

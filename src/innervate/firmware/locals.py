@@ -2,10 +2,12 @@
 
 import ast
 
+from innervate.dialect.trees import every_node
+
 
 def names_in(node: ast.AST) -> set[str]:
     """The variables that occur in there."""
-    return {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
+    return {inner.id for inner in every_node(node) if isinstance(inner, ast.Name)}
 
 
 def mentions(node: ast.AST, name: str) -> bool:
@@ -18,7 +20,7 @@ def is_changed(body: list[ast.stmt], name: str) -> bool:
     return any(
         isinstance(inner, ast.Name) and inner.id == name and isinstance(inner.ctx, ast.Store)
         for statement in body
-        for inner in ast.walk(statement)
+        for inner in every_node(statement)
     )
 
 

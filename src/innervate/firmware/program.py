@@ -5,10 +5,12 @@ known, through all calls. A function that is called with different records is ma
 """
 
 import ast
+import copy
 from collections.abc import Set
 from typing import NamedTuple
 
 from innervate.dialect import source
+from innervate.dialect.trees import every_node
 from innervate.firmware.errors import FirmwareError, Refused
 from innervate.firmware.given import without_value
 from innervate.firmware.records import TYPES, Field
@@ -81,9 +83,9 @@ class Program:
 
     def __init__(self, role: Role, records: dict[str, dict[str, Field]]) -> None:
         self.role, self.records = role, records
-        self.sources = source.functions(role.entry)
+        self.sources = source.functions(role.entry, shared=True)
         for function in self.sources.values():
-            _leave_out(function.node, role.noted)
+            function.node = _without(function.node, role.noted)
         self.made: dict[tuple[str, tuple[Type, ...]], Made] = {}
         self._open: list[tuple[str, tuple[Type, ...]]] = []
         # Handlers stand in the role's own module; what it calls may have such a name, too.
@@ -163,16 +165,20 @@ def array_of(made: Made, node: ast.expr) -> set[str]:
     return set() if field is None else {field.name}
 
 
-def _leave_out(function: ast.FunctionDef, noted: Set[str]) -> None:
-    """Take out assignments to fields that only a simulation fills in."""
-    for node in ast.walk(function):
+def _without(function: ast.FunctionDef, noted: Set[str]) -> ast.FunctionDef:
+    """A function less the assignments to fields that only a simulation fills in."""
+    if not any(_is_noted(node, noted) for node in every_node(function)):
+        return function
+    function = copy.deepcopy(function)  # others have it, too
+    for node in every_node(function):
         for name in ("body", "orelse"):
             body = getattr(node, name, None)
             if isinstance(body, list):
                 body[:] = [inner for inner in body if not _is_noted(inner, noted)]
+    return function
 
 
-def _is_noted(node: ast.stmt, noted: Set[str]) -> bool:
+def _is_noted(node: ast.AST, noted: Set[str]) -> bool:
     targets = node.targets if isinstance(node, ast.Assign) else []
     return any(isinstance(target, ast.Attribute) and target.attr in noted for target in targets)
 

@@ -7,6 +7,7 @@ import tokenize
 from functools import cache
 from pathlib import Path
 
+from innervate.dialect.trees import every_node
 from innervate.firmware.expressions import BINARY, PLUS, Expressions, local
 from innervate.firmware.locals import declared_at, is_changed
 from innervate.firmware.program import Type
@@ -182,13 +183,13 @@ class Statements:
     def _bound(self, node: ast.For, end: ast.expr, depth: int) -> str:
         """The end of a range; Python asks for it once."""
         text = self.expressions.text(end, PLUS)
-        reads = [n for n in ast.walk(end) if isinstance(n, ast.Name) and n.id in self.made.types]
+        reads = [n for n in every_node(end) if isinstance(n, ast.Name) and n.id in self.made.types]
         steady = all(
             self.made.types[name.id].what == "params"
             or (self.made.types[name.id].what == "int" and not is_changed(node.body, name.id))
             for name in reads
         )
-        if text.isdigit() or (steady and not any(isinstance(n, ast.Call) for n in ast.walk(end))):
+        if text.isdigit() or (steady and not any(isinstance(n, ast.Call) for n in every_node(end))):
             return text
         assert isinstance(node.target, ast.Name)
         name = f"{local(node.target.id)}_end_{node.lineno}".replace("__", "_")

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from innervate.dialect.source import Function
+from innervate.dialect.trees import every_node
 from innervate.prove.errors import ProveError
 from innervate.prove.execute import Machine
 from innervate.prove.records import Outbox, Store
@@ -29,7 +30,7 @@ class Answers(Machine):
 
     def read(self, function: Function) -> Iterator[str]:
         """Names of the fields that a function may read."""
-        for node in ast.walk(function.node):
+        for node in every_node(function.node):
             if isinstance(node, ast.Attribute):
                 yield node.attr
             elif isinstance(node, ast.Name) and node.id in function.calls:

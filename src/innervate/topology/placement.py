@@ -6,6 +6,7 @@ same network on any machine. `draw` is a stream of random numbers (see trace/str
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from statistics import NormalDist
 from typing import Protocol
 
@@ -44,8 +45,8 @@ def grid(count: int, columns: int, spacing_cm: int) -> list[Point]:
 
 def normal_cdb(draw: Draw, sigma_cdb: int) -> int:
     """A normally distributed number of 0.01 dB around 0."""
-    share = min(((draw.next64() >> 11) + 0.5) / _STEPS, _MOST)
-    return round(_NORMAL.inv_cdf(share) * sigma_cdb)
+    share = ((draw.next64() >> 11) + 0.5) / _STEPS
+    return round(_NORMAL.inv_cdf(share if share < _MOST else _MOST) * sigma_cdb)
 
 
 def path_loss_cdb(distance_cm: int, exponent_c: int) -> int:
@@ -55,7 +56,11 @@ def path_loss_cdb(distance_cm: int, exponent_c: int) -> int:
 
 def reception_q15(over_cdb: int) -> int:
     """Chance of reception in 1/32768 at so much above the 50 % point (0.01 dB) [mesh 6]."""
-    steps = (over_cdb + STEP_CDB // 2) // STEP_CDB
+    return _chance_q15((over_cdb + STEP_CDB // 2) // STEP_CDB)
+
+
+@cache
+def _chance_q15(steps: int) -> int:
     return round(ONE_Q15 / (1 + math.exp(-min(max(steps, -300), 300) / 10)))
 
 
