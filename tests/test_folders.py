@@ -138,6 +138,8 @@ BROKEN = {
     "loop without bound": ("protocol.py", "    fill(out.frame[send(out, port, 0, 0)], node)\n",
                            "    while port < 4:\n        fill(out.frame[send(out, port, 0, 0)], "
                            "node)\n", "while", "a loop without bound"),
+    "no such name": ("protocol.py", "    node.value = item.value", "    node.value = itme.value",
+                     "itme", "itme is given no value here, and is no constant"),
     "float": ("protocol.py", "    node.value = item.value", "    node.value = item.value / 2",
               "/ 2", "divide whole numbers with //"),
     "import": ("protocol.py", "NEWS = 1", "import random\nNEWS = 1", "import random",

@@ -72,7 +72,7 @@ def of_source(path, known, home, handlers):
             found.append(Finding(path, 1, f"has no {name}; add def {name}{arguments}"))
         elif len(there[name].args.args) != arguments.count(",") + 1:
             what = f"{name} takes {len(there[name].args.args)} arguments; it is {name}{arguments}"
-            found.append(Finding(path, there[name].lineno, what))
+            found.insert(0, Finding(path, there[name].lineno, what))  # names may follow from it
     if handlers and "TIMERS" not in dict(_assigned(tree)):
         found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
     return found
