@@ -96,7 +96,7 @@ class Watched:
         return f"{self.sent.words}. {said}" if self.sent.words else said
 
 
-class _Row(Row, Told):
+class _Row(Row, Told):  # type: ignore[misc]
     """An array field of a state."""
 
 
