@@ -13,6 +13,7 @@ from innervate.live import hangup, status, tap
 from innervate.live.build import build, keys_of, open_keys
 from innervate.live.engine import Engine
 from innervate.live.errors import LiveError
+from innervate.live.links import REACH
 from innervate.live.machine import machine
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
@@ -216,7 +217,7 @@ class Process:
             await self._send(request, writer)
         elif what == "listen":
             await self._listen(request, writer)
-        elif what in ("cut", "restore", "loose"):
+        elif what in ("cut", "restore", "loose", *REACH):
             port, loss = request["port"], request["loss"] if what == "loose" else 0.0
             if type(port) is not int or type(loss) not in (int, float):
                 raise ValueError("port is a whole number, loss a share from 0 to 1")

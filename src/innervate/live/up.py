@@ -14,6 +14,7 @@ from typing import Any
 from innervate.live import files, hangup, private, status
 from innervate.live.deployment import Deployment, Table, ask
 from innervate.live.errors import LiveError
+from innervate.live.links import NEAR, REACH
 from innervate.live.netns import UDP_PORT, Lab
 from innervate.live.serial_cables import Cables
 from innervate.network import networks
@@ -67,7 +68,8 @@ class Processes:
         away = getattr(plan, "absent", ())
         self.absent = {name for name, gone in zip(self.names, away, strict=False) if gone}
         self._ports: list[list[int]] = []  # per node: the cables of its paths
-        self._hurt: dict[int, tuple[str, float]] = {}  # cable: cut, or loose
+        # By cable and what it is about, reach or harm: apart, cut or loose.
+        self._hurt: dict[tuple[int, bool], tuple[str, float]] = {}
         self._medium = ""  # its address
         self._tables: dict[str, NodeTables] = {}
 
@@ -149,7 +151,7 @@ class Processes:
         self.start_node(name)
         await self._ready([name])
         number = self.names.index(name)
-        for cable, (what, loss) in self._hurt.items():
+        for (cable, _), (what, loss) in self._hurt.items():
             if number in self.links[cable]:
                 await self._change_end(number, cable, what, loss)
 
@@ -161,10 +163,11 @@ class Processes:
             await asyncio.to_thread(process.wait)
 
     async def change(self, cable: int, what: str, loss: float = 0.0) -> None:
-        """Cut, restore or loosen a cable at both its ends."""
-        self._hurt[cable] = (what, loss)
-        if what == "restore":
-            self._hurt.pop(cable, None)
+        """Cut, restore or loosen a cable at both its ends, or say who is in reach."""
+        about = (cable, what in REACH)
+        self._hurt[about] = (what, loss)
+        if what in ("restore", NEAR):
+            self._hurt.pop(about, None)
         for number in self.links[cable]:
             await self._change_end(number, cable, what, loss)
 
