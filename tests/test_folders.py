@@ -167,6 +167,26 @@ def test_what_is_wrong_is_said_in_one_line_with_file_and_line(own, capsys, wrong
     assert words in line
 
 
+def test_what_users_hand_in_and_nobody_sends_needs_no_bits(own, capsys):
+    own.change("fields.py", "FRAME = (\n", 'FRAME = (\n    ("more", 0, 0, 7, "raw", "to it"),\n')
+    line = said(capsys, "check", own.scenario)
+    assert "no frame carries more of FRAME; give it bits" in line
+    own.change("fields.py", '(1, {"value": 7})', '(1, {"value": 7, "more": 3})')
+    own.change("protocol.py", "    node.value = item.value\n",
+               "    node.value = (item.value + item.more) % 256\n")  # fmt: skip
+    text = own.scenario.read_text().replace(
+        "item = { value = 7 }", "item = { value = 7, more = 2 }"
+    )
+    own.scenario.write_text(text.replace("value = 9", "value = 9, more = 3"))
+    assert "more = 2" in text
+    run = innervate.run(own.scenario, plain=True)
+    assert {node.value for node in run.nodes} == {12}
+    assert main(["firmware", str(own.folder), "--out", "c"]) == 0
+    own.change("protocol.py", "    frame.value = node.value\n",
+               "    frame.value = node.value\n    frame.more = 1\n")  # fmt: skip
+    assert "no frame carries more of FRAME" in said(capsys, "check", own.scenario)
+
+
 @pytest.fixture
 def by_module(own):
     """A network whose protocol takes its numbers from modules, by the modules' names."""

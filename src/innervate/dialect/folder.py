@@ -292,7 +292,6 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset(), unsent=fr
         looked_at: fields that the medium looks at.
         unsent: fields that nodes are only handed.
     """
-    noted = NOTED | unsent
     declared = {field[0]: field for field in frame}
     line, found, laid = _lines_of(path).get(("LAYOUTS", ""), 1), [], set()
     names = {}
@@ -313,13 +312,14 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset(), unsent=fr
             what = f"{name}: the medium looks at {field}; give it bits in every layout"
             found.append(Finding(path, line, what))
         for field, _length, low, high, *_ in frame:
-            if field not in noted.union(one[0] for one in fields) and not low <= 0 <= high:
+            if field not in NOTED.union(one[0] for one in fields) and not low <= 0 <= high:
                 what = (f"{name}: {field} is {low} to {high} in FRAME, and 0 where it arrives, as "
                         "it has no bits here; give it some, or let it be 0")  # fmt: skip
                 found.append(Finding(path, line, what))
     for field in declared:
-        if field not in laid | noted:
-            what = f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out"
+        if field not in laid | NOTED | unsent:
+            what = (f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out "
+                    "(what users hand in, and nobody sends, stands in GIVEN)")  # fmt: skip
             found.append(Finding(path, line, what))
     return found
 

@@ -77,6 +77,14 @@ def of_kinds(paths, layouts):
     return found
 
 
+def put_in(paths):
+    """Fields that some function of these files puts into a frame that is sent."""
+    functions = [function for path in paths for function in functions_of(parsed(path))]
+    sent = _sent_names(functions)
+    return {field for function in functions for _, frame, field in _set_in(function)
+            if frame in sent[function.name]}  # fmt: skip
+
+
 def _renamed(tree, constants):
     """Constants by other names that a file gives them, or their modules: `import sizes as s`."""
     renamed = [(alias.name.rpartition(".")[2], alias.asname) for node in ast.walk(tree)
