@@ -254,6 +254,8 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
         found += checks.of_layouts(
             path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME, looked_at, unsent
         )
+        if hasattr(frames, "ENDS"):
+            found += sends.of_ends(path, frames.ENDS, fields.FRAME)
         laid = {kind: {one[0] for one in fields} for kind, _name, fields in frames.LAYOUTS}
         found += sends.of_kinds(files, laid)
     return found
