@@ -38,7 +38,7 @@ def laid_out(nodes: list[tuple[str, dict[str, Any]]], edges: Any) -> tuple[Any, 
         x, y of each, (n, 2), and their unit: "m" or "mm"; "" where a link is about 1 long.
     """
     for unit in ("m", "mm"):
-        if nodes and all(f"x_{unit}" in about for _, about in nodes):
+        if nodes and all({f"x_{unit}", f"y_{unit}"} <= about.keys() for _, about in nodes):
             spots = [(about[f"x_{unit}"], about[f"y_{unit}"]) for _, about in nodes]
             return np.array(spots, np.float64), unit
     number = {name: i for i, (name, _) in enumerate(nodes)}

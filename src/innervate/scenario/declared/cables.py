@@ -236,7 +236,7 @@ def describe(plan: Any) -> str:
     near = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
     found = ["nobody gets any frame: links.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, near, plan.start_us)
-    return cables.describe(plan, found, shared.script_lines(plan), shared.own_events(plan, ACTIONS))
+    return cables.describe(plan, found, shared.script_lines(plan), shared.own_lines(plan))
 
 
 def template(network: Any) -> str:

@@ -177,7 +177,7 @@ def describe(plan: Any) -> str:
     ]
     found = ["nobody can read any frame: air.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, _near(plan))
-    own = shared.own_events(plan, DONE)
+    own = shared.own_lines(plan)
     return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 

@@ -323,7 +323,7 @@ def describe(plan: Any) -> str:
     ]
     pairs_met = moving.met(plan.nodes, plan.good, moving.walkers_of(plan))
     found = warnings(plan, pairs_met, plan.scenario.model.start_us)
-    own = shared.own_events(plan, ACTIONS)
+    own = shared.own_lines(plan)
     return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 
