@@ -58,6 +58,9 @@ def files_of(role: Role, params: dict[str, int]) -> dict[str, bytes]:
         **{name: (HERE / f"{name}.py").read_text() for name in program.drivers},
         **{f"innervate/{n}": (ROOM / f"innervate/{n}.py").read_text() for n in program.sources},
     }
+    if program.node:
+        file, _, kind = program.node.partition(":")
+        sources["carrier"] = f"from {file} import {kind} as Node\n"
     network = networks()[kind_of(role)]
     if network.has("frames") and network.has("protocol"):
         frames, timers = network.frames, network.protocol.TIMERS

@@ -60,11 +60,13 @@ class Program(NamedTuple):
         main: the file of `boards/micropython` that becomes main.py, without its ending.
         drivers: files of `boards/micropython` that it needs.
         sources: files of `src/innervate` that it needs.
+        node: "file:class" that main.py calls its node; "" = it knows by itself.
     """
 
     main: str
     drivers: tuple[str, ...]
     sources: tuple[str, ...]
+    node: str = ""
 
 
 class Form(NamedTuple):
@@ -198,9 +200,10 @@ PLAIN = Program(
     "plain_main",
     ("outbox", "driver"),
     ("wire/bits", "wire/crc", "wire/layout", "wire/cobs", "wire/frames"),
+    "driver:Node",
 )
 
-FIELD = PLAIN._replace(main="field_main", drivers=("outbox", "driver", "field"))
+FIELD = PLAIN._replace(drivers=("outbox", "driver", "field"), node="field:FieldNode")
 
 CABLES = "cables"
 WATCHED = {
