@@ -222,7 +222,7 @@ def test_how_a_node_is_started(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(("log", "says"), [
-    ("first\n\nn0: no such port\n", "n0 ended: n0: no such port"), ("", "n0 ended: no message"),
+    ("first\n\nn0: no such port\n", "n0 ended: no such port"), ("", "n0 ended: no message"),
 ])  # fmt: skip
 def test_who_does_not_come_up_says_why(tmp_path, log, says):
     network = Processes(scenarios.plan(scenarios.from_dict(MESH)), tmp_path, "udp")

@@ -12,12 +12,12 @@ class Row(list):
             raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
 
     def __getitem__(self, place):
-        """What stands there."""
+        """The value at a place, from 0 on."""
         self._check(place)
         return super().__getitem__(place)
 
     def __setitem__(self, place, value):
-        """Put a value there."""
+        """Put a value at a place, from 0 on."""
         self._check(place)
         super().__setitem__(place, value)
 

@@ -203,8 +203,7 @@ class Processes:
         while waiting := [name for name in waiting if not status.answers(self.socket(name))]:
             for name in waiting:
                 if self.processes[name].poll() is not None:
-                    log = (self.folder / f"{name}.log").read_text().strip().splitlines()
-                    raise LiveError(f"{name} ended: {log[-1] if log else 'no message'}")
+                    raise LiveError(f"{name} ended: {self._last_words(name)}")
             took_s, more = time.monotonic() - began, len(waiting) - 1
             first = waiting[0] + f" and {more} more" * bool(more)
             if took_s > limit_s:
@@ -214,6 +213,15 @@ class Processes:
                 said = f"{first} did not answer within {said_s:g} s; waiting up to {limit_s:g} s"
                 print(said, file=sys.stderr, flush=True)
             await asyncio.sleep(0.02)
+
+    def failed(self) -> dict[str, str]:
+        """Nodes that ended by themselves, and what they said last."""
+        codes = {name: process.poll() for name, process in self.processes.items()}
+        return {name: self._last_words(name) for name, code in codes.items() if (code or 0) > 0}
+
+    def _last_words(self, name: str) -> str:
+        log = (self.folder / f"{name}.log").read_text().strip().splitlines()
+        return log[-1].removeprefix(f"{name}: ") if log else "no message"
 
     def _paths(self) -> list[dict[int, Table]]:
         """Per node: the link table of each of its cables, in order of its paths."""
