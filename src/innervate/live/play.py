@@ -10,7 +10,7 @@ from innervate.scenario.declared.shared import own_events
 
 LOSS_ONE = 32_768
 # Noise, single frames lost come by themselves; all else is done to processes and their cables.
-UNPLAYED = ("lose", "jam", "quiet", "garble", "fade")
+UNPLAYED = ("begin", "lose", "jam", "quiet", "garble", "fade")
 
 
 class Event(NamedTuple):
