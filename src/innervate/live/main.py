@@ -81,7 +81,8 @@ class Process:
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self.ending.set)
         loop.add_signal_handler(signal.SIGHUP, self.reload)
-        loop.set_exception_handler(self._went_wrong)
+        if networks()[self.loaded.table.kind].folder is not None:
+            loop.set_exception_handler(self._went_wrong)
         hangup.let_in()
         with self._named():
             await self.server.start()
