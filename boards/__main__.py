@@ -33,7 +33,10 @@ def program_of(role: Role) -> Program:
         LiveError: there is no driver for it.
     """
     if role.program is None:
-        known = "the skin and networks of your own over cables have one"
+        if networks()[kind_of(role)].medium == "channel":
+            what = "a board's UARTs do not tell when others send"
+            raise LiveError(f"{role.name} is on a channel: {what}; there is no driver for it")
+        known = "the skin and networks of your own over cables or a field have one"
         raise LiveError(f"{role.name}: there is no driver for boards; {known}")
     return role.program
 
@@ -55,6 +58,9 @@ def files_of(role: Role, params: dict[str, int]) -> dict[str, bytes]:
         **{name: (HERE / f"{name}.py").read_text() for name in program.drivers},
         **{f"innervate/{n}": (ROOM / f"innervate/{n}.py").read_text() for n in program.sources},
     }
+    if program.node:
+        file, _, kind = program.node.partition(":")
+        sources["carrier"] = f"from {file} import {kind} as Node\n"
     network = networks()[kind_of(role)]
     if network.has("frames") and network.has("protocol"):
         frames, timers = network.frames, network.protocol.TIMERS

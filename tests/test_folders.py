@@ -131,6 +131,10 @@ BROKEN = {
     "arguments": ("protocol.py", "on_timer(node, params, now, timer, out)", "on_timer(node, out)",
                   "def on_timer", "on_timer takes 2 arguments; it is on_timer(state, params, now"),
     "no layout": ("protocol.py", "frame.kind = NEWS", "frame.kind = NEWS", "", ""),
+    "ends": ("frames.py", "KIND_BITS = 4", 'ENDS = {"source": "version"}\nKIND_BITS = 4', "ENDS",
+             "ENDS is (field of the sender, of the recipient, number of all)"),
+    "ends of no field": ("frames.py", "KIND_BITS = 4", 'ENDS = ("version", "to", 7)\nKIND_BITS = 4',
+                         "ENDS", "ENDS: to is no field of FRAME"),
     "bits": ("frames.py", '("value", 0, 8, 0)', '("value", 0, 7, 0)', "LAYOUTS",
              "value is 0 to 255 in FRAME; 7 bits hold 0 to 127"),
     "not carried": ("frames.py", ', ("value", 0, 8, 0)', ", ", "LAYOUTS", "no frame carries value"),
@@ -138,6 +142,8 @@ BROKEN = {
     "loop without bound": ("protocol.py", "    fill(out.frame[send(out, port, 0, 0)], node)\n",
                            "    while port < 4:\n        fill(out.frame[send(out, port, 0, 0)], "
                            "node)\n", "while", "a loop without bound"),
+    "no such name": ("protocol.py", "    node.value = item.value", "    node.value = itme.value",
+                     "itme", "itme is given no value here, and is no constant"),
     "float": ("protocol.py", "    node.value = item.value", "    node.value = item.value / 2",
               "/ 2", "divide whole numbers with //"),
     "import": ("protocol.py", "NEWS = 1", "import random\nNEWS = 1", "import random",
@@ -163,6 +169,26 @@ def test_what_is_wrong_is_said_in_one_line_with_file_and_line(own, capsys, wrong
     line = said(capsys, "run", own.scenario)
     assert line.startswith(f"innervate: gossip/{file}:{own.line(file, where)}: ")
     assert words in line
+
+
+def test_what_users_hand_in_and_nobody_sends_needs_no_bits(own, capsys):
+    own.change("fields.py", "FRAME = (\n", 'FRAME = (\n    ("more", 0, 0, 7, "raw", "to it"),\n')
+    line = said(capsys, "check", own.scenario)
+    assert "no frame carries more of FRAME; give it bits" in line
+    own.change("fields.py", '(1, {"value": 7})', '(1, {"value": 7, "more": 3})')
+    own.change("protocol.py", "    node.value = item.value\n",
+               "    node.value = (item.value + item.more) % 256\n")  # fmt: skip
+    text = own.scenario.read_text().replace(
+        "item = { value = 7 }", "item = { value = 7, more = 2 }"
+    )
+    own.scenario.write_text(text.replace("value = 9", "value = 9, more = 3"))
+    assert "more = 2" in text
+    run = innervate.run(own.scenario, plain=True)
+    assert {node.value for node in run.nodes} == {12}
+    assert main(["firmware", str(own.folder), "--out", "c"]) == 0
+    own.change("protocol.py", "    frame.value = node.value\n",
+               "    frame.value = node.value\n    frame.more = 1\n")  # fmt: skip
+    assert "no frame carries more of FRAME" in said(capsys, "check", own.scenario)
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""A node of a network over cables on a board: its ports are UARTs.
+"""A node on a board: its ports are UARTs; over a field see field.py.
 
 The protocol (`node`) knows no clock and no wire; here its timers run on time.ticks_us, its frames
 travel as on any serial line of innervate: COBS, a zero behind each frame, 8N1.
@@ -91,6 +91,7 @@ class Node:
         self.ports = [uart and Port(uart, wire.SIZE_MAX) for uart in uarts]
         self.receive = receive
         self.ticks_us = ticks_us
+        self.number = number
         self.state = records.State()
         self.params = records.Params()
         self.out = Outbox(records.Frame, room)
@@ -138,8 +139,23 @@ class Node:
         if self.wire.decode(data, self.frame) != 0:
             self.dropped += 1
             return
-        node.on_frame(self.state, self.params, self.now(), number, self.frame, self.out)
+        self.take(number, self.frame)
+
+    def take(self, number, frame):
+        """A frame was heard on a port."""
+        node.on_frame(self.state, self.params, self.now(), number, frame, self.out)
         self.drain()
+
+    def carry(self, act, frame):
+        """Send a frame, by the port that an action names."""
+        port = self.ports[act.a] if act.a < len(self.ports) else None
+        if port:
+            self.put(port, act, frame)
+
+    def put(self, port, act, frame):
+        """Hand a port what is to leave by it."""
+        port.send(cobs.encode(self.wire.encode(frame)), act.c)
+        port.pump()
 
     def drain(self):
         """Carry out what a handler wants done."""
@@ -149,10 +165,7 @@ class Node:
         for i in range(out.count[0]):
             act = out.action[i]
             if act.kind == SEND:
-                port = self.ports[act.a] if act.a < len(self.ports) else None
-                if port:
-                    port.send(cobs.encode(self.wire.encode(out.frame[i])), act.c)
-                    port.pump()
+                self.carry(act, out.frame[i])
             elif act.kind == SET_TIMER:
                 self.due[act.a] = act.b
             elif act.kind == DELIVER and self.receive:

@@ -2,13 +2,14 @@
 
 import layouts
 import machine
-from driver import Node
+from carrier import Node
 
 from innervate.wire.frames import Codec
 
 NUMBER = 1  # who we are; every node has another
 BAUD = 1_000_000
-# (UART, options) of every port, in the protocol's order; None for a free socket.
+# (UART, options) of every port, in the protocol's order; None for a free socket. Over a field of
+# every line: of a radio modem that everybody near hears, or to a neighbour.
 UARTS = (
     (1, {}),
     (2, {}),

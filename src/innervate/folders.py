@@ -250,17 +250,22 @@ def _of_declared(folder: Path, network: Any, files: list[Path]) -> list[checks.F
     found += [] if found else _of_values(folder, network, files)
     if not found and network.has("frames") and not hasattr(network.frames, "encode"):
         frames, path = network.frames, _file_of(folder, network, "frames")
+        unsent = _handed(fields) - sends.put_in(files)
+        looked_at = checks.LOOKED_AT[network.medium]
         found += checks.of_layouts(
-            path,
-            frames.LAYOUTS,
-            frames.KIND_BITS,
-            fields.FRAME,
-            checks.LOOKED_AT[network.medium],
-            checks.PLACES if hasattr(fields, "PLACED") else frozenset(),
+            path, frames.LAYOUTS, frames.KIND_BITS, fields.FRAME, looked_at, unsent
         )
+        if hasattr(frames, "ENDS"):
+            found += sends.of_ends(path, frames.ENDS, fields.FRAME)
         laid = {kind: {one[0] for one in fields} for kind, _name, fields in frames.LAYOUTS}
         found += sends.of_kinds(files, laid)
     return found
+
+
+def _handed(fields: Any) -> set[str]:
+    """Fields of FRAME that users hand in, as the explorer has it, and where robots are."""
+    given = {name for _, item in getattr(fields, "GIVEN", ()) for name in item}
+    return given | (checks.PLACES if hasattr(fields, "PLACED") else set())
 
 
 def not_for_boards(network: Any) -> str:

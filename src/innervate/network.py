@@ -149,11 +149,6 @@ def nothing_to_show(plan: Any, tables: Any) -> list[Any]:
     return []
 
 
-def no_places(plan: Any) -> bool:
-    """Nodes that lie nowhere in particular."""
-    return False
-
-
 @cache
 def networks() -> dict[str, Network]:
     """All kinds of networks by name, in the order of their ranks.

@@ -38,7 +38,7 @@ PARTS = {
     "log": "module: looks_like_one(path), measure(path): what `fit` reads besides captures",
     "graph": "(plan) -> export.graphs.Graph: its network as a graph",
     "scenes": "(plan, tables) -> list of export.scenes.Channel: what a recording shows in space",
-    "has_places": "(plan) -> bool: its nodes lie somewhere in space",
+    "has_places": "(plan) -> bool: its nodes can be laid somewhere in space",
     "rerun_parts": "(rerun, plan, tables) -> export.rrd_parts.Parts: a run in space",
     "simulation": "(plan) -> sim.driver.Simulation: the network as it is watched, not yet begun; "
     "for the default `run` also by name plain, checks, observe, deliveries, trail, tap",
@@ -99,7 +99,8 @@ DEFAULTS = {
     "summary_lines": "innervate.plot.lines:summary_lines",
     "graph": "innervate.export.cabled:graph",
     "scenes": "innervate.network:nothing_to_show",
-    "has_places": "innervate.network:no_places",
+    "has_places": "innervate.export.declared_rrd:has_places",
+    "rerun_parts": "innervate.export.declared_rrd:parts",
     "unwatchable": "innervate.network:scripted",
     "engine": "innervate.web.engine:Engine",
     "view": "innervate.web.declared_view:DeclaredView",

@@ -40,6 +40,13 @@ def test_check_says_line_by_line_what_it_says_to_people(capsys):
     assert len(lines) >= 4
 
 
+def test_check_says_of_each_line_what_it_is_about(capsys):
+    kills = 'event=[{at_s=0.1, action="kill", node=3}, {at_s=0.2, action="revive", node=3}]'
+    found = said(capsys, "check", "babel-patch", "--json", "--set", kills)
+    events = [one["says"] for one in found["holds"] if one["what"] == "event"]
+    assert events == ["at 0.1 s kill n3", "at 0.2 s revive n3"]
+
+
 def test_compare(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for seed in ("1", "2"):

@@ -15,6 +15,8 @@ CHECKED = {
         6,
         "a loop without bound: nothing that its condition looks at",
     ),
+    "return cell.x[-2]": (6, "[-2]: an index is 0 or more; count from the beginning"),
+    "if n:\n        return m\n    return n": (7, "m is given no value here, and is no constant"),
     "return f(cell, n - 1)": (4, "a loop without bound: f calls itself"),
 }
 

@@ -168,15 +168,66 @@ def test_a_mesh_shows_its_robot_its_dead_and_its_alarms(mesh):
 
 
 LINKS = {"kind": "mesh", "duration_s": 1, "link": [{"a": "x", "b": "y"}]}
-FIELD = {"kind": "flooding", "nodes": 3, "duration_s": 1}  # has places, and no view in space
 
 
-@pytest.mark.parametrize("keys", [RADIO, LINKS, FIELD])
-def test_what_has_no_places_is_refused(keys, tmp_path):
-    plan = scenario.plan(scenario.from_dict(keys))
-    with pytest.raises(ExportError, match=f"no view in space of this {keys['kind']};"):
+def test_what_has_no_places_is_refused(tmp_path):
+    plan = scenario.plan(scenario.from_dict(LINKS))
+    with pytest.raises(ExportError, match="no view in space of this mesh;"):
         rrd.write(plan, {}, tmp_path / "no.rrd")
     assert not list(tmp_path.iterdir())
+
+
+NEWS = [{"at_s": 0.1, "every_s": 0.2, "node": 0, "item": {"dest": 2, "body": [7] * 8}}]
+FLOODING = {
+    "kind": "flooding", "nodes": 4, "duration_s": 1.0, "layout": "line", "spacing_m": 20.0,
+    "absent": [2], "input": NEWS, "robot": [{"node": 1, "waypoints": [[20, 0], [20, 10]]}],
+    "event": [{"at_s": 0.2, "action": "cut", "node": 3, "other": 2},
+              {"at_s": 0.3, "action": "revive", "node": 2},
+              {"at_s": 0.4, "action": "kill", "node": 3},
+              {"at_s": 0.6, "action": "restore", "node": 2, "other": 3}],
+}  # fmt: skip
+
+
+def test_a_network_of_ones_own_over_a_field_shows_nodes_cuts_robots_and_deliveries(tmp_path):
+    done = run(FLOODING, plain=True)
+    found = written(done, tmp_path / "run.rrd")
+    nodes = ("/network/nodes", "Points3D:positions")
+    assert np.array(only(found, *nodes)).tolist() == [[0, 0, 0], [40, 0, 0], [60, 0, 0]]
+    colours = ("/network/nodes", "Points3D:colors")
+    assert [one == GREY for one in shown(found, 0, *colours)] == [False, True, False]
+    assert [one == GREY for one in shown(found, 500_000, *colours)] == [False, False, True]
+    way = dict(found["/robots/node\\ 1", "Points3D:positions"])
+    assert way[500_000][0] == pytest.approx([20, 0.5, 0])
+    cuts = ("/network/cuts", "LineStrips3D:strips")
+    assert [place[0] for place in shown(found, 300_000, *cuts)[0]] == [40, 60]
+    assert not shown(found, 600_000, *cuts)
+    (strip,) = only(found, "/network/links", "LineStrips3D:strips")
+    assert [place[0] for place in strip] == [40, 60]  # without the robot's, which change
+    deliveries = done.tables["deliveries"].collect()
+    assert found["/delivered", "Scalars:scalars"][-1][1] == [len(deliveries)] != [0]
+
+
+CABLED = {
+    "kind": "babel", "nodes": 6, "shape": "line", "duration_s": 0.5,
+    "event": [{"at_s": 0.2, "action": "cut", "link": "n0-n1"},
+              {"at_s": 0.3, "action": "kill", "node": 4}],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("keys", [CABLED, RADIO])
+def test_where_nobody_says_where_nodes_lie_their_links_do(keys, tmp_path):
+    done = run(keys, plain=True)
+    found = written(done, tmp_path / "run.rrd")
+    places = np.array(only(found, "/network/nodes", "Points3D:positions"))
+    far = np.linalg.norm(places[:, None] - places, axis=2) + 9 * np.eye(len(places))
+    assert far.min() > 0.1  # no two on one place
+    if keys is CABLED:
+        assert np.diagonal(far, 1) == pytest.approx(1, abs=0.35)
+        ((at_us, ((a, b),)),) = found["/network/cuts", "LineStrips3D:strips"]
+        assert at_us == 200_000
+        assert np.array([a, b]) == pytest.approx(places[:2])
+        colours = shown(found, 400_000, "/network/nodes", "Points3D:colors")
+        assert [one == GREY for one in colours] == [False] * 4 + [True, False]
 
 
 def test_without_the_package_one_line_says_what_to_install(tmp_path):

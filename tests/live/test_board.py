@@ -4,7 +4,7 @@ from types import SimpleNamespace as Of
 
 import pytest
 
-from innervate.live.board import PLAIN, roles_of
+from innervate.live.board import FIELD, PLAIN, roles_of
 
 STATE, PARAMS, FRAME = ((name, 0, 0, 9, "", "") for name in ("seen", "hops", "kind"))
 LAYOUTS = ((1, "hello", (("seq", 0, 8, 0), ("", 0, 4, 0), ("list", 3, 4, 1))),)
@@ -21,9 +21,9 @@ def network_of(medium="cables", lacks="", **more):
 
 
 @pytest.mark.parametrize(("medium", "program", "table"), [
-    ("cables", PLAIN, "cells"), ("channel", None, "stations"), ("field", None, "stations"),
+    ("cables", PLAIN, "cells"), ("channel", None, "stations"), ("field", FIELD, "stations"),
 ])  # fmt: skip
-def test_a_plain_protocol_is_one_role_and_over_cables_a_program(medium, program, table):
+def test_a_plain_protocol_is_one_role_and_but_on_a_channel_a_program(medium, program, table):
     (role,) = roles_of(network_of(medium))
     assert (role.name, role.entry, role.room, role.timers) == ("talk", "talk.protocol", 5, 2)
     assert (role.state, role.params, role.frame, role.item) == (

@@ -161,7 +161,9 @@ def test_several_frames_that_came_in_the_same_bytes_are_all_handled():
         one = DeclaredNode("n1", stack, [])
         async with one:
             heard.clear()
-            path = SimpleNamespace(cut=False, loss=0.0, counters=one.outcomes, port=1, heard_at=0)
+            path = SimpleNamespace(
+                cut=False, carries=True, loss=0.0, counters=one.outcomes, port=1, heard_at=0
+            )
             one._receive(path, b"\x00\x01")
             one._receive(path, b"\x02\x03\x04")
             return one.counters()["frames"]

@@ -209,6 +209,25 @@ def test_of_what_comes_in_over_a_loose_cable_its_share_is_lost(loss, kept):
     run(receive)
 
 
+@pytest.mark.parametrize("first", ["cut", "apart"])
+def test_a_path_that_is_cut_stays_cut_when_who_had_left_comes_back(first):
+    async def receive(node, told):
+        path = node.paths[0]
+        whole = {"cut": "restore", "apart": "near"}
+        second = {"cut": "apart", "apart": "cut"}[first]
+        for what, carries in ((first, False), (second, False), (whole[first], False),
+                              (whole[second], True)):  # fmt: skip
+            node.change(0, what)
+            assert path.carries == node.status()["paths"][0]["up"] == carries
+            node._receive(path, b"1")
+        assert path.counters["received"] == 1
+        assert node.change(0, "loose", 0.5).loss == 0.5
+        node.change(0, "apart")
+        assert node.change(0, "near").loss == 0.5  # who comes and goes mends no plug
+
+    run(receive)
+
+
 @pytest.mark.parametrize("loss", [-0.01, 1.01])
 def test_a_share_is_from_0_to_1(loss):
     async def refuse(node, told):

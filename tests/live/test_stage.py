@@ -135,6 +135,25 @@ def change(network, *changes):
     return told
 
 
+def test_who_is_started_again_is_told_that_a_link_is_cut_and_who_is_out_of_reach(noted):
+    network = noted()
+    node = network.names[network.links[1][0]]
+    place = network._ports[network.links[1][0]].index(1)
+
+    def told_again():
+        asyncio.run(network.end_node(node, gently=False))
+        network.asked = []
+        asyncio.run(network.begin_node(node))
+        return {one[:3] for one in network.asked}
+
+    change(network, (1, "cut"), (1, "apart"), (1, "near"), (1, "apart"))
+    assert told_again() == {(node, "cut", place), (node, "apart", place)}
+    change(network, (1, "near"))
+    assert told_again() == {(node, "cut", place)}
+    change(network, (1, "restore"))
+    assert told_again() == set()
+
+
 def test_a_cable_is_cut_at_both_its_ends_and_stays_so_for_who_is_started_again(noted):
     network = noted()
     a, b = network.links[1]
@@ -203,7 +222,7 @@ def test_how_a_node_is_started(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(("log", "says"), [
-    ("first\n\nn0: no such port\n", "n0 ended: n0: no such port"), ("", "n0 ended: no message"),
+    ("first\n\nn0: no such port\n", "n0 ended: no such port"), ("", "n0 ended: no message"),
 ])  # fmt: skip
 def test_who_does_not_come_up_says_why(tmp_path, log, says):
     network = Processes(scenarios.plan(scenarios.from_dict(MESH)), tmp_path, "udp")

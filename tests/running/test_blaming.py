@@ -6,7 +6,8 @@ import pytest
 
 import innervate
 from innervate.cli import main
-from innervate.network import NetworkError
+from innervate.live.declared import DeclaredStack
+from innervate.network import NetworkError, use
 from innervate.running import blaming
 from tests.own import alone, own
 
@@ -87,6 +88,13 @@ def test_an_index_below_0_is_found_before_it_is_compiled(own):
     assert "node.seen[port - 4]" in text
     with pytest.raises(NetworkError, match=r"protocol.py:\d+: IndexError: seen\[-\d\]: an index"):
         innervate.run(own.scenario)
+    (case,) = innervate.explore(str(own.folder), graph="pair", budget="loss=0,restart=0")
+    assert case.is_broken  # compiled and in C [-1] is the memory in front: nobody takes it for more
+    assert re.search(r"IndexError: \[-\d\]: an index is 0 to 3", case.lines[-1])
+    stack = DeclaredStack(use(own.folder), 1, {"beat_us": 10_000}, 1, [0])
+    stack.inbox.kind = stack.inbox.version = 1
+    with pytest.raises(IndexError, match=r"\[-4\]: an index is 0 to 3"):
+        stack.on_frame(0, 0)
 
 
 def test_an_own_invariant_that_breaks(own):

@@ -27,6 +27,24 @@ def spread(count: int, links: Iterable[tuple[int, int]]) -> Any:
     return scaled(far) + 0.15 * np.stack([np.cos(aside), np.sin(aside)], axis=1)
 
 
+def laid_out(nodes: list[tuple[str, dict[str, Any]]], edges: Any) -> tuple[Any, str]:
+    """Where the nodes of a graph are drawn: as their coordinates say, else by who is linked.
+
+    Args:
+        nodes: (name, attributes); `x_m`, `y_m` or `x_mm`, `y_mm` of all are where they lie.
+        edges: (name of one end, of the other, attributes).
+
+    Returns:
+        x, y of each, (n, 2), and their unit: "m" or "mm"; "" where a link is about 1 long.
+    """
+    for unit in ("m", "mm"):
+        if nodes and all({f"x_{unit}", f"y_{unit}"} <= about.keys() for _, about in nodes):
+            spots = [(about[f"x_{unit}"], about[f"y_{unit}"]) for _, about in nodes]
+            return np.array(spots, np.float64), unit
+    number = {name: i for i, (name, _) in enumerate(nodes)}
+    return spread(len(nodes), [(number[a], number[b]) for a, b, _about in edges]), ""
+
+
 def scaled(far: Any) -> Any:
     """Places whose distances are about those given (classical scaling).
 

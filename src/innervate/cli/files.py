@@ -151,13 +151,17 @@ def check(file: str, /, *, set_: Sets = None, seed: Seed = None, as_json: Json =
 
 def _held(loaded: scenario.Scenario, said: str) -> dict[str, Any]:
     """What `check` says, line by line: what each is about, and what it says of that."""
-    lines = [line.split(maxsplit=1) for line in said.splitlines()[1:]]
+    lines: list[tuple[str, str]] = []
+    for line in said.splitlines()[1:]:
+        word, _, more = line.strip().partition(" ")
+        goes_on = line.startswith("   ")  # about the same as the line before
+        lines.append((lines[-1][0], line.strip()) if goes_on else (word, more.strip()))
     return {
         "name": loaded.name,
         "kind": loaded.kind,
         "duration_s": loaded.duration_s,
         "seed": loaded.seed,
-        "holds": [{"what": line[0], "says": " ".join(line[1:])} for line in lines],
+        "holds": [{"what": what, "says": says} for what, says in lines],
     }
 
 

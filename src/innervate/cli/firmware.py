@@ -44,6 +44,9 @@ def firmware(
     own = [f"{name} ({count} lines)" for name, count in lines.items() if name in made.own_files]
     more = f" and {len(lines) - len(own)} files around them" if len(lines) > len(own) else ""
     print(f"{out}: {', '.join(own)}{more}")
+    if not made.role.driver:
+        what = "when others send is your radio's to say; call its functions from there"
+        print(f"{out}: no driver: {what}")
     print(f"made from {made.role.entry}, source {made.digest()}, ABI {emit.ABI}")
     if old := library.left(files, out):
         print(f"{out} still holds files of another library; remove them: {', '.join(old)}")

@@ -149,6 +149,12 @@ def _attributes(node):
     return {part.attr for part in every_node(node) if isinstance(part, ast.Attribute)}
 
 
+def _stored(node):
+    """The names that something gives a value to."""
+    return {part.id for part in every_node(node)
+            if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)}  # fmt: skip
+
+
 class Checker:
     """Collects what a source breaks (see broken_rules)."""
 
@@ -159,9 +165,13 @@ class Checker:
         self.known = known | {function.name for function in functions_of(self.tree)}
         imports = imports_of(self.tree, home or PACKAGE)
         self.imported = {name for module, name in imports if is_ours(module, home)}
-        self.own = {node.id for node in every_node(self.tree)
-                    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}  # fmt: skip
+        self.own = _stored(self.tree)
         self.own |= {node.arg for node in every_node(self.tree) if isinstance(node, ast.arg)}
+        self.stored = {}  # variables by function
+        self.at_top = set().union(
+            *(_stored(node) for node in self.tree.body if isinstance(node, ast.Assign))
+        )
+        self.at_top |= {name for _, name in imports_of(self.tree, home or PACKAGE)} | self.known
         self.parents = {
             child: node for node in every_node(self.tree) for child in ast.iter_child_nodes(node)
         }
@@ -280,6 +290,30 @@ class Checker:
             self.complain(node, "None; use a number that is never a value, like -1")
         elif node.value >= 1 << 30:
             self.complain(node, "a number of 2^30 or more; all values stay below")
+
+    def check_Subscript(self, node):
+        """Places of an array are counted from its beginning."""
+        index = node.slice
+        if isinstance(index, ast.UnaryOp) and isinstance(index.op, ast.USub):
+            if isinstance(index.operand, ast.Constant):
+                self.complain(node, f"[-{index.operand.value}]: an index is 0 or more; count from "
+                                    "the beginning")  # fmt: skip
+
+    def check_Name(self, node):
+        """Names are variables of their function, or constants, functions and modules."""
+        is_called = getattr(self.parents[node], "func", None) is node
+        known = node.id in self.at_top or node.id in self.variables(node)
+        if isinstance(node.ctx, ast.Load) and not known and not is_called:
+            self.complain(node, f"{node.id} is given no value here, and is no constant")
+
+    def variables(self, node):
+        """What the function that a node stands in gives a value to, and its arguments."""
+        while node in self.parents and not isinstance(node, ast.FunctionDef):
+            node = self.parents[node]
+        if node not in self.stored:
+            given = {one.arg for one in node.args.args} if isinstance(node, ast.FunctionDef) else ()
+            self.stored[node] = _stored(node).union(given)
+        return self.stored[node]
 
     def check_Attribute(self, node):
         """Of a module constants are looked at, and nothing is set."""

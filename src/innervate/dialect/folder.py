@@ -73,7 +73,7 @@ def of_source(path, known, home, handlers):
             found.append(Finding(path, 1, f"has no {name}; add def {name}{arguments}"))
         elif len(there[name].args.args) != arguments.count(",") + 1:
             what = f"{name} takes {len(there[name].args.args)} arguments; it is {name}{arguments}"
-            found.append(Finding(path, there[name].lineno, what))
+            found.insert(0, Finding(path, there[name].lineno, what))  # names may follow from it
     if handlers and "TIMERS" not in dict(_assigned(tree)):
         found.append(Finding(path, 1, "has no TIMERS; add TIMERS = 1, how many timers a node has"))
     return found
@@ -293,7 +293,6 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset(), unsent=fr
         looked_at: fields that the medium looks at.
         unsent: fields that nodes are only handed.
     """
-    noted = NOTED | unsent
     declared = {field[0]: field for field in frame}
     line, found, laid = _lines_of(path).get(("LAYOUTS", ""), 1), [], set()
     names = {}
@@ -314,13 +313,14 @@ def of_layouts(path, layouts, kind_bits, frame, looked_at=frozenset(), unsent=fr
             what = f"{name}: the medium looks at {field}; give it bits in every layout"
             found.append(Finding(path, line, what))
         for field, _length, low, high, *_ in frame:
-            if field not in noted.union(one[0] for one in fields) and not low <= 0 <= high:
+            if field not in NOTED.union(one[0] for one in fields) and not low <= 0 <= high:
                 what = (f"{name}: {field} is {low} to {high} in FRAME, and 0 where it arrives, as "
                         "it has no bits here; give it some, or let it be 0")  # fmt: skip
                 found.append(Finding(path, line, what))
     for field in declared:
-        if field not in laid | noted:
-            what = f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out"
+        if field not in laid | NOTED | unsent:
+            what = (f"no frame carries {field} of FRAME; give it bits in LAYOUTS or leave it out "
+                    "(what users hand in, and nobody sends, stands in GIVEN)")  # fmt: skip
             found.append(Finding(path, line, what))
     return found
 

@@ -1,10 +1,31 @@
 """Plain classes from field declarations: what live nodes, boards and unit tests run on."""
 
 
-def make(name, *declarations, ports=0):
+class Row(list):
+    """An array field whose places are counted from 0: Python's last one, [-1], is none in C."""
+
+    __slots__ = ()
+    name = ""  # of the field, for what is said
+
+    def _check(self, place):
+        if isinstance(place, int) and place < 0:
+            raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
+
+    def __getitem__(self, place):
+        """The value at a place, from 0 on."""
+        self._check(place)
+        return super().__getitem__(place)
+
+    def __setitem__(self, place, value):
+        """Put a value at a place, from 0 on."""
+        self._check(place)
+        super().__setitem__(place, value)
+
+
+def make(name, *declarations, ports=0, array=list):
     """A class whose instances have the declared fields, each at the value in range nearest 0.
 
-    `ports` is the length of the fields declared as "ports" long.
+    `ports` is the length of the fields declared as "ports" long; `array` makes those of several.
     """
     fields = [field for declaration in declarations for field in declaration]
     starts = []
@@ -14,7 +35,7 @@ def make(name, *declarations, ports=0):
 
     def init(self):
         for field, count, start in starts:
-            setattr(self, field, [start] * count if count else start)
+            setattr(self, field, array([start] * count) if count else start)
 
     return type(name, (), {"__init__": init, "__slots__": tuple(field[0] for field in fields)})
 

@@ -78,6 +78,28 @@ def of_kinds(paths, layouts):
     return found
 
 
+def of_ends(path, ends, frame):
+    """What is wrong with ENDS of a file: two fields of a frame, and the number that is all."""
+    names, what = {"", *(field[0] for field in frame)}, ""
+    if not isinstance(ends, tuple) or len(ends) != 3 or not isinstance(ends[2], int):
+        what = (
+            'ENDS is (field of the sender, of the recipient, number of all): ("src", "to", 65535)'
+        )
+    elif unknown := [name for name in ends[:2] if name not in names]:
+        what = f"ENDS: {unknown[0]} is no field of FRAME"
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    line = next((node.lineno for node in tree.body if "ENDS" in _names(node)), 1)
+    return [Finding(path, line, what)] if what else []
+
+
+def put_in(paths):
+    """Fields that some function of these files puts into a frame that is sent."""
+    functions = [function for path in paths for function in functions_of(parsed(path))]
+    sent = _sent_names(functions)
+    return {field for function in functions for _, frame, field in _set_in(function)
+            if frame in sent[function.name]}  # fmt: skip
+
+
 def _renamed(tree, constants):
     """Constants by other names that a file gives them, or their modules: `import sizes as s`."""
     renamed = [(alias.name.rpartition(".")[2], alias.asname) for node in every_node(tree)

@@ -3,6 +3,7 @@
 import heapq
 import json
 from collections.abc import Iterator, Mapping
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import innervate
 from innervate.export import files, scenes, schemas
 from innervate.export.scenes import Channel, Message, stamp
 from innervate.network import networks
+from innervate.scenario.declared.shared import own_events
 
 INFORMATION, WARNING = 2, 3
 
@@ -49,7 +51,7 @@ def channels(plan: Any, found: Mapping[str, Any]) -> list[Channel]:
             rows = _rows(found[table.name])
             topic = table.topic or f"/{table.name}"
             made.append(Channel(topic, schemas.of_table(table), rows))
-    if plan.faults:
+    if plan.faults or own_events(plan):
         made.append(Channel("/log", schemas.LOG, events(plan)))
     return made
 
@@ -77,12 +79,14 @@ def events(plan: Any) -> Iterator[Message]:
     """What the scenario did to the network."""
     told = plan.scenario.model.event
     harm = networks()[plan.kind].harm
-    for fault in plan.faults:
-        action = told[fault.index].action
-        yield fault.at_us, {
-            "timestamp": stamp(fault.at_us),
-            "level": WARNING if action in harm else INFORMATION,
-            "message": _sentence(plan, fault),
+    done = [
+        (fault.at_us, WARNING if told[fault.index].action in harm else INFORMATION,
+         _sentence(plan, fault)) for fault in plan.faults
+    ]  # fmt: skip
+    own = [(at_us, INFORMATION, words) for at_us, words in own_events(plan)]
+    for at_us, level, message in sorted([*done, *own], key=itemgetter(0)):
+        yield at_us, {
+            "timestamp": stamp(at_us), "level": level, "message": message,
             "name": "scenario", "file": "", "line": 0,
         }  # fmt: skip
 

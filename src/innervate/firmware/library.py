@@ -12,7 +12,7 @@ from innervate.firmware.errors import FirmwareError
 from innervate.firmware.texts import filled, renamed, shipped
 from innervate.firmware.wire import Wire, coded_of
 from innervate.folders import not_for_boards
-from innervate.live.board import CABLES, Role, only, roles_of
+from innervate.live.board import Role, only, roles_of
 from innervate.live.parameters import check_parameters, settings_of
 from innervate.network import Network, networks, use
 
@@ -26,7 +26,9 @@ EXAMPLE = tuple(f"crypto/innervate_example{end}" for end in
                 (".h", "_cipher.c", "_curve.c", "_hash.c"))  # fmt: skip
 SEAL_BYTES = 25  # a sealed frame is longer by so many
 DRIVER = ("role_node.h", "role_node.c")
-MAINS = {"node": ("bare/role_main.c", "bare/role_small.c"), "sealed": ("bare/role_small.c",),
+ON_LINES = ("node", "field")
+ON_LINE = ("bare/role_main.c", "bare/role_small.c")
+MAINS = {"node": ON_LINE, "field": ON_LINE, "sealed": ("bare/role_small.c",),
          "station": ("bare/role_modem.c",)}  # fmt: skip
 BARE = ("bare/start.c", "bare/board.h", "bare/board_mps2.c", "bare/link.ld")
 # For build systems: CMake, Zephyr, PlatformIO, Arduino.
@@ -132,8 +134,8 @@ def files_of(library: Library, network: Network, sealed: bool = False) -> dict[s
     """
     texts = library.texts()
     coded = coded_of(library.role, network)
-    driver = library.role.driver if network.medium == CABLES or library.role.coded else ""
-    if sealed and (coded is None or driver != "node"):
+    driver = library.role.driver
+    if sealed and (coded is None or driver not in ON_LINES):
         raise FirmwareError(f"{library.role.name}: --sealed is for nodes that speak on lines")
     if coded is None:
         return texts
@@ -168,7 +170,7 @@ def _driven(
         for end in ("h", "c"):
             text = (resources.files(package) / f"{stem}.{end}").read_text(encoding="utf-8")
             texts[f"{name}_links.{end}"] = renamed(text, name)
-    ports = [file for file in PORTS if main == "node" or not file.endswith(".ino")]
+    ports = [file for file in PORTS if main in ON_LINES or not file.endswith(".ino")]
     for file in ports:
         texts[file.replace("role", name)] = shipped(f"ports/{file}", name, having)
     return texts
@@ -176,12 +178,25 @@ def _driven(
 
 def _sections(library: Library, sealed: bool) -> frozenset[str]:
     """The parts of the driver that a role has: see `shipped`."""
-    role = library.role
-    found = {"lines" if role.driver == "node" else "air", "sealed" if sealed else "clear", "small"}
-    if role.driver == "node":
-        found.add("hooks" if role.hooks else "ports")
+    role, is_on_lines = library.role, library.role.driver in ON_LINES
+    found = {"lines" if is_on_lines else "air", "sealed" if sealed else "clear", "small"}
+    if role.driver == "field":
+        found |= _in_field(library)
+    elif is_on_lines:
+        found |= {"cables", "hooks" if role.hooks else "ports"}
+    if is_on_lines:
         found.add("writes" if _writes_item(library) else "keeps")
     return frozenset(found | ({"gate"} if role.has_gate else set()))
+
+
+def _in_field(library: Library) -> set[str]:
+    """The parts of the driver that a role over a field has: what its medium would look at."""
+    handlers = {made.name for made in library.program.handlers}
+    fields = {name for name, *_ in library.role.frame}
+    found = {"field", *({"to", "rssi"} & fields)}
+    if "on_sent" in handlers:
+        return found | {"ends", "sent"}
+    return found | ({"ends", "carrier"} if "on_carrier" in handlers else set())
 
 
 def _writes_item(library: Library) -> bool:
@@ -228,7 +243,7 @@ def write(files: Files, folder: Path) -> dict[str, int]:
 
 def left(files: Files, folder: Path) -> list[str]:
     """What lies there of a library that was written before, sealed or not, and is none of this."""
-    mains = (*DRIVER, *PORTS, *(file for group in MAINS.values() for file in group))
+    mains = (*DRIVER, *PORTS, *dict.fromkeys(file for group in MAINS.values() for file in group))
     ours = [*SEAL, *EXAMPLE, *(file.replace("role", files.library.prefix) for file in mains)]
     return [name for name in ours if name not in files.texts and (folder / name).exists()]
 

@@ -60,11 +60,13 @@ class Program(NamedTuple):
         main: the file of `boards/micropython` that becomes main.py, without its ending.
         drivers: files of `boards/micropython` that it needs.
         sources: files of `src/innervate` that it needs.
+        node: "file:class" that main.py calls its node; "" = it knows by itself.
     """
 
     main: str
     drivers: tuple[str, ...]
     sources: tuple[str, ...]
+    node: str = ""
 
 
 class Form(NamedTuple):
@@ -146,7 +148,8 @@ class Role(NamedTuple):
         timers: how many it has.
         nodes: nodes of a network that its arrays hold at most; 0 = they do not depend on it.
         coded: how its frames lie on the wire, where that is more than the network's `LAYOUTS`.
-        driver: what carries it on a board: "node" over cables, "station" on a channel, "" nothing.
+        driver: what carries it on a board: "node" over cables; "field", whose frames leave by all
+            lines; "station" on a channel; "" nothing.
         hooks: "package:file", C of its own beside the driver: where frames leave, which come in.
         sized: "module:function", nodes -> the role with arrays for so many; "" = there is one size.
         live: "module:function", parameters -> the role as a live node with these has it; "" = the
@@ -197,7 +200,10 @@ PLAIN = Program(
     "plain_main",
     ("outbox", "driver"),
     ("wire/bits", "wire/crc", "wire/layout", "wire/cobs", "wire/frames"),
+    "driver:Node",
 )
+
+FIELD = PLAIN._replace(drivers=("outbox", "driver", "field"), node="field:FieldNode")
 
 CABLES = "cables"
 WATCHED = {
@@ -205,6 +211,11 @@ WATCHED = {
     "channel": Watched(simulation="innervate.sim.channel.declared:simulation", table="stations"),
     "field": Watched(simulation="innervate.sim.field.declared:simulation", table="stations"),
 }
+
+
+# Of networks that say nothing of boards themselves: in C, and in MicroPython.
+DRIVEN = {CABLES: "node", "channel": "", "field": "field"}
+PROGRAMS = {CABLES: PLAIN, "channel": None, "field": FIELD}
 
 
 def only(declared: Declaration, numbers: dict[str, int]) -> Declaration:
@@ -233,8 +244,8 @@ def roles_of(network: Network) -> tuple[Role, ...]:
     return (Role(
         network.name, protocol.__name__, fields.STATE, fields.PARAMS, fields.FRAME, fields.FRAME,
         {kind: on_wire(layout) for kind, _name, layout in network.frames.LAYOUTS},
-        getattr(protocol, "OUTBOX", OUTBOX), program=PLAIN if network.medium == CABLES else None,
-        watched=WATCHED[network.medium],
+        getattr(protocol, "OUTBOX", OUTBOX), program=PROGRAMS[network.medium],
+        watched=WATCHED[network.medium], driver=DRIVEN[network.medium],
         action=getattr(fields, "ACTION", ACTION), timers=getattr(protocol, "TIMERS", 1),
         usual=({},),
     ),)  # fmt: skip

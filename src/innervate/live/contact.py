@@ -179,7 +179,7 @@ class Contact:
 
     def send(self, data: bytes) -> None:
         """Put bytes on the path."""
-        if not self.path.cut:
+        if self.path.carries:
             self.path.send(data)
 
     def take(self, data: bytes) -> str:

@@ -82,12 +82,13 @@ class DeclaredStack(CabledStack):
         self, network: Network, number: int, params: dict[str, int], seed: int, ports: list[int]
     ) -> None:
         protocol, fields = network.protocol, network.fields
-        node = plain.make("Node", fields.STATE)()
+        make = partial(plain.make, array=plain.Row)
+        node = make("Node", fields.STATE)()
         for name, value in zip(DRIVERS, (number, seeded(seed), -1), strict=True):
             if hasattr(node, name):
                 setattr(node, name, value)
-        given = filled(plain.make("Params", fields.PARAMS)(), params)
-        frame, room = plain.make("Frame", fields.FRAME), getattr(protocol, "OUTBOX", OUTBOX)
+        given = filled(make("Params", fields.PARAMS)(), params)
+        frame, room = make("Frame", fields.FRAME), getattr(protocol, "OUTBOX", OUTBOX)
         super().__init__(protocol, node, given, frame, room, ports)
         self.network, self.number = network, number
         self.timers: int = protocol.TIMERS

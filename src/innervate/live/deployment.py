@@ -30,7 +30,7 @@ class Stage(Protocol):
         """Where a node's status socket lies."""
 
     async def change(self, cable: int, what: str, loss: float = 0.0) -> None:
-        """Cut, restore or loosen a cable, at both its ends."""
+        """Cut, restore or loosen a cable, at both its ends, or say who is in reach."""
 
     async def end_node(self, name: str, gently: bool) -> None:
         """End a node's process; `gently` lets it say goodbye, else it is killed."""

@@ -9,6 +9,9 @@ FORGOTTEN_MAX = 4096  # reads of a socket or a port: what comes meanwhile does n
 # Takes the path a frame came in on, and its bytes.
 Receiver = Callable[["Path", bytes], None]
 
+# What happens to a path by itself, as who is at its far end leaves and comes back.
+APART, NEAR = REACH = ("apart", "near")
+
 
 class Path:
     """A way on which frames leave and come in: a cable, a neighbour's address, a group.
@@ -22,6 +25,7 @@ class Path:
         is_group: whoever hears it, hears all that is sent on it, and there may be many.
         up: False while its device is away.
         cut: True = it carries nothing, as if its plug had come out; for tests and experiments.
+        away: True = who is at its far end is out of reach, so it carries nothing, cut or not.
         loss: share of the frames that are lost as they come in, 0 to 1; as of a loose plug.
         trouble: why it carries nothing now, for its user; "" = it does, or nothing is known.
         again: what is to be known of the end of its last trouble besides.
@@ -38,12 +42,17 @@ class Path:
         self.ends = ("", "")
         self.port = port
         self.up = True
-        self.cut = False
+        self.cut = self.away = False
         self.loss = 0.0
         self.trouble = ""
         self.heard_at = 0
         self.moved: Callable[[], object] = lambda: None
         self.counters: Counter[str] = Counter()
+
+    @property
+    def carries(self) -> bool:
+        """True unless nothing goes over it: it is cut, or leads to who is away."""
+        return not (self.cut or self.away)
 
     def bound_ends(self) -> tuple[str, str]:
         """Names of both ends that a node at the far end knows, too; "" = there is none."""

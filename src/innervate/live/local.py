@@ -31,7 +31,7 @@ class LocalPath(Path):
 
     def send(self, data: bytes) -> None:
         """The other end has it in the loop's next turn."""
-        if self.other is None or self.cut:
+        if self.other is None or not self.carries:
             self.counters["unsent: unplugged"] += 1
             return
         self.sent(data)
@@ -39,7 +39,7 @@ class LocalPath(Path):
 
     def take(self, data: bytes) -> None:
         """Bytes come in from the other end; lost while the cable is cut."""
-        if self.receive is not None and not self.cut:
+        if self.receive is not None and self.carries:
             self.receive(self, data)
 
 

@@ -9,10 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from innervate import folders
 from innervate.live import hangup, status, tap
 from innervate.live.build import build, keys_of, open_keys
 from innervate.live.engine import Engine
 from innervate.live.errors import LiveError
+from innervate.live.links import REACH
 from innervate.live.machine import machine
 from innervate.live.metrics import MetricsPage
 from innervate.live.node import LiveNode
@@ -22,6 +24,7 @@ from innervate.live.pending import Pending
 from innervate.live.receipts import FINAL
 from innervate.live.rotation import Rotation
 from innervate.live.streams import Form
+from innervate.network import networks
 
 DRAIN_S = 2.0
 SAVE_S = 10.0
@@ -78,6 +81,8 @@ class Process:
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self.ending.set)
         loop.add_signal_handler(signal.SIGHUP, self.reload)
+        if networks()[self.loaded.table.kind].folder is not None:
+            loop.set_exception_handler(self._went_wrong)
         hangup.let_in()
         with self._named():
             await self.server.start()
@@ -105,6 +110,19 @@ class Process:
                 await self.page.stop()
             await self.server.stop()
         self._look()
+
+    def _went_wrong(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Something broke that nobody waits for."""
+        if not self._is_blamed(context.get("exception")):
+            loop.default_exception_handler(context)
+
+    def _is_blamed(self, error: BaseException | None) -> bool:
+        """True if a folder's code broke: its node ends, and says at which line."""
+        folder = networks()[self.loaded.table.kind].folder
+        why = folders.blamed(error, folder) if error and folder else ""
+        if why:
+            self.node.ended(why)
+        return bool(why)
 
     async def _start(self) -> bool:
         """Start the node; False if we are to stop before it has found out what it needs."""
@@ -216,14 +234,18 @@ class Process:
             await self._send(request, writer)
         elif what == "listen":
             await self._listen(request, writer)
-        elif what in ("cut", "restore", "loose"):
+        elif what in ("cut", "restore", "loose", *REACH):
             port, loss = request["port"], request["loss"] if what == "loose" else 0.0
             if type(port) is not int or type(loss) not in (int, float):
                 raise ValueError("port is a whole number, loss a share from 0 to 1")
             path = self.node.change(port, what, float(loss))
             await writer.line({"path": path.name, "cut": path.cut, "loss": path.loss})
         elif what in self.node.requests:
-            await writer.line(self.node.requests[what](request))
+            try:
+                await writer.line(self.node.requests[what](request))
+            except Exception as error:
+                self._is_blamed(error)
+                raise
         elif what == "revoke":
             await writer.line(self._revoke(bytes.fromhex(request["list"])))
         elif what == "stop":

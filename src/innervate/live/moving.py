@@ -6,6 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from innervate.live.deployment import Pairs, Stage, Table, ask, sleep_until
+from innervate.live.links import APART, NEAR
 from innervate.scenario.declared.moving import Placed
 from innervate.scenario.robots import Walk, errs, position_cm
 from innervate.topology import astray, placement
@@ -53,7 +54,7 @@ def within(number: float, limits: tuple[int, int]) -> int:
 
 
 def changes(plan: Any, links: Pairs) -> Iterator[tuple[int, int, str]]:
-    """When which of the links is cut or restored, us, as robots come and go; all hold at first."""
+    """When whose ends come near or are apart, us, as robots come and go; all are near at first."""
     ways = {walk.node: walk for walk in plan.walks}
     carried = [True] * len(links)
     last_us = max((walk.points[-1][0] for walk in plan.walks), default=0)
@@ -67,7 +68,7 @@ def changes(plan: Any, links: Pairs) -> Iterator[tuple[int, int, str]]:
                 holds = _is_near(plan, places, a, b)
                 if holds != carried[cable]:
                     carried[cable] = holds
-                    yield at_us, cable, "restore" if holds else "cut"
+                    yield at_us, cable, NEAR if holds else APART
 
 
 def _is_near(plan: Any, places: dict[int, Point], a: int, b: int) -> bool:
@@ -79,7 +80,7 @@ def _is_near(plan: Any, places: dict[int, Point], a: int, b: int) -> bool:
 
 
 async def follow(plan: Any, stage: Stage) -> None:
-    """Cut and restore links as robots come and go."""
+    """Let links carry as robots come and go; one that is cut stays cut."""
     began = asyncio.get_running_loop().time()
     for at_us, cable, what in changes(plan, stage.deployment.links):
         await sleep_until(began + at_us / 1e6)

@@ -10,7 +10,7 @@ from typing import IO, TYPE_CHECKING, Any
 from innervate.dialect.arith import HALF30
 from innervate.live.engine import NEVER, Engine, Stack, clock_us
 from innervate.live.errors import LiveError
-from innervate.live.links import Link, Path
+from innervate.live.links import APART, REACH, Link, Path
 from innervate.live.machine import IDLE_STATES, machine
 from innervate.live.nodefile import PYTHON, C
 from innervate.live.receipts import STOPPED, Receipt
@@ -219,18 +219,24 @@ class LiveNode:
     def change(self, port: int, what: str, loss: float = 0.0) -> Path:
         """Cut, restore or loosen ("loose": `loss` of what comes in is lost) a path; the path.
 
+        "apart" and "near" say that who is at its far end has left or is back: it carries nothing
+        while it is cut or he is away.
+
         Raises:
             ValueError: there is no such path, or no such share.
         """
         path = self.path_at(port)
         if not 0 <= loss <= 1:
             raise ValueError(f"loss must be 0 to 1, the share that is lost, not {loss:g}")
-        path.cut, path.loss = what == "cut", loss
+        if what in REACH:
+            path.away = what == APART
+        else:
+            path.cut, path.loss = what == "cut", loss
         self._tell(machine().time_ns(), port, False, b"", f"event: {what}")
         return path
 
     def _receive(self, path: Path, data: bytes) -> None:
-        if path.cut:
+        if not path.carries:
             self._tell(machine().time_ns() if self.taps else 0, path.port, False, data, CUT)
             return
         if path.loss and machine().chance.random() < path.loss:
@@ -267,10 +273,10 @@ class LiveNode:
         for path in paths:
             at_ns = machine().time_ns() if self.taps else 0  # before anybody can have received it
             data = bare if self.sealer is None else self.sealer.close(path, bare)
-            if data is not None and not path.cut:
+            if data is not None and path.carries:
                 path.send(data)
             if self.taps:
-                self._tell(at_ns, path.port, True, bare, CUT if path.cut else "")
+                self._tell(at_ns, path.port, True, bare, "" if path.carries else CUT)
 
     def _tell(self, at_ns: int, port: int, out: bool, data: bytes, why: str) -> None:
         """Tell those who asked of a frame, in the clear."""
@@ -364,7 +370,7 @@ def _path_status(path: Path, now: int, most_us: int) -> dict[str, Any]:
         "own": path.own,
         **({"far": path.far} if path.far else {}),
         "port": path.port,
-        "up": path.up and not path.cut,
+        "up": path.up and path.carries,
         "heard_s": None if silent_us is None else round(silent_us / 1e6, 3),
         "broken": is_broken(path, now, most_us),
         "counters": dict(sorted(path.counters.items())),

@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 from innervate.live.deployment import Deployment, Stage, sleep_until
 from innervate.live.errors import LiveError
+from innervate.scenario.declared.shared import own_events
 
 LOSS_ONE = 32_768
-# What happens to processes and their cables; noise, single frames lost come by themselves.
-PLAYED = ("cut", "restore", "loose", "kill", "revive", "restart", "join", "leave")
+# Noise, single frames lost come by themselves; all else is done to processes and their cables.
+UNPLAYED = ("begin", "lose", "jam", "quiet", "garble", "fade")
 
 
 class Event(NamedTuple):
@@ -46,12 +47,15 @@ def events(deployment: Deployment) -> list[Event]:
         loss = getattr(fault, "loss_q15", 0) / LOSS_ONE
         at_s = fault.at_us * deployment.slower() / 1e6
         found.append(Event(at_s, what, cable, name, loss, f"{what} {where}"))
-    return found
+    for at_us, words in own_events(deployment.plan):  # played as what users hand in
+        at_s = at_us * deployment.slower() / 1e6
+        found.append(Event(at_s, words.partition(" ")[0], -1, "", 0.0, words))
+    return sorted(found, key=lambda event: event.at_s)
 
 
 def is_played(event: Event) -> bool:
     """False for what real cables and channels do by themselves: noise, single frames lost."""
-    return event.what in PLAYED
+    return event.what not in UNPLAYED
 
 
 class Player:

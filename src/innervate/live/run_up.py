@@ -19,6 +19,7 @@ from innervate.live.up import Processes
 
 SCENARIO = "scenario.toml"
 OURS = "# As `innervate live up` brought it up; the next one in this folder replaces it."
+LOOKED_S = 0.5  # so often it is looked whether a node ended
 SIGNAL_S = 0.2  # a node that a signal ended is seen before that signal is
 MANY = 50  # nodes
 NODE_MB, KEYED_MB = 27, 34  # that a node's process holds, in the clear and with keys
@@ -64,10 +65,26 @@ async def run(plan: Any, way: Way, scenario: str, for_s: float, as_json: bool) -
             raise KeyboardInterrupt
         with status.findable(network.folder):
             _announce(network, time.monotonic() - began, as_json)
-            await _until(ending, asyncio.create_task(player.play()), for_s)
+            telling = asyncio.create_task(_tell_failed(network, as_json))
+            try:
+                await _until(ending, asyncio.create_task(player.play()), for_s)
+            finally:
+                telling.cancel()
+        return 1 if network.failed() else 0
     finally:
         await down(network, way)
-    return 0
+
+
+async def _tell_failed(network: Processes, as_json: bool) -> None:
+    """Say of each node that ends by itself why it did, for ever."""
+    told = set[str]()
+    while True:
+        for name, why in network.failed().items():
+            if name not in told:
+                told.add(name)
+                said = {"ended": name, "why": why}
+                print(json.dumps(said) if as_json else f"{name} ended: {why}", flush=True)
+        await asyncio.sleep(LOOKED_S)
 
 
 async def _came_up(starting: asyncio.Task[None], ending: asyncio.Event) -> bool:

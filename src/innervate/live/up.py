@@ -14,6 +14,7 @@ from typing import Any
 from innervate.live import files, hangup, private, status
 from innervate.live.deployment import Deployment, Table, ask
 from innervate.live.errors import LiveError
+from innervate.live.links import NEAR, REACH
 from innervate.live.netns import UDP_PORT, Lab
 from innervate.live.serial_cables import Cables
 from innervate.network import networks
@@ -67,7 +68,8 @@ class Processes:
         away = getattr(plan, "absent", ())
         self.absent = {name for name, gone in zip(self.names, away, strict=False) if gone}
         self._ports: list[list[int]] = []  # per node: the cables of its paths
-        self._hurt: dict[int, tuple[str, float]] = {}  # cable: cut, or loose
+        # By cable and what it is about, reach or harm: apart, cut or loose.
+        self._hurt: dict[tuple[int, bool], tuple[str, float]] = {}
         self._medium = ""  # its address
         self._tables: dict[str, NodeTables] = {}
 
@@ -149,7 +151,7 @@ class Processes:
         self.start_node(name)
         await self._ready([name])
         number = self.names.index(name)
-        for cable, (what, loss) in self._hurt.items():
+        for (cable, _), (what, loss) in self._hurt.items():
             if number in self.links[cable]:
                 await self._change_end(number, cable, what, loss)
 
@@ -161,10 +163,11 @@ class Processes:
             await asyncio.to_thread(process.wait)
 
     async def change(self, cable: int, what: str, loss: float = 0.0) -> None:
-        """Cut, restore or loosen a cable at both its ends."""
-        self._hurt[cable] = (what, loss)
-        if what == "restore":
-            self._hurt.pop(cable, None)
+        """Cut, restore or loosen a cable at both its ends, or say who is in reach."""
+        about = (cable, what in REACH)
+        self._hurt[about] = (what, loss)
+        if what in ("restore", NEAR):
+            self._hurt.pop(about, None)
         for number in self.links[cable]:
             await self._change_end(number, cable, what, loss)
 
@@ -200,8 +203,7 @@ class Processes:
         while waiting := [name for name in waiting if not status.answers(self.socket(name))]:
             for name in waiting:
                 if self.processes[name].poll() is not None:
-                    log = (self.folder / f"{name}.log").read_text().strip().splitlines()
-                    raise LiveError(f"{name} ended: {log[-1] if log else 'no message'}")
+                    raise LiveError(f"{name} ended: {self._last_words(name)}")
             took_s, more = time.monotonic() - began, len(waiting) - 1
             first = waiting[0] + f" and {more} more" * bool(more)
             if took_s > limit_s:
@@ -211,6 +213,15 @@ class Processes:
                 said = f"{first} did not answer within {said_s:g} s; waiting up to {limit_s:g} s"
                 print(said, file=sys.stderr, flush=True)
             await asyncio.sleep(0.02)
+
+    def failed(self) -> dict[str, str]:
+        """Nodes that ended by themselves, and what they said last."""
+        codes = {name: process.poll() for name, process in self.processes.items()}
+        return {name: self._last_words(name) for name, code in codes.items() if (code or 0) > 0}
+
+    def _last_words(self, name: str) -> str:
+        log = (self.folder / f"{name}.log").read_text().strip().splitlines()
+        return log[-1].removeprefix(f"{name}: ") if log else "no message"
 
     def _paths(self) -> list[dict[int, Table]]:
         """Per node: the link table of each of its cables, in order of its paths."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from innervate.analysis.spread import spread
+from innervate.analysis.spread import laid_out
 from innervate.kernel.words import number_of
 from innervate.network import networks
 from innervate.plot import charts, page, svg
@@ -92,12 +92,7 @@ def graph(plan: Any, off: Collection[int] = ()) -> str:
 
 def _places(nodes: list[tuple[str, dict[str, Any]]], edges: Any) -> Places:
     """Where nodes are drawn: as their first two coordinates say, or else by who is linked."""
-    keys = [next((k for k in nodes[0][1] if k.startswith(axis)), "") for axis in ("x_", "y_")]
-    if all(keys) and all(all(key in about for key in keys) for _, about in nodes):
-        spots = np.array([[about[key] for key in keys] for _, about in nodes], np.float64)
-    else:
-        number = {name: i for i, (name, _) in enumerate(nodes)}
-        spots = spread(len(nodes), [(number[a], number[b]) for a, b, _about in edges])
+    spots, _unit = laid_out(nodes, edges)
     spots -= spots.min(axis=0)
     spots *= (SIDE - 80) / max(float(spots.max()), 1e-9)
     spots += 40

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from innervate.plot import theme
 from innervate.plot.charts import Bars, Panel, Steps
 from innervate.plot.svg import Drawing, clean, verbatim
 from innervate.plot.words import count_words, figure_words
+from innervate.scenario.declared.shared import own_events
 
 ROWS_MAX = 200
 FIGURE = re.compile(r"[-\d.,]+ \S{1,5}")  # a number with its unit
@@ -84,9 +86,10 @@ def beginning(head: Sequence[str], rows: Sequence[Sequence[str]], rest: str = ""
 
 
 def events(result: Any, words: Callable[[Any], str]) -> str:
-    """The section on faults that the scenario has brought about; "" if there are none."""
-    rows = [(f"{fault.at_us / 1e6:.3f} s", clean(words(fault)))
-            for fault in result.plan.faults if fault.at_us <= result.ended_us]  # fmt: skip
+    """The section on what the scenario has brought about; "" if that is nothing."""
+    told = [(fault.at_us, words(fault)) for fault in result.plan.faults] + own_events(result.plan)
+    told = sorted((one for one in told if one[0] <= result.ended_us), key=itemgetter(0))
+    rows = [(f"{at_us / 1e6:.3f} s", clean(what)) for at_us, what in told]
     return section("Events", beginning(("at", "what"), rows) if rows else "")
 
 

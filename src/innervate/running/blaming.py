@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from innervate import folders
+from innervate.dialect.plain import Row
 from innervate.network import Network
 from innervate.running.sent import Sent, Told, telling
 from innervate.sim.driver import InvariantBroken, Simulation
@@ -95,22 +96,8 @@ class Watched:
         return f"{self.sent.words}. {said}" if self.sent.words else said
 
 
-class _Row(Told):
+class _Row(Row, Told):  # type: ignore[misc]
     """An array field of a state."""
-
-    name = ""
-
-    def _check(self, place: Any) -> None:
-        if isinstance(place, int) and place < 0:
-            raise IndexError(f"{self.name}[{place}]: an index is 0 to {len(self) - 1}")
-
-    def __getitem__(self, place: Any) -> Any:
-        self._check(place)
-        return super().__getitem__(place)
-
-    def __setitem__(self, place: Any, value: Any) -> None:
-        self._check(place)
-        super().__setitem__(place, value)
 
 
 def _all(value: Any) -> list[int]:

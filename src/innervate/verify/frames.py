@@ -4,6 +4,7 @@ from typing import Any
 
 from innervate.dialect.folder import LOOKED_AT, MEASURED
 from innervate.dialect.outbox import DELIVER, SEND
+from innervate.dialect.plain import Row
 from innervate.network import dropped_of, layouts_of
 
 TIMED = "made_at"  # what latencies are measured by
@@ -29,7 +30,7 @@ class Frames:
     def blank(self, frame: Any) -> None:
         """Let none of a frame's fields be set."""
         for name, length, *_ in self.declared:
-            setattr(frame, name, [None] * length if length else None)
+            setattr(frame, name, Row([None] * length) if length else None)
 
     def wrong(self, frame: Any, action: int, handler: str, found: str = "") -> str:
         """What is wrong with a frame that a handler sends or delivers; all of it is set then.

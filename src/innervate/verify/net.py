@@ -54,7 +54,7 @@ class Net:
         self.is_addressed = False  # a frame's field `to` says who is given it
         self.own: dict[str, Any] = {}  # what must hold of a node, by what it says
         self.of_all: dict[str, Any] = {}  # and of all nodes together
-        self.params = plain.make("Params", fields.PARAMS)()
+        self.params = plain.make("Params", fields.PARAMS, array=plain.Row)()
         for name, value in params.items():
             setattr(self.params, name, value)
         self.draws = Draws()

@@ -4,6 +4,7 @@ from typing import Any
 
 from innervate.dialect.arith import HALF30 as HALF
 from innervate.dialect.arith import MASK30
+from innervate.dialect.plain import Row
 
 
 def values(record: Any, declared: Any, left_out: Any = ()) -> tuple[Any, ...]:
@@ -18,7 +19,7 @@ def values(record: Any, declared: Any, left_out: Any = ()) -> tuple[Any, ...]:
 def put(record: Any, declared: Any, given: tuple[Any, ...]) -> None:
     """Set the declared fields of a record."""
     for (name, length, *_), value in zip(declared, given, strict=True):
-        setattr(record, name, list(value) if length else value)
+        setattr(record, name, Row(value) if length else value)
 
 
 def with_one(row: tuple[Any, ...], place: int, value: Any) -> tuple[Any, ...]:

@@ -10,6 +10,7 @@ from innervate.analysis.summary import headline
 from innervate.analysis.ways import reach
 from innervate.network import Network, networks
 from innervate.plot.happened import event_words
+from innervate.scenario.declared.shared import own_events
 from innervate.sim.cables.world import DEAD
 from innervate.topology import PORTS
 from innervate.topology.layout import PITCH_MM, cell_places
@@ -37,10 +38,15 @@ class Declared(View):
         self.saves = network.writes_events
         self.shown, self.own = shown_by(network)
         self.memory = Memory()
+        self.own_events = own_events(self.plan)
 
     def note(self, rows: Rows) -> None:
         """Take in what happened since the last call."""
+        since_us = self.memory.told_us
         self.tell_faults()
+        for at_us, words in self.own_events:
+            if since_us <= at_us < self.memory.told_us:
+                self.log.say(at_us, words)
 
     def points(self) -> dict[str, float | None]:
         """A point of every plot, for now."""

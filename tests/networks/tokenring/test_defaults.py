@@ -36,7 +36,7 @@ TOLD = {"model", "check", "plan", "protocol", "fields", "frames"}
 # What is a network's own affair: a demo, papers, its images, scenarios out of measurements ...
 OWN = {
     "received_image", "demo", "sizing", "measured_template", "capture", "dissector",
-    "fit", "log", "rerun_parts", "recovery", "counterexample", "random", "papers",
+    "fit", "log", "recovery", "counterexample", "random", "papers",
     "comparison",
     "boards", "foreseen", "invariants", "measures", "shows", "happenings",
     "packets",

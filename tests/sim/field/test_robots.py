@@ -147,12 +147,12 @@ def test_live_nodes_are_told_as_simulated_ones_are(told):
         one.close()
 
 
-def test_links_of_live_robots_are_cut_and_restored_as_they_come_and_go(told):
+def test_links_of_live_robots_carry_as_they_come_and_go(told):
     plan = scenarios.plan(loaded(told))
     deployment = in_field.FieldDeployment(plan)
     assert deployment.links == [(0, 2), (1, 2)]
     found = list(moving.changes(plan, deployment.links))
-    assert [one[1:] for one in found] == [(1, "cut"), (0, "cut"), (1, "restore")]
+    assert [one[1:] for one in found] == [(1, "apart"), (0, "apart"), (1, "near")]
     for at_us, cable, _what in found[1:]:
         x_m = position_cm(plan.walks[0], at_us)[0] / 100
         far_m = abs(x_m - 200 * cable)

@@ -181,6 +181,15 @@ static void role_drain(role_node_t *node)
                 }
             }
 /*- */
+/*+ field */
+            for (int32_t port = 0; port < ROLE_PORTS_MAX; port++) {
+                role_queue(node, port, frame, act->c);
+                role_pump(node, port);
+            }
+/*+ ends */
+            node->unended = (uint8_t)(node->unended + !(act->c & ROLE_URGENT));
+/*- */
+/*- */
         } else if (act->kind == ROLE_SET_TIMER && a >= 0 && a < ROLE_TIMERS_MAX) {
             node->due[a] = act->b;
         } else if (act->kind == ROLE_DELIVER && node->port->deliver) {
@@ -213,6 +222,9 @@ void role_node_start(role_node_t *node, const role_params_t *params, const INNER
         node->due[timer] = -1;
     }
     role_init(&node->state, number, seed);
+/*+ to */
+    node->number = (uint16_t)number;
+/*- */
 /*+ gate */
     node->gate = gate;
     if (gate) {
@@ -264,6 +276,17 @@ static void role_piece(role_node_t *node, int32_t port, uint8_t *bytes, int32_t 
     }
 /*- */
     role_links_heard(&node->links, port, &node->frame);
+/*- */
+/*+ to */
+    if (node->frame.to != ROLE_EVERYBODY && node->frame.to != node->number) {
+        return;
+    }
+/*- */
+/*+ rssi */
+    node->frame.rssi = ROLE_LOUD;
+/*- */
+/*+ field */
+    port = 0; /* it came by the air */
 /*- */
     const int32_t now = role_node_now(node);
     role_on_frame(&node->state, /*gate*/node->params, now, port, &node->frame, &node->out);
@@ -328,6 +351,19 @@ void role_node_poll(role_node_t *node)
 /*- */
         role_pump(node, port);
     }
+/*+ ends */
+    for (int32_t left = node->unended; left > 0 && node->waiting == 0 && !node->broken; left--) {
+        node->unended--;
+/*+ sent */
+        role_on_sent(&node->state, node->params, role_node_now(node), 1, &node->out);
+/*- */
+/*+ carrier */
+        role_on_carrier(&node->state, node->params, role_node_now(node), 0, 0, &node->out);
+/*- */
+        role_drain(node);
+    }
+    soonest = node->unended > 0 ? 1000 : soonest;
+/*- */
 /*- */
     for (int32_t timer = 0; timer < ROLE_TIMERS_MAX && !node->broken; timer++) {
         const int32_t now = role_node_now(node);

@@ -36,7 +36,12 @@ extern "C" {
 
 /*+ lines */
 #ifndef ROLE_PORTS_MAX
+/*+ cables */
 #define ROLE_PORTS_MAX 4 /* serial lines */
+/*- */
+/*+ field */
+#define ROLE_PORTS_MAX 2 /* serial lines: a modem that everybody near hears, or a neighbour each */
+/*- */
 #endif
 /*+ clear */
 #define ROLE_SENT_MAX ROLE_SIZE_MAX /* bytes of a frame on a line, */
@@ -46,6 +51,12 @@ extern "C" {
 #define ROLE_SENT_MAX (ROLE_SIZE_MAX + INNERVATE_SEAL_MORE) /* bytes of a frame on a line, */
 #define ROLE_PIECE_MAX \
     (ROLE_SENT_MAX > INNERVATE_HELLO_MAX ? ROLE_SENT_MAX : INNERVATE_HELLO_MAX) /* and of all */
+/*- */
+/*+ to */
+#define ROLE_EVERYBODY 65535 /* whom a frame is for that is for all */
+/*- */
+/*+ rssi */
+#define ROLE_LOUD (-50) /* dBm: of every frame, as a line does not say */
 /*- */
 #ifndef ROLE_QUEUE
 #define ROLE_QUEUE (8 * ROLE_SENT_MAX + 3) /* bytes that wait for lines at most */
@@ -90,6 +101,12 @@ typedef struct {
     int32_t at; /* when what a handler is told of was */
     const uint8_t *payload; /* of the frame that came in, while it is handled; 0 = none */
     int32_t payload_count; /* its bytes */
+/*- */
+/*+ to */
+    uint16_t number; /* who we are */
+/*- */
+/*+ ends */
+    uint8_t unended; /* own frames whose end the protocol was not told yet */
 /*- */
 /*+ hooks */
     role_links_t links;

@@ -16,6 +16,7 @@ from innervate.scenario.actions.cables import ACTIONS, LOOSE, LOSE, TARGETS
 from innervate.scenario.cables import LOSS_ONE, CablesPlan, Fault
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
+from innervate.scenario.declared.offered import offered
 from innervate.scenario.keys import Micros, Table, number, whole
 from innervate.scenario.lines import Key
 from innervate.scenario.source import Source, shown
@@ -30,12 +31,8 @@ SETTINGS = (
     'shape = "ring"  # line, ring, grid, tree; or cables = ["n0.E-n1.W", "n1-n2"]',
     "duration_s = 1.0",
 )
-EVENT = """
-# [[event]]
-# at_s = 0.5
-# action = "cut"  # restore, loose, lose; kill, revive, restart of a node
-# link = "n0-n1"
-"""
+# Words of [[event]], with what they happen to if it is no link.
+HAPPENS = "cut, restore, loose, lose; kill, revive, restart of a node"
 
 
 class Links(Table, frozen=True, kw_only=True):
@@ -239,10 +236,10 @@ def describe(plan: Any) -> str:
     near = [(graph.node_of(a), graph.node_of(b)) for a, b in graph.links()]
     found = ["nobody gets any frame: links.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, near, plan.start_us)
-    return cables.describe(plan, found, shared.script_lines(plan), shared.own_events(plan, ACTIONS))
+    return cables.describe(plan, found, shared.script_lines(plan), shared.own_lines(plan))
 
 
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     made = shared.template(network, CablesScenario, "over cables", SETTINGS)
-    return made and made + EVENT
+    return made and made + offered(network, HAPPENS, 'link = "n0-n1"')

@@ -14,6 +14,7 @@ from innervate.scenario.actions.channel import ACTIONS, FADE, GARBLE, WORDS
 from innervate.scenario.cables import LOSS_ONE, Input
 from innervate.scenario.declared import shared
 from innervate.scenario.declared.foreseen import warnings
+from innervate.scenario.declared.offered import offered
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Table, number, whole
 from innervate.scenario.source import Source
@@ -176,7 +177,7 @@ def describe(plan: Any) -> str:
     ]
     found = ["nobody can read any frame: air.loss is 1"] if plan.loss_q15 >= LOSS_ONE else []
     found += warnings(plan, _near(plan))
-    own = shared.own_events(plan, DONE)
+    own = shared.own_lines(plan)
     return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 
@@ -199,4 +200,5 @@ def event(plan: Any, fault: Any) -> dict[str, Any]:
 def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     settings = ("nodes = 6", "duration_s = 1.0", "", "[air]", "slot_us = 100", "turnaround_us = 20")
-    return shared.template(network, ChannelScenario, "on a shared channel", settings)
+    made = shared.template(network, ChannelScenario, "on a shared channel", settings)
+    return made and made + offered(network, "kill, revive, join", "node = 1")

@@ -16,6 +16,7 @@ from innervate.scenario.actions.field import ACTIONS, JAM
 from innervate.scenario.cables import Input
 from innervate.scenario.declared import moving, shared
 from innervate.scenario.declared.foreseen import warnings
+from innervate.scenario.declared.offered import offered
 from innervate.scenario.events import opening, told
 from innervate.scenario.keys import Micros, Table, above_0, number, whole
 from innervate.scenario.lines import Key
@@ -28,6 +29,8 @@ from innervate.wire.frames import Codec
 NODES_MAX = 254
 GOOD_CDB = 300  # a good link is so much louder: 95 % are received
 LEAST = 0.01  # who receives less than that of a node's frames is out of its reach
+# Words of [[event]], with what each needs besides its node.
+HAPPENS = "kill, revive, restart, quiet, jam with noise_dbm, cut and restore with other = 3"
 PAIRS = ("cut", "restore")
 
 
@@ -320,7 +323,7 @@ def describe(plan: Any) -> str:
     ]
     pairs_met = moving.met(plan.nodes, plan.good, moving.walkers_of(plan))
     found = warnings(plan, pairs_met, plan.scenario.model.start_us)
-    own = shared.own_events(plan, ACTIONS)
+    own = shared.own_lines(plan)
     return "\n".join([*lines, *shared.script_lines(plan), *told(plan, fault_words, found, own)])
 
 
@@ -345,4 +348,11 @@ def template(network: Any) -> str:
     """A scenario to start from, with all parameters; "" for a network with keys of its own."""
     settings = ("nodes = 9", 'layout = "grid"  # line, grid, random; or positions_m; or [[link]]s',
                 "spacing_m = 20", "duration_s = 1.0", "", "[air]", "reach_m = 30")  # fmt: skip
-    return shared.template(network, FieldScenario, "over a field", settings)
+    made = shared.template(network, FieldScenario, "over a field", settings)
+    if not made:
+        return ""
+    placed = moving.placed_of(network.fields)
+    told = "" if placed is None else f"; it is told where it is: on_input, kind {placed.kind}"
+    robot = [f"[[robot]]  # a node that moves{told}", "node = 1",
+             "waypoints = [[0, 0], [40, 40]]  # m; or random = true", "speed_mps = 2"]  # fmt: skip
+    return made + offered(network, HAPPENS, "node = 2", robot)

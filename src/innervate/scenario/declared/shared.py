@@ -228,15 +228,23 @@ def inputs_of(model: Any, network: Network, nodes: int, actions: tuple[str, ...]
     return sorted(found, key=lambda one: one.at_us)
 
 
-def own_events(plan: Any, actions: Iterable[str]) -> list[tuple[int, str]]:
+def own_events(plan: Any) -> list[tuple[int, str]]:
     """The events of a plan that are its network's own, by time: when (us), and in words."""
+    network = networks()[plan.kind]
+    own = set(network.happenings if network.has("happenings") else ()) - set(network.actions)
+    if not own:
+        return []
     label = plan.graph.label if hasattr(plan, "graph") else "node {}".format
     found = [
-        (round(1e6 * event.at_s),
-         f"at {event.at_s:g} s {event.action} {label(event.node)}, value {event.value}")
-        for event in plan.scenario.model.event if event.action not in actions
+        (round(1e6 * event.at_s), f"{event.action} {label(event.node)}, value {event.value}")
+        for event in plan.scenario.model.event if event.action in own
     ]  # fmt: skip
     return sorted(found, key=itemgetter(0))
+
+
+def own_lines(plan: Any) -> list[tuple[int, str]]:
+    """The same, with their times in words: "at 0.6 s poke n3, value 1"."""
+    return [(at_us, f"at {at_us / 1e6:g} s {words}") for at_us, words in own_events(plan)]
 
 
 def parameter_lines(network: Network) -> Iterator[str]:

@@ -5,14 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from innervate.export.declared_rrd import OFF, off_over_time, way
 from innervate.export.recording import INFORMATION, WARNING
 from innervate.export.rrd_parts import ALARM, GREY, INK, PORTS, Column, Log, Parts
-from innervate.scenario.actions.field import KILL, REVIVE
-from innervate.scenario.robots import position_cm
 
-STEP_US = 100_000  # between two places of a robot
 NODE_M, GATEWAY_M, ROBOT_M = 0.6, 1.1, 1.0  # radii
-OFF = 0.4  # of its radius, while a node is switched off
 ROBOT, INSIDE = PORTS[1], PORTS[2]
 
 
@@ -50,13 +47,7 @@ def _links(rerun: Any, plan: Any, places: Any, moving: set[int]) -> Any:
 
 def _nodes(rerun: Any, plan: Any, fixed: list[int]) -> Column:
     """Colours and sizes of the nodes that stay where they are, whenever one goes or comes."""
-    off: set[int] = set()
-    states = [(0, frozenset(off))]
-    for fault in plan.faults:
-        if fault.action in (KILL, REVIVE):
-            off = off | {fault.node} if fault.action == KILL else off - {fault.node}
-            states.append((fault.at_us, frozenset(off)))
-    latest = dict(states)  # of those of the same moment the last
+    latest = off_over_time(plan)
     colours = [[GREY if node in gone else INK if plan.ranks[node] >= 0 else PORTS[0]
                 for node in fixed] for gone in latest.values()]  # fmt: skip
     sizes = [[(GATEWAY_M if plan.ranks[node] >= 0 else NODE_M) * (OFF if node in gone else 1.0)
@@ -70,13 +61,12 @@ def _nodes(rerun: Any, plan: Any, fixed: list[int]) -> Column:
 def _robots(rerun: Any, plan: Any, crossings: list[dict[str, Any]]) -> Iterator[Column]:
     """Where each robot was, larger and in the fence's colour while it was outside."""
     for walk in plan.walks:
-        times = [*range(0, plan.duration_us, STEP_US), plan.duration_us]
+        times, places = way(walk, plan.duration_us)
         outside = [
             any(one["robot"] == walk.node and one["crossed_us"] <= at < one["back_us"]
                 for one in crossings)
             for at in times
         ]  # fmt: skip
-        places = [(x / 100, y / 100, 0.0) for x, y in (position_cm(walk, at) for at in times)]
         made = rerun.Points3D.columns(
             positions=places,
             colors=[ALARM if out else ROBOT for out in outside],
