@@ -107,7 +107,7 @@ def bodies(bench):
     return [bytes(f.body[: f.length]) for _, i, f in bench.sent if i == 0 and f.kind == DATA]
 
 
-@pytest.mark.parametrize("tries, eased", [(0, 0), (1, UNIT)])
+@pytest.mark.parametrize(("tries", "eased"), [(0, 0), (1, UNIT)])
 def test_an_end_to_end_ack_eases_once_what_was_sent_in_vain(tries, eased):
     bench = settled(3, [(0, 1), (1, 2)])
     bench.lost = lambda frame, to: to == 0
