@@ -9,10 +9,10 @@ from innervate.networks.mesh.protocol.constants import (
     ACK_WANTED,
     DATA,
     E2E_ACK,
+    PARITY,
     REPORT_HOP,
     REPORT_SUSPECT,
 )
-from innervate.networks.mesh.protocol.link_quality import UNIT
 from innervate.networks.mesh.protocol.queue import DOWN, FREE, UNACKED, WAITS
 from tests.networks.mesh.bench import Bench, Frame
 
@@ -107,19 +107,6 @@ def bodies(bench):
     return [bytes(f.body[: f.length]) for _, i, f in bench.sent if i == 0 and f.kind == DATA]
 
 
-@pytest.mark.parametrize(("tries", "eased"), [(0, 0), (1, UNIT)])
-def test_an_end_to_end_ack_eases_once_what_was_sent_in_vain(tries, eased):
-    bench = settled(3, [(0, 1), (1, 2)])
-    bench.lost = lambda frame, to: to == 0
-    bench.send(0, 2, flags=0)
-    place = in_state(bench, 0, DOWN, tries)
-    end = end_ack(bench, place)
-    before = bench.nodes[0].strain = 5 * UNIT
-    for _ in range(2):
-        hear(bench, 0, end)
-    assert before - bench.nodes[0].strain == eased
-
-
 def test_the_next_frame_goes_out_after_one_that_was_answered_late():
     bench = settled(3, [(0, 1), (1, 2)])
     bench.lost = lambda frame, to: to == 0
@@ -132,15 +119,20 @@ def test_the_next_frame_goes_out_after_one_that_was_answered_late():
     assert bodies(bench) == [b"first", b"first", b"second"]
 
 
-def test_what_its_recipient_has_is_not_sent_at_all():
+def test_an_ack_is_for_the_frame_that_was_sent_not_for_another_try_that_waits():
     bench = settled(3, [(0, 1), (1, 2)])
-    bench.nodes[0].busy = 7  # something else is under way
-    bench.send(0, 2, flags=0)
-    place = in_state(bench, 0, WAITS, 0)
-    hear(bench, 0, end_ack(bench, place))
-    bench.nodes[0].busy = -1
-    bench.run(bench.now + 1_000_000)
-    assert messages(bench, 0) == []
+    bench.lost = lambda frame, to: to == 0
+    bench.send(0, 2)
+    place = in_state(bench, 0, UNACKED, 1)
+    node, behind = bench.nodes[0], place + 1
+    for name in ("q_link_dst", "q_origin", "q_seq", "q_kind", "q_flags", "q_state", "q_tries"):
+        getattr(node, name)[behind] = getattr(node, name)[place]
+    node.busy = behind
+    node.q_flags[place] ^= PARITY  # another try of the same message, and it stands before it
+    node.q_state[place] = WAITS
+    hear(bench, 0, ack(bench, place))
+    assert node.q_state[behind] == FREE
+    assert node.q_state[place] != FREE
 
 
 def test_a_giver_that_repeats_itself_has_not_taken_its_packet_back():

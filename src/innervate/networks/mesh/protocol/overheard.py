@@ -13,10 +13,9 @@ from innervate.networks.mesh.protocol.queue import FREE, close, tell_hop
 def drop_overheard(node, params, frame, out):
     """Forget what need not be sent as this frame tells: its next hop, or its recipient, has it."""
     for i in range(node.places):
-        if node.q_state[i] != FREE:
+        if node.q_state[i] != FREE and (node.q_tries[i] > 0 or node.q_kind[i] == ALARM):
             if is_confirmed(node, i, frame) or is_passed_on(node, i, frame):
-                if node.q_tries[i] > 0:
-                    note_answer(node, params, place_of(node, params, node.q_link_dst[i]))
+                note_answer(node, params, place_of(node, params, node.q_link_dst[i]))
                 tell_hop(node, i, out)
                 close(node, params, i)
 
@@ -28,7 +27,7 @@ def is_passed_on(node, i, frame):
     """
     if node.q_seq[i] != frame.seq or node.q_origin[i] != frame.origin:
         return 0
-    if node.q_kind[i] != frame.kind or (node.q_flags[i] ^ frame.flags) & PARITY:
+    if (node.q_flags[i] ^ frame.flags) & PARITY:
         return 0
     return node.q_link_dst[i] == frame.link_src and in_path(frame, node.number)
 

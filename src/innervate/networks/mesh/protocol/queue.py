@@ -180,7 +180,6 @@ def close(node, params, i):
     """
     if node.q_state[i] == DOWN:
         node.q_link_dst[i] = ALL
-        node.q_tries[i] = 0
     else:
         drop(node, params, i)
 
@@ -366,7 +365,7 @@ def send_acks(node, out):
 def take_ack(node, params, origin, seq, who, k):
     """The place of the frame that `who`, in place k, acknowledges so: free now; -1 if for none."""
     for i in range(node.places):
-        if node.q_state[i] != FREE and node.q_seq[i] == seq and node.q_origin[i] == origin:
+        if node.q_state[i] >= DOWN and node.q_seq[i] == seq and node.q_origin[i] == origin:
             if node.q_link_dst[i] == who:
                 note_answer(node, params, k)
                 close(node, params, i)
