@@ -13,6 +13,7 @@ from innervate.networks.mesh.protocol.constants import (
     REPORT_HOP,
     REPORT_SUSPECT,
 )
+from innervate.networks.mesh.protocol.link_quality import UNIT
 from innervate.networks.mesh.protocol.queue import DOWN, FREE, UNACKED, WAITS
 from tests.networks.mesh.bench import Bench, Frame
 
@@ -107,6 +108,19 @@ def bodies(bench):
     return [bytes(f.body[: f.length]) for _, i, f in bench.sent if i == 0 and f.kind == DATA]
 
 
+@pytest.mark.parametrize(("tries", "eased"), [(0, 0), (1, UNIT)])
+def test_an_end_to_end_ack_eases_once_what_was_sent_in_vain(tries, eased):
+    bench = settled(3, [(0, 1), (1, 2)])
+    bench.lost = lambda frame, to: to == 0
+    bench.send(0, 2, flags=0)
+    place = in_state(bench, 0, DOWN, tries)
+    end = end_ack(bench, place)
+    before = bench.nodes[0].strain = 5 * UNIT
+    for _ in range(2):
+        hear(bench, 0, end)
+    assert before - bench.nodes[0].strain == eased
+
+
 def test_the_next_frame_goes_out_after_one_that_was_answered_late():
     bench = settled(3, [(0, 1), (1, 2)])
     bench.lost = lambda frame, to: to == 0
@@ -117,6 +131,17 @@ def test_the_next_frame_goes_out_after_one_that_was_answered_late():
     assert bodies(bench) == [b"first"] * 2, "one frame at a time is handed down"
     bench.run(bench.now + 1_500)
     assert bodies(bench) == [b"first", b"first", b"second"]
+
+
+def test_what_its_recipient_has_is_not_sent_at_all():
+    bench = settled(3, [(0, 1), (1, 2)])
+    bench.nodes[0].busy = 7  # something else is under way
+    bench.send(0, 2, flags=0)
+    place = in_state(bench, 0, WAITS, 0)
+    hear(bench, 0, end_ack(bench, place))
+    bench.nodes[0].busy = -1
+    bench.run(bench.now + 1_000_000)
+    assert messages(bench, 0) == []
 
 
 def test_an_ack_is_for_the_frame_that_was_sent_not_for_another_try_that_waits():
