@@ -90,8 +90,8 @@ States
 
 Events and transitions
 ======================
-Any frame first: what is not sound (`is_sound`) is dropped; `hear` notes its sender. An ack that is
-lost may be made good by what is heard later: `drop_overheard`, which also ends floods.
+Any frame first: what is not sound (`is_sound`) is dropped; `hear` notes its sender. An ack that was
+lost is made good by what is heard later, `drop_overheard`, even in the backoff after it (0085).
 
 | frame                                  | to               | action                               |
 |----------------------------------------|------------------|--------------------------------------|
@@ -179,8 +179,8 @@ A hop for which there is no room gets no ack, so that another is tried.
 |            | gone                            | then age                         |                |
 | DOWN       | `SENT`                          | `take_sent`, `settle`;           | UNACKED        |
 |            |                                 | broadcasts: next copy or done    |                |
-| UNACKED    | `ACK`                           | `on_hop_ack`, `take_ack`         | FREE           |
-| UNACKED    | it is heard going on            | `drop_overheard`                 | FREE           |
+| any        | `ACK`; DOWN it goes a last time | `take_ack`, `close`              | FREE           |
+| any        | it is heard going on, or came   | `drop_overheard`, `close`        | FREE           |
 | UNACKED    | `ACK_WAIT`                      | `on_ack_timeout`: again, up to   | WAITS          |
 |            |                                 | `transmissions`                  |                |
 | UNACKED    | ... the last of them            | `hop_failed`: `suspect`, `aim`   | WAITS          |

@@ -173,6 +173,17 @@ def drop(node, params, i):
         node.busy = -1
 
 
+def close(node, params, i):
+    """The hop of the frame in place i has it: forget it.
+
+    One that waits for its backoff below goes out once more, as what nobody acknowledges.
+    """
+    if node.q_state[i] == DOWN:
+        node.q_link_dst[i] = ALL
+    else:
+        drop(node, params, i)
+
+
 def is_before(node, i, j):
     """1 if the frame in place i goes before that in place j.
 
@@ -354,10 +365,10 @@ def send_acks(node, out):
 def take_ack(node, params, origin, seq, who, k):
     """The place of the frame that `who`, in place k, acknowledges so: free now; -1 if for none."""
     for i in range(node.places):
-        if node.q_state[i] == UNACKED and node.q_seq[i] == seq and node.q_origin[i] == origin:
+        if node.q_state[i] >= DOWN and node.q_seq[i] == seq and node.q_origin[i] == origin:
             if node.q_link_dst[i] == who:
                 note_answer(node, params, k)
-                drop(node, params, i)
+                close(node, params, i)
                 return i
     return -1
 

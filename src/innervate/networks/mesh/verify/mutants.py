@@ -17,7 +17,7 @@ WANTED = (*SHORT, ("tables", False), ("on_demand", True))  # ways are not known,
 MUTANTS = planted(
     ("nobody acknowledges a hop",
      "    if frame.flags & ACK_WANTED:\n        acknowledge(node, params, frame, out)\n", ""),
-    ("a hop's ack is ignored", "                drop(node, params, i)\n                return i\n",
+    ("a hop's ack is ignored", "                close(node, params, i)\n                return i\n",
      "                return -1\n"),
     ("a packet for us is taken for somebody else's",
      "    here = frame.dest == node.number\n", "    here = frame.dest == node.number + 1\n"),
