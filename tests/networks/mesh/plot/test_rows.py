@@ -69,11 +69,13 @@ def test_events_and_reports_are_rows():
     def events(result):
         return page.events(result, lambda fault: fault.words)
 
-    plan = Of(faults=[Of(at_us=1_234_567, words="kill <a>"), Of(at_us=2_000_000, words="b")])
+    plan = Of(
+        kind="mesh", faults=[Of(at_us=1_234_567, words="kill <a>"), Of(at_us=2_000_000, words="b")]
+    )
     both = [["1.235\N{NO-BREAK SPACE}s", "kill &lt;a&gt;"], ["2.000\N{NO-BREAK SPACE}s", "b"]]
     assert cells(events(Of(plan=plan, ended_us=2_000_000))) == both
     assert cells(events(Of(plan=plan, ended_us=1_999_999))) == both[:1]  # interrupted
-    assert events(Of(plan=Of(faults=[]), ended_us=9)) == ""
+    assert events(Of(plan=Of(kind="mesh", faults=[]), ended_us=9)) == ""
     (known, name), *_ = report.REPORTS.items()
     rows = np.array([(999,), (known,), (known,)], [("code", np.int64)])
     assert cells(report._reports(Of(rows=rows))) == [[name, "2"], ["code 999", "1"]]
