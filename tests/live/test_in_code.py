@@ -1,12 +1,17 @@
 """live_up(scenario): a scenario's nodes as processes, held by a program."""
 
+import asyncio
 import os
 import time
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import innervate
 from innervate import Mesh, Skin
+from innervate import scenario as scenarios
+from innervate.live import up
 
 SKIN = Skin(
     patch=[Skin.Patch(columns=2, rows=1)],
@@ -86,3 +91,49 @@ def test_a_file_is_no_folder_for_nodes(tmp_path):
         innervate.live_up(SKIN, folder=tmp_path / "run")
     with pytest.raises(innervate.LiveError, match="cannot be made: Not a directory"):
         innervate.live_up(SKIN, folder=tmp_path / "run" / "of")
+
+
+def changing(told):
+    """A line's processes that were not started; their nodes note what they are asked."""
+    made = up.Processes(scenarios.plan(scenarios.load("line")), Path("unused"), "udp")
+
+    async def note(number, cable, what, loss):
+        await asyncio.sleep(0)  # others go on, as while a node is asked
+        told.append((number, what))
+
+    made._change_end = note
+    return made
+
+
+def test_of_two_changes_of_a_cable_both_its_ends_hear_the_same_last():
+    """One of the scenario's own, as it is played, and one of the program's."""
+    told = []
+    network = changing(told)
+
+    async def main():
+        await asyncio.gather(network.change(0, "cut"), network.change(0, "restore"))
+
+    asyncio.run(main())
+    assert told == [(n, what) for what in ("cut", "restore") for n in network.links[0]]
+
+
+def test_a_node_that_begins_hears_of_a_change_that_comes_meanwhile():
+    told = []
+    network = changing(told)
+    one, other = network.links[0]
+    name = network.names[one]
+    network.start_node = lambda name: None
+
+    async def at_once(names):
+        assert names == [name]
+
+    network._ready = at_once
+
+    async def main():
+        await network.change(0, "cut")
+        network.processes[name] = SimpleNamespace(poll=lambda: 0)
+        await asyncio.gather(network.begin_node(name), network.change(0, "restore"))
+
+    asyncio.run(main())
+    assert [what for number, what in told if number == other] == ["cut", "restore"]
+    assert [what for number, what in told if number == one][-1] == "restore"

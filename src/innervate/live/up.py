@@ -70,6 +70,7 @@ class Processes:
         self._ports: list[list[int]] = []  # per node: the cables of its paths
         # By cable and what it is about, reach or harm: apart, cut or loose.
         self._hurt: dict[tuple[int, bool], tuple[str, float]] = {}
+        self._changing = asyncio.Lock()  # or two at once would leave a cable cut at one end
         self._medium = ""  # its address
         self._tables: dict[str, NodeTables] = {}
 
@@ -151,9 +152,10 @@ class Processes:
         self.start_node(name)
         await self._ready([name])
         number = self.names.index(name)
-        for (cable, _), (what, loss) in self._hurt.items():
-            if number in self.links[cable]:
-                await self._change_end(number, cable, what, loss)
+        async with self._changing:
+            for (cable, _), (what, loss) in self._hurt.items():
+                if number in self.links[cable]:
+                    await self._change_end(number, cable, what, loss)
 
     async def end_node(self, name: str, gently: bool) -> None:
         """End a node: SIGKILL, or gently SIGTERM."""
@@ -165,11 +167,12 @@ class Processes:
     async def change(self, cable: int, what: str, loss: float = 0.0) -> None:
         """Cut, restore or loosen a cable at both its ends, or say who is in reach."""
         about = (cable, what in REACH)
-        self._hurt[about] = (what, loss)
-        if what in ("restore", NEAR):
-            self._hurt.pop(about, None)
-        for number in self.links[cable]:
-            await self._change_end(number, cable, what, loss)
+        async with self._changing:
+            self._hurt[about] = (what, loss)
+            if what in ("restore", NEAR):
+                self._hurt.pop(about, None)
+            for number in self.links[cable]:
+                await self._change_end(number, cable, what, loss)
 
     async def _change_end(self, number: int, cable: int, what: str, loss: float) -> None:
         request = {"do": what, "port": self._ports[number].index(cable), "loss": loss}
