@@ -55,7 +55,7 @@ def of_levels(*levels, **how):
         (["down", "degraded", "ok", "down"], "down",
          "2 of 4 runs are down; 1 of 4 runs is degraded; 1 of 4 runs is ok."),
         (["ok", "failed"], "degraded", "1 of 2 runs failed; 1 of 2 runs is ok."),
-        (["no data", "ok"], "no data", "1 of 2 runs is no data; 1 of 2 runs is ok."),
+        (["no data", "ok"], "no data", "1 of 2 runs has no data; 1 of 2 runs is ok."),
         (["failed"], "no data", "The only run failed."),
     ],
 )  # fmt: skip

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from innervate.cli import errors
 from innervate.cli.live_table import LiveTable
 from innervate.cli.options import SweepOptions
-from innervate.kernel.words import number_of
+from innervate.kernel.words import number_of, without_middle
 
 if TYPE_CHECKING:
     from innervate.sweeping import Sweep, SweepPlan
@@ -147,6 +147,4 @@ def _cell(value: Any) -> str:
     """A setting as in a file; a long one without its middle."""
     from innervate.sweeping.vary import shown
 
-    text = shown(value)
-    half = CELL_MAX // 2
-    return text if len(text) <= CELL_MAX else f"{text[: half - 2]}...{text[1 - half :]}"
+    return without_middle(shown(value), CELL_MAX)

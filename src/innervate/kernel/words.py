@@ -13,3 +13,9 @@ def some(names: Sequence[str], most: int = 8) -> str:
     more = [f"{len(names) - most:,} more"] if len(names) > most else []
     *first, last = [*names[:most], *more]
     return f"{', '.join(first)} and {last}" if first else last
+
+
+def without_middle(text: str, most: int) -> str:
+    """A text of at most `most` letters: of a longer one the middle is left out."""
+    half = most // 2
+    return text if len(text) <= most else f"{text[: half - 2]}...{text[1 - half :]}"

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from innervate.analysis.intervals import Interval
 from innervate.plot import svg
 from innervate.plot.charts import BOTTOM, LABEL_ROW, LEFT, LETTER, RIGHT, SMALL_LETTER, WIDTH, ticks
-from innervate.plot.words import count_words, figure_words
+from innervate.plot.words import count_words
 
 STYLE = "\n" + Path(__file__).with_name("means.css").read_text(encoding="utf-8")
 ROWS_MAX = 24
@@ -33,10 +33,11 @@ Scale = Callable[[float], float]
 
 
 class Mean(NamedTuple):
-    """A mean with its interval: of which number or row, and what is said of it."""
+    """A mean with its interval: of which number, in words, and what is said of it at length."""
 
     at: float
     found: Interval
+    told: str
     tip: str
 
 
@@ -77,20 +78,19 @@ def over(lines: Sequence[Line], x_name: str, label: str) -> svg.Drawing:
 
 def rows(means: Sequence[tuple[str, Mean]], label: str) -> svg.Drawing:
     """A row for each of 1 to ROWS_MAX means: its name, its interval as a whisker, its number."""
-    told = [_told(mean.found) for _, mean in means]
     left = 16 + LETTER * max(len(name) for name, _ in means)
-    right = 12 + LETTER * max(map(len, told))
+    right = 12 + LETTER * max(len(mean.told) for _, mean in means)
     low, high = _range([mean.found for _, mean in means])
     scale = max(WIDTH - left - right, 80.0) / (high - low)
     drawing = svg.Drawing(max(WIDTH, left + right + 80), 26.0 * len(means) + 8, label)
-    for number, ((name, mean), words) in enumerate(zip(means, told, strict=True)):
+    for number, (name, mean) in enumerate(means):
         level = 26.0 * number + 17
         ends = [left + (value - low) * scale for value in mean.found]
         drawing.text((left - 10, level + 4), name, "", "end")
         drawing.line((left, level), (left + (high - low) * scale, level), "grid")
         drawing.line((ends[1], level), (ends[2], level), "whisker l0")
         drawing.path(dot(ends[0], level, 0), "dot l0", mean.tip)
-        drawing.text((left + (high - low) * scale + 8, level + 4), words)
+        drawing.text((left + (high - low) * scale + 8, level + 4), mean.told)
     return drawing
 
 
@@ -105,11 +105,6 @@ def swatch(number: int) -> svg.Drawing:
     drawing.line((0, 6), (26, 6), f"mean l{number}")
     drawing.path(dot(13, 6, number), f"dot l{number}")
     return drawing
-
-
-def _told(found: Interval) -> str:
-    half = (found.high - found.low) / 2
-    return figure_words(found.value, 4) + (f" ± {figure_words(half, 2)}" if half else "")
 
 
 def _range(found: Sequence[Interval]) -> tuple[float, float]:

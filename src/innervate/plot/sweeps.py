@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 
 from innervate.analysis.intervals import Interval, mean_interval
+from innervate.kernel.words import without_middle
 from innervate.plot import style
 from innervate.plot.words import averages, label
 
@@ -249,5 +250,4 @@ def _text(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     text = f"{value:g}" if isinstance(value, float) else str(value)
-    half = NAME_LETTERS // 2
-    return text if len(text) <= NAME_LETTERS else f"{text[: half - 2]}...{text[1 - half :]}"
+    return without_middle(text, NAME_LETTERS)

@@ -9,7 +9,7 @@ import polars
 
 from innervate.analysis.headline import DEGRADED, DOWN, NO_DATA, OK, part_of
 from innervate.analysis.intervals import mean_interval
-from innervate.kernel.words import number_of
+from innervate.kernel.words import number_of, without_middle
 from innervate.plot import charts, means, notebook, page, report
 from innervate.plot.svg import clean
 from innervate.plot.words import averages, label
@@ -25,6 +25,7 @@ FAILED = "failed"
 WORST = (FAILED, DOWN, NO_DATA, DEGRADED)
 GROUPS_OPEN, GROUPS_MAX = 5, 40  # of runs that are not well, by their points
 NAME_LETTERS = 30
+PLAN_LETTERS = 40_000
 
 
 class Axes(NamedTuple):
@@ -191,7 +192,8 @@ def _rows(done: Sweep, name: str, table: polars.DataFrame) -> list[tuple[str, me
 def _mean(at: float, values: Sequence[float], where: str) -> means.Mean:
     found = mean_interval(values)
     row = {"runs": len(values), "mean": found.value, "low": found.low, "high": found.high}
-    return means.Mean(at, found, f"{where}: {_mean_words(row, 0)}, {number_of(len(values), 'run')}")
+    told = _mean_words(row, 0)
+    return means.Mean(at, found, told, f"{where}: {told}, {number_of(len(values), 'run')}")
 
 
 def _mean_words(row: dict[str, Any] | None, count: int) -> str:
@@ -231,8 +233,9 @@ def _points(done: Sweep, measures: Sequence[str]) -> str:
 def _came(done: Sweep) -> dict[int, Counter[str]]:
     """How many runs of each point came to which level, or failed."""
     found: dict[int, Counter[str]] = {}
-    for row in _levels(done).iter_rows(named=True):
-        found.setdefault(row["point"], Counter())[row["level"]] += 1
+    counts = _levels(done).group_by("point", "level", maintain_order=True).len()
+    for point, level, count in counts.iter_rows():
+        found.setdefault(point, Counter())[level] = count
     return found
 
 
@@ -274,12 +277,15 @@ def _group(done: Sweep, row: Mapping[str, Any]) -> str:
 
 def _again(done: Sweep) -> str:
     rows = [(escape(key), escape(str(value))) for key, value in report.flatten(done.provenance)]
+    text = dump(done.plan)
+    if len(text) > PLAN_LETTERS:
+        text = text[:PLAN_LETTERS] + "\n# ... the rest is in sweep.toml\n"
     return "".join([
         page.element("p", "In the folder of this page:"),
         page.element("pre", "innervate sweep sweep.toml --out again", "command"),
         page.element("p", "results.parquet has a row for every run, points.parquet the mean, its "
                      "interval and quantiles of every figure at every point."),
-        page.details("The plan", page.element("pre", dump(done.plan)[:40_000])),
+        page.details("The plan", page.element("pre", text)),
         page.details("Versions", page.table(("what", "value"), rows, "summary")),
     ])  # fmt: skip
 
@@ -292,5 +298,4 @@ def _called(columns: Mapping[str, Any]) -> str:
 
 
 def _short(text: str) -> str:
-    half = NAME_LETTERS // 2
-    return text if len(text) <= NAME_LETTERS else f"{text[: half - 2]}...{text[1 - half :]}"
+    return without_middle(text, NAME_LETTERS)

@@ -32,7 +32,10 @@ def levels(done: Sweep) -> dict[str, int]:
 def headline(done: Sweep) -> HeadlineEntry:
     """The worst that a run of the sweep came to, and how many runs came to what, worst first."""
     found, whole = levels(done), done.results.height
-    shown = [(count, f"{verb(count, 'is')} {level}") for level, count in found.items() if count]
+    shown = [
+        (count, f"{verb(count, 'has' if level == NO_DATA else 'is')} {level}")
+        for level, count in found.items() if count
+    ]  # fmt: skip
     shown = [(done.failed.height, "failed")] * (done.failed.height > 0) + shown[::-1]
     worst = next((level for level in reversed(LEVELS) if found[level]), NO_DATA)
     if worst == OK and (done.failed.height or not done.complete):
