@@ -141,7 +141,8 @@ def test_a_file_is_no_folder_for_a_board(tmp_path, capsys):
     ("arguments", "said"),
     [(["k=x"], "whole number"), (["kk=3"], "protocol.kk is unknown"),
      (["k=0"], "must be 1 to 840"), (["a", "b"], "one folder"),
-     (["mesh", "a"], "for boards; the skin and networks of your own over cables or a field have one"),
+     (["mesh", "a"],
+      "for boards; the skin and networks of your own over cables or a field have one"),
      (["--out", "a"], "--out: no such option; see --help")],
 )  # fmt: skip
 def test_a_mistake_is_one_line_and_leaves_nothing(tmp_path, monkeypatch, capsys, arguments, said):
